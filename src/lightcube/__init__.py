@@ -1,0 +1,1 @@
+"""Pictures in, a cube of coloured shadows out."""

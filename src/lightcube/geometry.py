@@ -1,0 +1,267 @@
+"""Where the voxels, the lamp and the screen are.
+
+Axes are right-handed with z up, lengths in millimetres, angles in degrees for people. Everything is
+in the cube's own frame: the cube stands still and the lamp goes round it. See docs/conventions.md.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lightcube.errors import InputError
+
+#: A direction component smaller than this counts as zero (the tie rule of docs/conventions.md).
+PARALLEL = 1e-12
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A block of cubic voxels, centred at the origin; z is the turntable's axis and z = 0 the bottom slice.
+
+    Parameters
+    ----------
+    shape
+        Number of voxels ``(nz, ny, nx)``, each at least 1.
+    voxel_mm
+        Side of a voxel in mm.
+    """
+
+    shape: tuple[int, int, int]
+    voxel_mm: float = 1.0
+
+    def __post_init__(self) -> None:
+        if len(self.shape) != 3 or any(int(n) != n or n < 1 for n in self.shape):
+            raise InputError(f"a grid's shape is three whole numbers of at least 1 (nz, ny, nx), not {self.shape}")
+        if not (math.isfinite(self.voxel_mm) and self.voxel_mm > 0):
+            raise InputError(f"a voxel's side must be a positive number of millimetres, not {self.voxel_mm}")
+        object.__setattr__(self, "shape", tuple(int(n) for n in self.shape))
+        object.__setattr__(self, "voxel_mm", float(self.voxel_mm))
+
+    @property
+    def size_mm(self) -> tuple[float, float, float]:
+        """Lengths of the block along (z, y, x) in mm."""
+        nz, ny, nx = self.shape
+        return (nz * self.voxel_mm, ny * self.voxel_mm, nx * self.voxel_mm)
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """Lamp and screen of every view, as vectors in the cube's frame (mm, float64).
+
+    The centre of pixel ``(row, column)`` of view ``v`` lies at
+    ``origins[v] + (column - (columns - 1) / 2) * column_steps[v] + (row - (rows - 1) / 2) * row_steps[v]``.
+
+    Parameters
+    ----------
+    lamps
+        ``(views, 4)``, homogeneous: ``(x, y, z, 0)`` is parallel light travelling along ``(x, y, z)``,
+        ``(x, y, z, 1)`` a point lamp standing at ``(x, y, z)``.
+    origins
+        ``(views, 3)``, the middle of each picture on its screen.
+    column_steps, row_steps
+        ``(views, 3)``, from one pixel to the next one to its right, and to the next one below it.
+    picture_shape
+        ``(rows, columns)`` of every picture.
+    """
+
+    lamps: NDArray[np.float64]
+    origins: NDArray[np.float64]
+    column_steps: NDArray[np.float64]
+    row_steps: NDArray[np.float64]
+    picture_shape: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        count = len(np.atleast_2d(self.lamps))
+        for name, width in (("lamps", 4), ("origins", 3), ("column_steps", 3), ("row_steps", 3)):
+            array = np.array(getattr(self, name), dtype=np.float64)
+            if array.shape != (count, width) or not np.all(np.isfinite(array)) or count == 0:
+                raise InputError(
+                    f"{name} of views must be finite numbers of shape ({count}, {width}), not {array.shape}"
+                )
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if len(self.picture_shape) != 2 or any(int(n) != n or n < 1 for n in self.picture_shape):
+            raise InputError(f"a picture's shape is two whole numbers of at least 1, not {self.picture_shape}")
+        object.__setattr__(self, "picture_shape", tuple(int(n) for n in self.picture_shape))
+
+    def __len__(self) -> int:
+        return len(self.lamps)
+
+    def __repr__(self) -> str:
+        rows, columns = self.picture_shape
+        return f"<{len(self)} views of {rows} x {columns} pixels>"
+
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Turntable angle of each view's parallel lamp, degrees in [0, 360), to 1e-9."""
+        x, y = self.lamps[:, 0], self.lamps[:, 1]
+        return np.round(np.degrees(np.arctan2(-y, x)), 9) % 360
+
+    @property
+    def elevations(self) -> NDArray[np.float64]:
+        """Elevation of each view's parallel lamp above the horizon, degrees in (-90, 90), to 1e-9."""
+        return np.round(np.degrees(np.arctan2(-self.lamps[:, 2], np.hypot(self.lamps[:, 0], self.lamps[:, 1]))), 9)
+
+    def take(self, indices: Sequence[int] | NDArray[np.integer] | slice) -> "Views":
+        """Return some of the views, in the order of `indices`."""
+        return Views(
+            self.lamps[indices],
+            self.origins[indices],
+            self.column_steps[indices],
+            self.row_steps[indices],
+            self.picture_shape,
+        )
+
+
+def _round_up(value: float, parity: int) -> int:
+    """Smallest whole number of at least `value` that is even or odd like `parity` (to 1e-9)."""
+    whole = math.ceil(value - 1e-9)
+    return whole + (whole - parity) % 2
+
+
+def raster_shape(grid: Grid, elevation: float = 0.0) -> tuple[int, int]:
+    """``(rows, columns)`` of a screen at voxel pitch that holds the cube's whole shadow at every turntable angle.
+
+    ``columns`` is the smallest integer of at least ``hypot(nx, ny)`` with ny's parity, ``rows`` that of
+    ``nz + hypot(nx, ny) * |tan(elevation)|`` with nz's: then no beam of 0 degrees runs along voxel faces.
+    """
+    nz, ny, nx = grid.shape
+    diagonal = math.hypot(nx, ny)
+    height = nz + diagonal * abs(math.tan(math.radians(check_elevation(elevation))))
+    return _round_up(height, nz), _round_up(diagonal, ny)
+
+
+def picture_shape(grid: Grid, frame_width: float, aspect: float, elevation: float = 0.0) -> tuple[int, int]:
+    """``(rows, columns)`` of pictures on the screen raster.
+
+    Parameters
+    ----------
+    frame_width
+        Width of the picture as a fraction of the cube's width ``ny``.
+    aspect
+        Width of the picture divided by its height.
+    elevation
+        Of the lamp, in degrees.
+
+    Returns
+    -------
+    The nearest sizes with the raster's parities. A picture too high for the raster is made as high as the
+    raster (at elevation 0: as the cube) and keeps its width.
+
+    Raises
+    ------
+    InputError
+        Where the picture would be wider than the cube's screen, or a size is not positive.
+    """
+    if not (math.isfinite(frame_width) and frame_width > 0):
+        raise InputError(f"a frame width must be a positive fraction of the cube's width, not {frame_width}")
+    if not (math.isfinite(aspect) and aspect > 0):
+        raise InputError(f"an aspect (width / height) must be a positive number, not {aspect}")
+    most_rows, most_columns = raster_shape(grid, elevation)
+    columns = _nearest(frame_width * grid.shape[1], most_columns % 2)
+    if columns > most_columns:
+        raise InputError(
+            f"a frame width of {frame_width:g} is {columns} pixels, wider than the cube's screen of {most_columns}: "
+            f"use at most {most_columns / grid.shape[1]:.3f}"
+        )
+    rows = min(_nearest(columns / aspect, most_rows % 2), most_rows)
+    return rows, columns
+
+
+def _nearest(value: float, parity: int) -> int:
+    """Positive whole number nearest to `value` that is even or odd like `parity`."""
+    return max(2 * round((value - parity) / 2) + parity, 2 - parity)
+
+
+def check_elevation(elevation: float) -> float:
+    """Return `elevation` (degrees), or raise `InputError` unless it lies strictly between -90 and 90."""
+    if not (math.isfinite(elevation) and abs(elevation) < 89.999):
+        raise InputError(f"an elevation must lie between -90 and 90 degrees, both excluded, not {elevation:g}")
+    return float(elevation)
+
+
+def check_angles(angles: ArrayLike) -> NDArray[np.float64]:
+    """Return `angles` (degrees) as a float64 vector, or raise `InputError` unless all are finite and there is one."""
+    vector = np.atleast_1d(np.asarray(angles, dtype=np.float64))
+    if vector.ndim != 1 or vector.size == 0:
+        raise InputError("angles must be a list of at least one number of degrees")
+    if not np.all(np.isfinite(vector)):
+        raise InputError(f"angle number {int(np.argmin(np.isfinite(vector))) + 1} is not a finite number of degrees")
+    return vector
+
+
+def spread_angles(count: int, span: float | None = None, *, elevation: float = 0.0) -> NDArray[np.float64]:
+    """`count` angles spread evenly over `span` degrees (default 180 at elevation 0, else 360).
+
+    They start half a step from 0, or a third of a step where half a step would put one on a multiple
+    of 90 degrees: there a picture as wide as the cube has no margin.
+    """
+    if span is None:
+        span = 360.0 if elevation else 180.0
+    if count < 1 or not (math.isfinite(span) and 0 < abs(span) <= 360):
+        raise InputError(f"cannot spread {count} angles over {span:g} degrees: use a span in (0, 360]")
+    step = span / count
+    for offset in (1 / 2, 1 / 3):
+        angles = (np.arange(count) + offset) * step
+        if np.min(np.abs(np.remainder(angles + 45, 90) - 45)) > 1e-9:
+            break
+    return angles
+
+
+def _turned(angles: NDArray[np.float64], vector: tuple[float, float, float]) -> NDArray[np.float64]:
+    """`vector` of the room in the frame of a cube that was turned counter-clockwise by `angles` (degrees)."""
+    cos, sin = _cos_sin(angles)
+    x, y, z = vector
+    return np.stack([cos * x + sin * y, -sin * x + cos * y, np.full_like(cos, z)], axis=1)
+
+
+def _cos_sin(degrees: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Cosine and sine, exact at multiples of 90 degrees."""
+    turn = np.remainder(degrees, 360.0)
+    quarter = np.rint(turn / 90)
+    rest = np.radians(turn - 90 * quarter)
+    cos, sin = np.cos(rest), np.sin(rest)
+    index = quarter.astype(int) % 4
+    return np.choose(index, [cos, -sin, -cos, sin]), np.choose(index, [sin, cos, -sin, -cos])
+
+
+def turntable(
+    grid: Grid, angles: ArrayLike, *, elevation: float = 0.0, picture_shape: tuple[int, int] | None = None
+) -> Views:
+    """Views of a cube on a turntable in parallel light, on a vertical screen with rows and columns one voxel apart.
+
+    Parameters
+    ----------
+    angles
+        Turntable angles in degrees; a positive angle turns the cube counter-clockwise seen from above.
+    elevation
+        Of the lamp, in degrees: light travels along ``(cos e, 0, -sin e)`` in the room.
+    picture_shape
+        ``(rows, columns)`` of a window in the middle of the screen; default the whole `raster_shape`.
+
+    Notes
+    -----
+    Parallel light casts the same picture on every parallel screen, so the screen's plane is put through the
+    cube's centre. The picture's middle is where the beam through that centre lands.
+    """
+    turned = check_angles(angles)
+    elevation = check_elevation(elevation)
+    raster = raster_shape(grid, elevation)
+    shape = picture_shape or raster
+    if shape[0] > raster[0] or shape[1] > raster[1]:
+        raise InputError(
+            f"a picture of {shape[0]} x {shape[1]} pixels (rows x columns) is larger than "
+            f"the cube's screen of {raster[0]} x {raster[1]}"
+        )
+    tilt = math.radians(elevation)
+    light = _turned(turned, (math.cos(tilt), 0.0, -math.sin(tilt)))
+    return Views(
+        lamps=np.concatenate([light, np.zeros((len(turned), 1))], axis=1),
+        origins=np.zeros((len(turned), 3)),
+        column_steps=_turned(turned, (0.0, -grid.voxel_mm, 0.0)),
+        row_steps=_turned(turned, (0.0, 0.0, -grid.voxel_mm)),
+        picture_shape=shape,
+    )

@@ -1,0 +1,1 @@
+"""Numba loops; they import numpy and numba only."""

@@ -1,0 +1,1 @@
+"""Moving geometric scenes and the ray tracer."""

@@ -1,0 +1,36 @@
+"""What the methods that work on logarithms share: the right-hand side ``b = ln P - ln B`` of ``A x = b``."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.absorption import absorbance
+from lightcube.errors import InputError
+from lightcube.solvers.contract import Floats
+
+
+def lamp_per_entry(lamp_powers: Floats, view_of_row: NDArray[np.integer[Any]] | None, shape: tuple[int, int]) -> Floats:
+    """Lamp power of each entry of `B`, ``(equations, columns)``, from powers ``(views, channels)``."""
+    equations, columns = shape
+    rows = np.zeros(equations, np.intp) if view_of_row is None else view_of_row
+    return lamp_powers[rows][:, np.arange(columns) % lamp_powers.shape[1]]
+
+
+def fixed_lamp(lamp_bounds: tuple[Floats, Floats] | None, method: str) -> Floats:
+    """Return the lamp powers ``(views, channels)`` where their bounds leave no choice, else raise `InputError`."""
+    if lamp_bounds is None:
+        return np.ones((1, 1))
+    lower, upper = (np.asarray(bound, dtype=np.float64) for bound in lamp_bounds)
+    if not np.array_equal(lower, upper):
+        raise InputError(f"method {method} cannot choose lamp powers: fix them, or use method display")
+    return lower
+
+
+def absorbance_wanted(
+    B: Floats,  # noqa: N803
+    lamp_powers: Floats,
+    view_of_row: NDArray[np.integer[Any]] | None,
+) -> Floats:
+    """``ln P - ln B``, ``(equations, columns)`` in B's dtype; negative where more light is wanted than the lamp has."""
+    return absorbance(B / lamp_per_entry(lamp_powers, view_of_row, (B.shape[0], B.shape[1])).astype(B.dtype))

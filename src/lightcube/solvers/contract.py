@@ -1,0 +1,116 @@
+"""What every solver takes and returns."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+Floats = NDArray[np.floating[Any]]
+
+
+class Operator(Protocol):
+    """The matrix A as solvers see it: ``B = A X`` for blocks of columns, which are independent of each other."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """``(equations, unknowns)`` of one column."""
+
+    def forward(self, x: Floats) -> Floats:
+        """``A @ x`` for `x` of shape ``(unknowns, columns)``, in its dtype."""
+
+    def adjoint(self, b: Floats) -> Floats:
+        """``A.T @ b`` for `b` of shape ``(equations, columns)``, in its dtype: the exact transpose of `forward`."""
+
+    def to_sparse(self) -> csr_array:
+        """The same matrix, float64, for methods that need single rows."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a running solver stands; `x` and `absorbance` are the solver's own arrays: look, do not write."""
+
+    iteration: int
+    iterations: int
+    x: Floats
+    #: ``A x`` of this `x`.
+    absorbance: Floats
+    #: What the solver minimises, or the norm it reports.
+    residual: float
+
+
+#: Called after each iteration; True asks the solver to stop and return what it has.
+Callback = Callable[[Progress], bool | None]
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a solver returns.
+
+    Parameters
+    ----------
+    x
+        ``(unknowns, columns)``, extinction in 1/mm.
+    lamp_powers
+        ``(views, channels)``.
+    residuals
+        One figure per iteration, in the norm that the solver's docstring states.
+    rejected
+        ``(count, 2)`` whole numbers: the (equation, column) pairs that were thrown out as inconsistent.
+    undetermined
+        ``(unknowns, columns)`` bool: voxels that no remaining equation determines, or None where a method
+        does not tell.
+    stop_reason
+        One of ``"converged"``, ``"iterations"``, ``"callback"``.
+    """
+
+    x: Floats
+    lamp_powers: Floats
+    residuals: NDArray[np.float64]
+    rejected: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
+    undetermined: NDArray[np.bool_] | None = None
+    stop_reason: str = "iterations"
+
+
+class Solver(Protocol):
+    """One signature for all methods.
+
+    Parameters
+    ----------
+    A
+        The matrix.
+    B
+        ``(equations, columns)``, what the screen shall show, linear light above 0: lamp power times transmittance.
+        The colour channel of column ``j`` is ``j % channels``.
+    weights
+        At least 0, broadcastable to `B`; 0 = don't care; None = all 1.
+    view_of_row
+        ``(equations,)`` whole numbers: the view that each equation belongs to; None = all view 0.
+    lamp_bounds
+        Lower and upper bound of the lamp powers, each ``(views, channels)``; equal where the lamp is fixed.
+        None = one channel per view, power 1.
+    x0
+        ``(unknowns, columns)`` to start from; None = all 0 (fully transparent).
+    bounds
+        Lower and upper bound of `x`; a method that cannot keep them says so.
+    iterations
+        At most so many.
+    callback
+        Called after each iteration.
+    """
+
+    def __call__(  # noqa: D102
+        self,
+        A: Operator,  # noqa: N803
+        B: Floats,  # noqa: N803
+        *,
+        weights: Floats | None = None,
+        view_of_row: NDArray[np.integer[Any]] | None = None,
+        lamp_bounds: tuple[Floats, Floats] | None = None,
+        x0: Floats | None = None,
+        bounds: tuple[float, float] = (0.0, np.inf),
+        iterations: int = 100,
+        callback: Callback | None = None,
+    ) -> Result: ...
