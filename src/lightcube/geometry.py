@@ -98,12 +98,14 @@ class Views:
     def angles(self) -> NDArray[np.float64]:
         """Turntable angle of each view's parallel lamp, degrees in [0, 360), to 1e-9."""
         x, y = self.lamps[:, 0], self.lamps[:, 1]
-        return np.round(np.degrees(np.arctan2(-y, x)), 9) % 360
+        degrees: NDArray[np.float64] = np.degrees(np.arctan2(-y, x))
+        return np.asarray(np.round(degrees, 9) % 360, dtype=np.float64)
 
     @property
     def elevations(self) -> NDArray[np.float64]:
         """Elevation of each view's parallel lamp above the horizon, degrees in (-90, 90), to 1e-9."""
-        return np.round(np.degrees(np.arctan2(-self.lamps[:, 2], np.hypot(self.lamps[:, 0], self.lamps[:, 1]))), 9)
+        level = np.hypot(self.lamps[:, 0], self.lamps[:, 1])
+        return np.asarray(np.round(np.degrees(np.arctan2(-self.lamps[:, 2], level)), 9), dtype=np.float64)
 
     def take(self, indices: Sequence[int] | NDArray[np.integer] | slice) -> "Views":
         """Return some of the views, in the order of `indices`."""
