@@ -1,1 +1,48 @@
 """Pictures in, a cube of coloured shadows out."""
+
+from lightcube.backward import Solution, solve
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.fitting import fit
+from lightcube.forward import cast, lamp_at, play, views_at
+from lightcube.frames import Frames, Pictures
+from lightcube.geometry import Grid, Views, spread_angles, turntable
+from lightcube.io import load, publish, read_pictures, read_scene, save, write_pictures
+from lightcube.metrics import score
+from lightcube.projector import Projector, dot_test
+from lightcube.scene.scene import Scene
+from lightcube.scene.tracer import scene_frames, scene_views
+from lightcube.solvers import METHODS
+from lightcube.solvers.contract import Result
+
+__all__ = [
+    "METHODS",
+    "Cube",
+    "Frames",
+    "Grid",
+    "InputError",
+    "Pictures",
+    "Projector",
+    "Result",
+    "Scene",
+    "Solution",
+    "Views",
+    "cast",
+    "dot_test",
+    "fit",
+    "lamp_at",
+    "load",
+    "play",
+    "publish",
+    "read_pictures",
+    "read_scene",
+    "save",
+    "scene_frames",
+    "scene_views",
+    "score",
+    "solve",
+    "spread_angles",
+    "turntable",
+    "views_at",
+    "write_pictures",
+]

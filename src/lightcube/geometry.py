@@ -207,7 +207,7 @@ def spread_angles(count: int, span: float | None = None, *, elevation: float = 0
         raise InputError(f"cannot spread {count} angles over {span:g} degrees: use a span in (0, 360]")
     step = span / count
     for offset in (1 / 2, 1 / 3):
-        angles = (np.arange(count) + offset) * step
+        angles = (np.arange(count, dtype=np.float64) + offset) * step
         if np.min(np.abs(np.remainder(angles + 45, 90) - 45)) > 1e-9:
             break
     return angles

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from lightcube.absorption import absorbance
 from lightcube.errors import InputError
 from lightcube.solvers.contract import Floats
+from lightcube.transfer import encode
 
 
 def lamp_per_entry(lamp_powers: Floats, view_of_row: NDArray[np.integer[Any]] | None, shape: tuple[int, int]) -> Floats:
@@ -28,9 +29,18 @@ def fixed_lamp(lamp_bounds: tuple[Floats, Floats] | None, method: str) -> Floats
 
 
 def absorbance_wanted(
-    B: Floats,  # noqa: N803
+    B: Floats,
     lamp_powers: Floats,
     view_of_row: NDArray[np.integer[Any]] | None,
 ) -> Floats:
     """``ln P - ln B``, ``(equations, columns)`` in B's dtype; negative where more light is wanted than the lamp has."""
     return absorbance(B / lamp_per_entry(lamp_powers, view_of_row, (B.shape[0], B.shape[1])).astype(B.dtype))
+
+
+def half_level(B: Floats) -> Floats:
+    """Half a display level as absorbance: ``0.5 / 255 / |dg/du|`` with ``g`` the sRGB curve of ``u = ln B``.
+
+    On the curve's power part ``dg/du = (g + 0.055) / 2.4``. Pixels on its straight toe, where nobody tells
+    levels apart, are given the tolerance at the toe's end (0.049), so that it does not grow without limit.
+    """
+    return 0.5 / 255 * 2.4 / (encode(np.maximum(B, 0.0031308).astype(B.dtype)) + 0.055)

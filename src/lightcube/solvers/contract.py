@@ -103,8 +103,8 @@ class Solver(Protocol):
 
     def __call__(  # noqa: D102
         self,
-        A: Operator,  # noqa: N803
-        B: Floats,  # noqa: N803
+        A: Operator,
+        B: Floats,
         *,
         weights: Floats | None = None,
         view_of_row: NDArray[np.integer[Any]] | None = None,

@@ -1,0 +1,48 @@
+# make demo   set everything up and run the demonstration, into out/
+# make test   set everything up and run the tests, compiled and interpreted
+# make check  lint, format and types
+# Use another Python with: make demo PYTHON=python3.12
+
+PYTHON ?= python3
+EXTRAS ?= dev,mesh
+BIN := .venv/bin
+PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install --quiet
+
+.PHONY: demo test check coverage clean
+
+demo: .venv/.ready
+	$(BIN)/lightcube demo
+
+test: .venv/.ready-$(EXTRAS)
+	$(BIN)/python -m pytest -q -n auto
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n auto
+
+check: .venv/.ready-$(EXTRAS)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+coverage: .venv/.ready-$(EXTRAS)
+	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -q
+	$(BIN)/coverage report --skip-covered --show-missing
+
+clean:
+	rm -rf .venv out .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+.venv/.made:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "lightcube needs Python 3.11 or newer: install one and name it, as in: make demo PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+	  echo "this Python cannot make virtual environments: install its venv package (on Debian and Ubuntu: apt install python3-venv)"; exit 1; }
+	@echo "setting up .venv, once; this takes a minute or two"
+	@$(PYTHON) -m venv .venv
+	@touch $@
+
+.venv/.ready: .venv/.made pyproject.toml constraints.txt
+	@$(PIP) --editable .
+	@touch $@
+
+.venv/.ready-$(EXTRAS): .venv/.ready
+	@$(PIP) --editable '.[$(EXTRAS)]'
+	@touch $@

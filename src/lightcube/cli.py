@@ -1,0 +1,403 @@
+"""The command line: parses, calls, prints."""
+
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from lightcube import backward, consistency, demo, forward, io, metrics
+from lightcube.console import ctrl_c, err, json_document, json_line, out, plain_warnings, progress
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.fitting import Fit, fit, fit_report, fit_to_views, frames_from_targets
+from lightcube.frames import Frames, Pictures
+from lightcube.geometry import Grid
+from lightcube.scene.tracer import scene_frames, scene_views
+from lightcube.sheet import beside_targets, contact_sheet
+from lightcube.transfer import Transfer
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="Pictures in, a cube of coloured shadows out.",
+)
+
+OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
+OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
+JSON = typer.Option("--json", help="Print JSON for machines.")
+FPS = typer.Option("--fps", help="Pictures per second of a movie.")
+
+
+@app.command()
+def trace(
+    scene: Annotated[
+        str, typer.Argument(help="A scene file (TOML), or the name of a scene that comes with lightcube.")
+    ],
+    output: Annotated[Path, OUT],
+    frames: Annotated[int | None, typer.Option(help="Number of pictures; default the scene's own.")] = None,
+    size: Annotated[
+        str | None, typer.Option(help="Size of the pictures, WIDTHxHEIGHT; default the scene's own.")
+    ] = None,
+    span: Annotated[float | None, typer.Option(help="Degrees that the views are spread over.")] = None,
+    elevation: Annotated[float | None, typer.Option(help="Elevation of the lamp in degrees.")] = None,
+    fps: Annotated[float, FPS] = 25.0,
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Ray-trace a moving scene to frames: a folder of PNGs with views.toml, or a movie by suffix."""
+    described = io.read_scene(scene)
+    io.check_pictures_target(output, overwrite=overwrite)
+    shape = None
+    if size is not None:
+        width, height = _whole_numbers(size, "x", "--size", 2)
+        shape = (width, height)
+    grid, views = scene_views(described, frames, shape, span, elevation)
+    with progress("tracing", as_json=as_json) as advance:
+        made = scene_frames(described, views, grid, callback=advance)
+    io.write_pictures(output, made.pictures, fps=fps, views=views, overwrite=overwrite)
+    rows, columns = views.picture_shape
+    _done(as_json, f"{len(views)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(views))
+
+
+@app.command()
+def solve(
+    frames: Annotated[Path, typer.Argument(help="A folder of pictures, an animated image or a video.")],
+    output: Annotated[Path, OUT],
+    n: Annotated[int | None, typer.Option("--n", help="Side of the cube in voxels.  [default: 128]")] = None,
+    shape: Annotated[str | None, typer.Option(help="Voxels along each axis, NZ,NY,NX, instead of --n.")] = None,
+    size_mm: Annotated[float, typer.Option(help="Longest side of the cube in mm.")] = 100.0,
+    frame_width: Annotated[float, typer.Option(help="Width of the pictures as a fraction of the cube's.")] = 1.0,
+    fit_mode: Annotated[Fit, typer.Option("--fit", help="What happens to other aspects and mixed sizes.")] = "crop",
+    angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C, one per picture.")] = None,
+    span: Annotated[float | None, typer.Option(help="Degrees to spread the views over, evenly.")] = None,
+    elevation: Annotated[float | None, typer.Option(help="Elevation of the lamp in degrees.")] = None,
+    method: Annotated[str, typer.Option(help=f"One of {', '.join(backward.METHODS)}.")] = "display",
+    iterations: Annotated[int | None, typer.Option(help="At most so many; default the method's own.")] = None,
+    lamp_power: Annotated[float, typer.Option(help="Power of the lamp, linear light; 1 shows white.")] = 1.0,
+    max_extinction: Annotated[float | None, typer.Option(help="Largest extinction of the material, 1/mm.")] = None,
+    transfer: Annotated[Transfer, typer.Option(help="How picture values become linear light.")] = "srgb",
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Compute the cube whose shadows are the frames."""
+    io.check_cube_target(output, overwrite=overwrite)
+    _check_partial(output, overwrite=overwrite)
+    backward.find_method(method)
+    grid = _grid(n, shape, size_mm)
+    _check_memory(backward.memory_needed(grid, (1, 1), 1))
+    pictures = io.read_pictures(frames, transfer=transfer)
+    turned = None if angles is None else _numbers(angles, "--angles")
+    fitted = fit(pictures, grid, angles=turned, span=span, elevation=elevation, frame_width=frame_width, fit=fit_mode)
+    _check_memory(backward.memory_needed(grid, fitted.views.picture_shape, len(fitted)))
+    _say_before(pictures, fitted, fit_mode, as_json=as_json)
+    began = time.monotonic()
+    with ctrl_c() as stopped, progress("solving", as_json=as_json) as advance:
+        looked = 0.0
+
+        def step(step: backward.Step) -> bool:
+            nonlocal looked
+            figures = {}
+            if time.monotonic() - looked > 1.0:  # a look costs as much as a good part of a pass
+                figures = {"PSNR": metrics.mean_psnr(step.shown(), fitted)}
+                looked = time.monotonic()
+            advance(step.iteration, step.iterations, **figures)
+            return stopped()
+
+        solution = backward.solve(
+            fitted,
+            grid,
+            method=method,
+            lamp_power=lamp_power,
+            max_extinction=np.inf if max_extinction is None else max_extinction,
+            iterations=iterations,
+            callback=step,
+            store=io.PartialStore(output),
+        )
+    _finish(solution, fitted, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
+
+
+def _finish(
+    solution: backward.Solution, frames: Frames, output: Path, seconds: float, *, overwrite: bool, as_json: bool
+) -> None:
+    """Score, write and report what `solve` found."""
+    cube = solution.cube
+    if cube.status == "interrupted":
+        partial = io.partial_path(output)
+        err.print(f"interrupted: {partial} holds what was reached; publish it with", markup=False)
+        err.print(f"  lightcube publish {partial}", markup=False)
+        raise typer.Exit(130)
+    scores = metrics.score(cube, frames)
+    io.publish(io.write_partial(output, replace(cube, scores=scores)), overwrite=overwrite)
+    if as_json:
+        json_line(
+            "result",
+            out=str(output),
+            seconds=seconds,
+            iterations=len(solution.residuals),
+            residual=float(solution.residuals[-1]),
+            stop_reason=solution.stop_reason,
+            rejected=solution.rejected.tolist(),
+            undetermined=solution.undetermined,
+            **scores,
+        )
+        return
+    if len(solution.rejected):
+        out.print(f"{len(solution.rejected)} inconsistent pixel values thrown out: {_by_view(solution.rejected, cube)}")
+    if solution.undetermined:
+        out.print(f"{solution.undetermined} voxel values that nothing determines are transparent")
+    out.print(
+        f"{output}: PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), "
+        f"SSIM {scores['ssim_mean']:.3f}, colour difference {scores['delta_e_mean']:.1f}; "
+        f"{len(solution.residuals)} passes in {seconds:.0f} s",
+        markup=False,
+    )
+
+
+@app.command()
+def play(
+    cube: Annotated[Path, typer.Argument(help="A cube.")],
+    output: Annotated[Path, OUT],
+    angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
+    start: Annotated[float, typer.Option("--from", help="First angle in degrees.")] = 0.0,
+    end: Annotated[float, typer.Option("--to", help="Angle in degrees where the turn ends.")] = 360.0,
+    count: Annotated[int, typer.Option(help="Number of pictures between --from and --to.")] = 120,
+    stops: Annotated[bool, typer.Option("--stops", help="Play just the views that the cube was made for.")] = False,
+    scale: Annotated[int, typer.Option(help="Enlarge each pixel to a square of so many.")] = 1,
+    target: Annotated[
+        bool, typer.Option("--target", help="Put the wanted picture of the nearest stop beside.")
+    ] = False,
+    no_mask: Annotated[bool, typer.Option("--no-mask", help="Show the whole screen, not the picture window.")] = False,
+    fps: Annotated[float, FPS] = 25.0,
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Cast the cube's shadows: a movie, a folder of PNGs, or .npy (linear light, by suffix)."""
+    io.check_pictures_target(output, overwrite=overwrite)
+    if target and no_mask:
+        raise InputError("--target shows the picture window: leave out --no-mask")
+    loaded = io.load(cube)
+    turned = _play_angles(loaded, angles, start, end, count, stops=stops)
+    views = forward.views_at(loaded, turned, whole_screen=no_mask) if not stops or no_mask else loaded.views
+    powers = loaded.powers if stops else forward.lamp_at(loaded, turned)
+    with progress("playing", as_json=as_json) as advance:
+        pictures = forward.cast(loaded, views, powers)
+        if target:
+            pictures = beside_targets(pictures, frames_from_targets(loaded), turned)
+        io.write_pictures(
+            output,
+            _counted(pictures, len(views), advance),
+            count=len(views),
+            transfer=loaded.transfer,
+            fps=fps,
+            scale=scale,
+            views=None if target else views,
+            names=loaded.names if stops else None,
+            overwrite=overwrite,
+        )
+    _done(as_json, f"{len(views)} pictures in {output}", out=str(output), frames=len(views))
+
+
+@app.command()
+def score(
+    cube: Annotated[Path, typer.Argument(help="A cube.")],
+    frames: Annotated[
+        Path | None, typer.Argument(help="The pictures it was made from; default its own targets.")
+    ] = None,
+    fit_mode: Annotated[Fit, typer.Option("--fit", help="How the pictures were fitted.")] = "crop",
+    sheet: Annotated[Path | None, typer.Option(help="Write a contact sheet: wanted, shown, difference (PNG).")] = None,
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Compare what a cube really casts with what was wanted: PSNR, SSIM and CIEDE2000 of every view."""
+    if sheet is not None:
+        io.check_sheet_target(sheet, overwrite=overwrite)
+    loaded = io.load(cube)
+    wanted = frames_from_targets(loaded) if frames is None else _refitted(loaded, frames, fit_mode)
+    scores = metrics.score(loaded, wanted)
+    if sheet is not None:
+        shown = forward.play(loaded)
+        io.write_sheet(sheet, contact_sheet(shown, wanted, [view["psnr"] for view in scores["views"]]))
+    if as_json:
+        json_document(scores)
+        return
+    out.print(f"{'view':>20} {'angle':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}")
+    for view in scores["views"]:
+        figures = f"{view['angle']:9.3f} {view['psnr']:7.2f} {view['ssim']:7.4f} {view['delta_e']:7.2f}"
+        out.print(f"{view['name'][:20]:>20} {figures}", markup=False)
+    worst, mean = scores["psnr_min"], scores["psnr_mean"]
+    out.print(
+        f"mean PSNR {mean:.2f} dB (worst {worst:.2f}), SSIM {scores['ssim_mean']:.4f}, dE {scores['delta_e_mean']:.2f}"
+    )
+
+
+@app.command()
+def info(
+    cube: Annotated[Path, typer.Argument(help="A cube.")],
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Say what is in a cube file."""
+    facts = metrics.facts(io.load(cube))
+    if as_json:
+        json_document(facts)
+        return
+    for name, value in facts.items():
+        out.print(f"{name:>18}  {value}", markup=False)
+
+
+@app.command()
+def publish(
+    partial: Annotated[Path, typer.Argument(help="The unfinished cube, NAME.zarr.partial.")],
+    overwrite: Annotated[bool, OVERWRITE] = False,
+) -> None:
+    """Turn the unfinished cube of an interrupted solve into a cube file, marked as interrupted."""
+    out.print(f"{io.publish(partial, overwrite=overwrite)}", markup=False)
+
+
+@app.command("demo")
+def demo_command(
+    output: Annotated[Path, typer.Option("-o", "--out", help="Folder for what the demo makes.")] = Path("out"),
+    paper: Annotated[bool, typer.Option("--paper", help="Redo the paper: a 3x3x3 cube, there and back.")] = False,
+) -> None:
+    """Solve, play and score a cube of photographs and one of a traced scene, into a folder."""
+    if paper:
+        demo.paper(output)
+    else:
+        demo.run(output)
+
+
+def main() -> None:
+    """Run the command line: exit code 0, 2 for what the user can mend, 130 for Ctrl-C."""
+    try:
+        with plain_warnings():
+            code = app(standalone_mode=False)
+    except InputError as error:
+        err.print(f"lightcube: {error}", markup=False)
+        code = 2
+    except typer.Exit as stop:
+        code = stop.exit_code
+    except (KeyboardInterrupt, typer.Abort):
+        err.print("interrupted: nothing was written")
+        code = 130
+    except typer.TyperException as error:
+        err.print(f"lightcube: {error.format_message()}", markup=False)
+        code = 2
+    except MemoryError:
+        err.print("lightcube: the machine has not enough memory for this: use a smaller cube or fewer pictures")
+        code = 2
+    sys.exit(code or 0)
+
+
+def _done(as_json: bool, sentence: str, **fields: object) -> None:
+    if as_json:
+        json_line("result", **fields)
+    else:
+        out.print(sentence, markup=False)
+
+
+def _numbers(text: str, option: str) -> list[float]:
+    """Numbers separated by commas."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"{option} {text}: give numbers separated by commas, such as 0,12.5,90") from None
+
+
+def _whole_numbers(text: str, separator: str, option: str, count: int) -> list[int]:
+    """As many whole numbers of at least 1 as `count` says."""
+    parts = text.split(separator)
+    if len(parts) != count or not all(
+        part.strip().isascii() and part.strip().isdigit() and int(part) for part in parts
+    ):
+        example = separator.join(["64", "48", "32"][:count])
+        raise InputError(f"{option} {text}: give {count} whole numbers of at least 1, such as {example}")
+    return [int(part) for part in parts]
+
+
+def _grid(n: int | None, shape: str | None, size_mm: float) -> Grid:
+    if n is not None and shape is not None:
+        raise InputError("--n and --shape both say how many voxels: leave one of them out")
+    side = 128 if n is None else n
+    nz, ny, nx = (side,) * 3 if shape is None else _whole_numbers(shape, ",", "--shape", 3)
+    if min(nz, ny, nx) < 1:
+        raise InputError(f"--n {n}: a cube needs at least 1 voxel a side")
+    if not (np.isfinite(size_mm) and size_mm > 0):
+        raise InputError(f"--size-mm {size_mm}: give a positive number of millimetres")
+    return Grid((nz, ny, nx), size_mm / max(nz, ny, nx))
+
+
+def _check_partial(output: Path, *, overwrite: bool) -> None:
+    """Refuse to run over an interrupted solve; with --overwrite remove it."""
+    partial = io.partial_path(output)
+    if not partial.exists():
+        return
+    if not overwrite:
+        raise InputError(f"{partial} holds an interrupted solve: publish it, or use --overwrite to start anew")
+    io.discard_partial(output)
+
+
+def _check_memory(needed: int) -> None:
+    free = io.free_memory()
+    if needed > free:
+        raise InputError(
+            f"this solve needs {needed / 1e9:.1f} GB of memory and {free / 1e9:.1f} GB are free: "
+            "use a smaller --n or --frame-width, or fewer pictures"
+        )
+
+
+def _say_before(pictures: Pictures, frames: Frames, fit_mode: Fit, *, as_json: bool) -> None:
+    """Print what was done to the pictures, and what no cube can do."""
+    if not as_json:
+        err.print(fit_report(pictures, frames, fit_mode), markup=False)
+    conflicts = consistency.mirror_conflicts(frames)
+    if conflicts:
+        first, second = (frames.names[view] for view in conflicts[0])
+        more = f" (and {len(conflicts) - 1} more such pairs)" if len(conflicts) > 1 else ""
+        err.print(
+            f"note: {first} and {second} are half a turn apart, where a level lamp shows mirror images, but they are "
+            f"different pictures{more}: use other angles or raise the lamp (--elevation)",
+            markup=False,
+        )
+
+
+def _by_view(rejected: NDArray[np.int64], cube: Cube) -> str:
+    """The views with most rejected pixels, by name."""
+    most = Counter(cube.names[view] for view in rejected[:, 0]).most_common(5)
+    return ", ".join(f"{count} in {name}" for name, count in most)
+
+
+def _play_angles(
+    cube: Cube, angles: str | None, start: float, end: float, count: int, *, stops: bool
+) -> NDArray[np.float64]:
+    if stops:
+        return cube.views.angles
+    if angles is not None:
+        return np.array(_numbers(angles, "--angles"))
+    if count < 1:
+        raise InputError(f"--count {count}: give at least 1 picture")
+    if not np.isfinite([start, end]).all():
+        raise InputError(f"--from {start} --to {end}: give finite numbers of degrees")
+    return np.linspace(start, end, count, endpoint=False)
+
+
+def _counted(
+    pictures: Iterable[NDArray[np.float32]], count: int, advance: Callable[..., None]
+) -> Iterator[NDArray[np.float32]]:
+    for number, picture in enumerate(pictures, 1):
+        yield picture
+        advance(number, count)
+
+
+def _refitted(cube: Cube, frames: Path, fit_mode: Fit) -> Frames:
+    """Pictures as `solve` fitted them to the cube."""
+    pictures = io.read_pictures(frames, transfer=cube.transfer)
+    return fit_to_views(pictures, cube.views, fit_mode)

@@ -1,0 +1,105 @@
+"""What the commands print and how they are stopped: sentences, progress, JSON lines, Ctrl-C."""
+
+import json
+import math
+import signal
+import sys
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+#: Results go to standard output, all else to standard error.
+out = Console(soft_wrap=True, highlight=False)
+err = Console(soft_wrap=True, highlight=False, stderr=True)
+
+#: Seconds between two lines of progress.
+_BEAT = 0.5
+
+
+def json_line(event: str, **fields: Any) -> None:
+    """Print one line of JSON: ``{"event": event, ...}``; NaN becomes null."""
+    sys.stdout.write(json.dumps({"event": event, **_plain(fields)}, ensure_ascii=False) + "\n")
+    sys.stdout.flush()
+
+
+def json_document(document: dict[str, Any]) -> None:
+    """Print a document as JSON, indented; NaN becomes null."""
+    sys.stdout.write(json.dumps(_plain(document), indent=2, ensure_ascii=False) + "\n")
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+@contextmanager
+def plain_warnings() -> Iterator[None]:
+    """Print warnings as one sentence each, the same one only once."""
+    said: set[str] = set()
+
+    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+        if str(message) not in said:
+            said.add(str(message))
+            err.print(f"note: {message}", markup=False)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", UserWarning)
+        warnings.showwarning = show
+        yield
+
+
+@contextmanager
+def progress(task: str, *, as_json: bool) -> Iterator[Callable[..., None]]:
+    """Yield ``advance(done, of, **figures)``: a bar with the time left, or at most two JSON lines a second."""
+    last = -math.inf
+    if as_json:
+
+        def advance(done: int, of: int, **figures: float) -> None:
+            nonlocal last
+            if time.monotonic() - last > _BEAT or done == of:
+                last = time.monotonic()
+                json_line("progress", task=task, done=done, of=of, **figures)
+
+        yield advance
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[figures]}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=err, transient=True) as bar:
+        running = bar.add_task(task, total=None, figures="")
+
+        def show(done: int, of: int, **figures: float) -> None:
+            text = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())
+            bar.update(running, completed=done, total=of, figures=text or bar.tasks[0].fields["figures"])
+
+        yield show
+
+
+@contextmanager
+def ctrl_c() -> Iterator[Callable[[], bool]]:
+    """Yield a function that tells whether Ctrl-C was pressed; a second Ctrl-C stops at once."""
+    pressed = False
+
+    def handle(number: int, frame: Any) -> None:
+        nonlocal pressed
+        if pressed:
+            raise KeyboardInterrupt
+        pressed = True
+
+    before = signal.signal(signal.SIGINT, handle)
+    try:
+        yield lambda: pressed
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,140 @@
+"""The demonstrations: photographs and a traced scene in a cube, and the paper's own experiment."""
+
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import skimage.data
+from numpy.typing import NDArray
+
+from lightcube import backward, forward, io, metrics
+from lightcube.absorption import extinction, transmittance
+from lightcube.console import out, progress
+from lightcube.fitting import fit
+from lightcube.frames import Frames, Pictures
+from lightcube.geometry import Grid, raster_shape, spread_angles, turntable
+from lightcube.layout import columns_from_volume, pictures_from_columns, volume_from_columns
+from lightcube.projector import Projector
+from lightcube.scene.tracer import scene_frames
+from lightcube.sheet import contact_sheet
+from lightcube.solvers import METHODS
+from lightcube.transfer import decode
+
+#: scikit-image's own photographs, in an order that puts no two dark ones side by side.
+_PHOTOGRAPHS = (
+    "astronaut",
+    "coffee",
+    "chelsea",
+    "rocket",
+    "retina",
+    "immunohistochemistry",
+    "camera",
+    "hubble_deep_field",
+)
+_SIDE = 64
+
+
+def photographs() -> Pictures:
+    """Photographs that come with scikit-image, cut square."""
+    images = []
+    for name in _PHOTOGRAPHS:
+        image = np.atleast_3d(getattr(skimage.data, name)())[..., :3].astype(np.float32) / 255
+        side = min(image.shape[:2])
+        top, left = (image.shape[0] - side) // 2, (image.shape[1] - side) // 2
+        square = np.broadcast_to(image[top : top + side, left : left + side], (side, side, 3))
+        images.append(np.ascontiguousarray(decode(square), dtype=np.float32))
+    return Pictures(tuple(images), _PHOTOGRAPHS)
+
+
+def run(folder: Path) -> None:
+    """Solve, play and score a cube of photographs and a cube of a traced scene, into `folder`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    grid = Grid((_SIDE, _SIDE, _SIDE), 100 / _SIDE)
+    out.print(f"Two cubes of {_SIDE} x {_SIDE} x {_SIDE} voxels, 100 mm wide.")
+    rows = [
+        _one("photographs", fit(photographs(), grid, elevation=35.0, frame_width=0.5), grid, folder),
+        _one("carousel", _carousel(grid), grid, folder),
+    ]
+    io.write_json(folder / "metrics.json", {row["name"]: row for row in rows}, overwrite=True)
+    out.print()
+    out.print(
+        f"{'cube':>14} {'pictures':>16} {'lamp':>6} {'PSNR':>8} {'worst':>7} {'SSIM':>7} {'dE2000':>7} {'time':>7}"
+    )
+    for row in rows:
+        out.print(
+            f"{row['name']:>14} {row['pictures']:>16} {row['elevation']:>5.0f}° {row['psnr_mean']:>5.1f} dB "
+            f"{row['psnr_min']:>4.1f} dB {row['ssim_mean']:>7.3f} {row['delta_e_mean']:>7.2f} {row['seconds']:>5.0f} s"
+        )
+    out.print(f"\nLook at the movies and contact sheets in {folder}/", markup=False)
+
+
+def _carousel(grid: Grid) -> Frames:
+    """A traced scene that turns, one picture for every step of half a turn of the cube."""
+    views = turntable(grid, spread_angles(_SIDE), picture_shape=(_SIDE, _SIDE))
+    with progress("tracing", as_json=False) as advance:
+        return scene_frames(io.read_scene("carousel"), views, grid, callback=advance)
+
+
+def _one(name: str, frames: Frames, grid: Grid, folder: Path) -> dict[str, Any]:
+    """Solve, save, play and score one cube; returns a row of the table."""
+    began = time.monotonic()
+    with progress(f"solving {name}", as_json=False) as advance:
+        solution = backward.solve(frames, grid, callback=lambda step: advance(step.iteration, step.iterations))
+    seconds = time.monotonic() - began
+    cube = solution.cube
+    scores = metrics.score(cube, frames)
+    io.save(cube, folder / f"{name}.zarr", overwrite=True)
+    shown = forward.play(cube)
+    sheet = contact_sheet(shown, frames, [view["psnr"] for view in scores["views"]])
+    io.write_sheet(folder / f"{name}.png", sheet, overwrite=True)
+    stops = forward.cast(cube, cube.views, cube.powers)
+    io.write_pictures(
+        folder / f"{name}-stops.mp4", stops, count=len(frames), fps=min(10, len(frames) / 4), scale=6, overwrite=True
+    )
+    turn = np.arange(0, 360, 2.0)
+    views, powers = forward.views_at(cube, turn, whole_screen=True), forward.lamp_at(cube, turn)
+    turning = forward.cast(cube, views, powers)
+    io.write_pictures(folder / f"{name}-turn.mp4", turning, count=len(turn), fps=20, scale=4, overwrite=True)
+    rows, columns = frames.views.picture_shape
+    return {
+        "name": name,
+        "pictures": f"{len(frames)} of {columns} x {rows}",
+        "elevation": float(frames.views.elevations[0]),
+        "seconds": seconds,
+        **scores,
+    }
+
+
+def paper(folder: Path) -> None:
+    """Redo the paper: a random 3 x 3 x 3 cube, its 5 x 3 pictures (its Figure 2), and back by both of its methods."""
+    folder.mkdir(parents=True, exist_ok=True)
+    grid = Grid((3, 3, 3))
+    truth = extinction(np.random.default_rng(2).uniform(0.3, 1.0, (3, 3, 3, 3)), grid.voxel_mm)
+    x = columns_from_volume(truth)
+    turning = turntable(grid, np.arange(0, 360, 5.0))
+    rows, columns = raster_shape(grid)
+    shown = pictures_from_columns(transmittance(Projector(grid, turning).forward(x)), (rows, columns), 3)
+    io.write_pictures(folder / "paper.gif", shown.astype(np.float32), fps=12, scale=48, overwrite=True)
+    out.print(
+        f"A random cube of 3 x 3 x 3 voxels turns: {columns} x {rows} pictures in {folder}/paper.gif", markup=False
+    )
+    views = turntable(grid, spread_angles(8))
+    matrix = Projector(grid, views)
+    pictures = transmittance(matrix.forward(x))
+    out.print("Its pictures at 8 angles over 180 degrees, and back (float64):")
+    for method in ("row-reduction", "gauss-seidel"):
+        found = METHODS[method](matrix, pictures, view_of_row=matrix.view_of_row, **_lamp(len(views)), iterations=5000)
+        wrong = _largest_error(volume_from_columns(found.x, grid.shape, 3), truth)
+        out.print(
+            f"  {method:>14}: largest error of a voxel {wrong:.1e} of the darkest, {len(found.rejected)} rejected"
+        )
+
+
+def _lamp(views: int) -> dict[str, Any]:
+    white = np.ones((views, 3))
+    return {"lamp_bounds": (white, white)}
+
+
+def _largest_error(found: NDArray[np.floating], truth: NDArray[np.floating]) -> float:
+    return float(np.max(np.abs(found - truth)) / np.max(truth))

@@ -1,0 +1,83 @@
+"""Program 3, the forward computation: what the screen shows at any turntable angle."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.geometry import Views, check_angles, turntable
+from lightcube.layout import columns_from_volume, pictures_from_columns
+from lightcube.projector import Projector
+
+#: Views that are computed together: enough for all threads, few enough to bound memory.
+_BATCH = 16
+
+
+def views_at(cube: Cube, angles: ArrayLike, *, whole_screen: bool = False) -> Views:
+    """Views of the cube at other turntable angles (degrees), with its own elevation and picture window.
+
+    Parameters
+    ----------
+    whole_screen
+        Show the whole shadow and its surroundings instead of the picture window.
+    """
+    elevations = np.unique(cube.views.elevations)
+    if len(elevations) > 1:
+        raise InputError("this cube was made with lamps at several elevations: play its own stops instead")
+    window = None if whole_screen else cube.views.picture_shape
+    return turntable(cube.grid, angles, elevation=float(elevations[0]), picture_shape=window)
+
+
+def lamp_at(cube: Cube, angles: ArrayLike) -> NDArray[np.float64]:
+    """Lamp power at other turntable angles (degrees), ``(angles, channels)``: linear in ln P between the stops.
+
+    The powers repeat after a whole turn; at elevation 0, where half a turn shows the mirror image, after half a
+    turn, unless stops half a turn apart have powers of their own.
+    """
+    stops = cube.views.angles
+    wanted = check_angles(angles)
+    period = 360.0
+    if np.all(cube.views.elevations == 0) and len(np.unique(np.round(stops % 180, 9))) == len(stops):
+        period = 180.0
+    logs = np.log(cube.powers)
+    return np.exp(np.stack([np.interp(wanted, stops, column, period=period) for column in logs.T], axis=1))
+
+
+def cast(cube: Cube, views: Views, lamp_powers: NDArray[np.float64]) -> Iterator[NDArray[np.float32]]:
+    """Yield what the screen shows in each view, ``(row, column, channel)`` float32 linear light, never clipped.
+
+    Parameters
+    ----------
+    views
+        Lamp and screen of each picture.
+    lamp_powers
+        ``(views, channels)``; a beam that misses the cube shows the lamp's power.
+    """
+    columns = columns_from_volume(cube.extinction)
+    for start in range(0, len(views), _BATCH):
+        batch = views.take(slice(start, start + _BATCH))
+        matrix = Projector(cube.grid, batch)
+        absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
+        block = absorbance.reshape(len(batch) * batch.picture_shape[1], -1)
+        powers = lamp_powers[start : start + _BATCH].astype(np.float32)
+        pictures = pictures_from_columns(np.exp(-block), batch.picture_shape, powers.shape[1])
+        yield from pictures * powers[:, None, None, :]
+
+
+def play(cube: Cube, angles: ArrayLike | None = None, *, whole_screen: bool = False) -> NDArray[np.float32]:
+    """What the screen shows, ``(view, row, column, channel)`` float32 linear light, lamp included, never clipped.
+
+    Parameters
+    ----------
+    angles
+        Turntable angles in degrees; None = the views that the cube was made for.
+    whole_screen
+        Show the whole shadow and its surroundings instead of the picture window.
+    """
+    if angles is None and not whole_screen:
+        return np.stack(list(cast(cube, cube.views, cube.powers)))
+    turned = cube.views.angles if angles is None else check_angles(angles)
+    powers = cube.powers if angles is None else lamp_at(cube, turned)
+    return np.stack(list(cast(cube, views_at(cube, turned, whole_screen=whole_screen), powers)))

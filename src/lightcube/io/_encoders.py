@@ -1,0 +1,195 @@
+"""One function per kind of movie: 8-bit pictures in, a file out, one picture in memory at a time."""
+
+import io
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import cast
+
+import av
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from lightcube.errors import InputError
+
+Levels = NDArray[np.uint8]
+
+#: Called with the file to write, the pictures ``(row, column, 3)``, and pictures per second.
+Encoder = Callable[[Path, Iterable[Levels], Fraction], None]
+
+#: The codes of ITU-T H.273 for BT.709 colours, the sRGB curve, and levels from 16 to 235.
+_BT709, _SRGB_CURVE, _NARROW = 1, 13, 1
+
+#: A delay of less than two hundredths of a second makes browsers play at a tenth of the speed.
+_MOST_GIF_RATE = 50
+_MOST_WEBP = 16383
+#: Pixels that a palette is chosen from, at most.
+_PALETTE_SAMPLE = 1 << 20
+_PALETTE = 256
+
+
+@dataclass(frozen=True)
+class _Codec:
+    """What PyAV needs to know of one kind of file."""
+
+    container: str
+    name: str
+    pixels: str
+    codec_options: dict[str, str]
+    container_options: dict[str, str]
+
+
+_MP4 = _Codec("mp4", "libx264", "yuv444p", {"crf": "4", "preset": "medium"}, {"movflags": "+faststart"})
+_WEBM = _Codec("webm", "libvpx-vp9", "gbrp", {"lossless": "1", "row-mt": "1", "cpu-used": "4"}, {})
+_APNG = _Codec("apng", "apng", "rgb24", {"pred": "mixed"}, {"plays": "0"})
+_GIF = _Codec("gif", "gif", "pal8", {"gifflags": "0"}, {"loop": "0"})
+
+
+def encode_mp4(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
+    """H.264 at full colour resolution (4:4:4, BT.709), visually lossless."""
+
+    def frames() -> Iterator[av.VideoFrame]:
+        for picture in pictures:
+            rgb = av.VideoFrame.from_ndarray(picture, format="rgb24")
+            frame = rgb.reformat(format=_MP4.pixels, dst_colorspace=_BT709, dst_color_range=_NARROW)
+            frame.colorspace, frame.color_range = _BT709, _NARROW
+            yield frame
+
+    _encode(path, frames(), fps, _MP4)
+
+
+def encode_webm(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
+    """VP9 in RGB, lossless."""
+    _encode(path, (av.VideoFrame.from_ndarray(picture, format="rgb24") for picture in pictures), fps, _WEBM)
+
+
+def encode_apng(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
+    """Animated PNG, lossless, looping."""
+    _encode(path, (av.VideoFrame.from_ndarray(picture, format="rgb24") for picture in pictures), fps, _APNG)
+
+
+def encode_gif(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
+    """GIF, looping, with one palette for all: exact up to 256 colours, else chosen from all and dithered."""
+    if fps > _MOST_GIF_RATE:
+        raise InputError(f"a GIF shows at most {_MOST_GIF_RATE} pictures a second, not {float(fps):g}: lower the rate")
+    with tempfile.TemporaryFile(dir=path.parent) as spool:
+        shape: tuple[int, ...] = ()
+        for picture in pictures:
+            shape = picture.shape
+            spool.write(picture.tobytes())
+        size = int(np.prod(shape))
+
+        def again() -> Iterator[Levels]:
+            spool.seek(0)
+            while data := spool.read(size):
+                yield np.frombuffer(data, np.uint8).reshape(shape)
+
+        colours = _few_colours(again())
+        palette = _chosen_colours(again(), spool.tell()) if colours is None else colours
+        indices = _dithered(again(), palette) if colours is None else _looked_up(again(), palette)
+        opaque = np.full((_PALETTE, 4), 255, np.uint8)
+        opaque[:, 1:] = palette[-1]
+        opaque[: len(palette), 1:] = palette
+        _encode(path, (_palette_frame(index, opaque) for index in indices), fps, _GIF)
+
+
+def encode_webp(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
+    """Animated WebP, lossless, looping.
+
+    The container is written here (RFC 9649): libwebp's own animation encoder drops a picture that is like the
+    one before.
+    """
+    with path.open("wb") as file:
+        file.write(b"RIFF\0\0\0\0WEBP")
+        for index, picture in enumerate(pictures):
+            if not index:
+                rows, columns, _ = picture.shape
+                if max(rows, columns) > _MOST_WEBP:
+                    raise InputError(f"a WebP is at most {_MOST_WEBP} pixels wide and high: use another suffix")
+                canvas = _int24(columns - 1) + _int24(rows - 1)
+                _write_chunk(file, b"VP8X", b"\x02\0\0\0" + canvas)
+                _write_chunk(file, b"ANIM", b"\xff\xff\xff\xff\0\0")
+            still = io.BytesIO()
+            Image.fromarray(picture).save(still, "WEBP", lossless=True, quality=60, method=3)
+            # Whole milliseconds that add up to the right length.
+            delay = round((index + 1) * 1000 / fps) - round(index * 1000 / fps)
+            # Placed at the corner, opaque, not blended (flag 2); behind the 12 bytes of its own header.
+            frame = _int24(0) + _int24(0) + canvas + _int24(delay) + b"\x02" + still.getbuffer()[12:]
+            _write_chunk(file, b"ANMF", frame)
+        length = file.tell() - 8
+        file.seek(4)
+        file.write(length.to_bytes(4, "little"))
+
+
+def _int24(value: int) -> bytes:
+    return value.to_bytes(3, "little")
+
+
+def _write_chunk(file: io.BufferedWriter, name: bytes, data: bytes) -> None:
+    """Write a RIFF chunk, padded to an even length."""
+    file.write(name + len(data).to_bytes(4, "little") + data + b"\0" * (len(data) % 2))
+
+
+def _encode(path: Path, frames: Iterator[av.VideoFrame], fps: Fraction, codec: _Codec) -> None:
+    """Encode `frames` into one video stream."""
+    stream = None
+    with av.open(str(path), "w", format=codec.container, options=codec.container_options) as container:
+        for frame in frames:
+            if stream is None:
+                stream = cast("av.VideoStream", container.add_stream(codec.name, rate=fps, options=codec.codec_options))
+                stream.width, stream.height, stream.pix_fmt = frame.width, frame.height, codec.pixels
+                if codec is _MP4:
+                    context = stream.codec_context
+                    context.colorspace, context.color_range = _BT709, _NARROW
+                    context.color_primaries, context.color_trc = _BT709, _SRGB_CURVE
+            container.mux(stream.encode(frame))
+        if stream is not None:
+            container.mux(stream.encode())
+
+
+def _palette_frame(index: Levels, palette: Levels) -> av.VideoFrame:
+    """Indices ``(row, column)`` into a palette ``(256, 4)`` of opacity, red, green, blue."""
+    return av.VideoFrame.from_ndarray((index, palette), format="pal8")  # type: ignore[arg-type]  # PyAV wants a pair
+
+
+def _packed(picture: Levels) -> NDArray[np.uint32]:
+    """Each pixel's colour as one number."""
+    red, green, blue = np.moveaxis(picture.astype(np.uint32), -1, 0)
+    packed: NDArray[np.uint32] = red << 16 | green << 8 | blue
+    return packed
+
+
+def _few_colours(pictures: Iterable[Levels]) -> Levels | None:
+    """All colours ``(count, 3)`` in ascending order, or None where there are more than a palette holds."""
+    found = np.empty(0, np.uint32)
+    for picture in pictures:
+        found = np.union1d(found, _packed(picture))
+        if len(found) > _PALETTE:
+            return None
+    return np.stack([found >> 16, (found >> 8) & 255, found & 255], axis=1).astype(np.uint8)
+
+
+def _looked_up(pictures: Iterable[Levels], palette: Levels) -> Iterator[Levels]:
+    """Index of each pixel's colour in a sorted `palette` that has them all."""
+    known = _packed(palette)
+    for picture in pictures:
+        yield np.searchsorted(known, _packed(picture)).astype(np.uint8)
+
+
+def _chosen_colours(pictures: Iterable[Levels], total_bytes: int) -> Levels:
+    """256 colours ``(256, 3)`` for all pictures, from an even sample of their pixels (median cut, then k-means)."""
+    every = -(-total_bytes // 3 // _PALETTE_SAMPLE)
+    sample = np.concatenate([picture.reshape(-1, 3)[index % every :: every] for index, picture in enumerate(pictures)])
+    cut = Image.fromarray(sample[None]).quantize(_PALETTE, Image.Quantize.MEDIANCUT, kmeans=1)
+    return np.array(cut.getpalette("RGB"), np.uint8).reshape(-1, 3)
+
+
+def _dithered(pictures: Iterable[Levels], palette: Levels) -> Iterator[Levels]:
+    """Index into `palette` of each pixel, Floyd–Steinberg dithered."""
+    colours = Image.new("P", (1, 1))
+    colours.putpalette(palette.tobytes())
+    for picture in pictures:
+        yield np.asarray(Image.fromarray(picture).quantize(palette=colours, dither=Image.Dither.FLOYDSTEINBERG))

@@ -1,0 +1,145 @@
+"""What a cube's file says besides its two arrays: one JSON document, checked when it is read."""
+
+import math
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from lightcube.cube import Cube, Status
+from lightcube.errors import InputError
+from lightcube.geometry import Grid, Views
+from lightcube.transfer import Transfer
+
+#: Of the files that this version writes; it reads all versions up to this one.
+FORMAT_VERSION = 1
+
+_Number = Annotated[float, Field(allow_inf_nan=False)]
+_Strict = ConfigDict(extra="forbid", strict=True)
+
+
+class _ViewsJson(BaseModel):
+    """`lightcube.geometry.Views`, one list per view."""
+
+    model_config = _Strict
+
+    lamps: list[Annotated[list[_Number], Field(min_length=4, max_length=4)]]
+    origins: list[Annotated[list[_Number], Field(min_length=3, max_length=3)]]
+    column_steps: list[Annotated[list[_Number], Field(min_length=3, max_length=3)]]
+    row_steps: list[Annotated[list[_Number], Field(min_length=3, max_length=3)]]
+    picture_shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=2, max_length=2)]
+
+
+class _CubeJson(BaseModel):
+    """Everything of `lightcube.cube.Cube` that is no large array."""
+
+    model_config = _Strict
+
+    format_version: Literal[1]
+    written_by: str
+    extinction_unit: Literal["1/mm"]
+    voxel_mm: Annotated[_Number, Field(gt=0)]
+    views: _ViewsJson
+    lamp_powers: list[list[Annotated[_Number, Field(gt=0)]]]
+    names: list[str]
+    transfer: Transfer
+    status: Status
+    scores: dict[str, Any]
+    provenance: dict[str, Any]
+
+
+def to_json(cube: Cube) -> dict[str, Any]:
+    """`cube` without its arrays as plain JSON values; every number comes back bit for bit."""
+    views = cube.views
+    return {
+        "format_version": FORMAT_VERSION,
+        "written_by": f"lightcube {version('lightcube')}",
+        "extinction_unit": "1/mm",
+        "voxel_mm": cube.grid.voxel_mm,
+        "views": {
+            **{name: getattr(views, name).tolist() for name in ("lamps", "origins", "column_steps", "row_steps")},
+            "picture_shape": list(views.picture_shape),
+        },
+        "lamp_powers": cube.powers.tolist(),
+        "names": list(cube.names),
+        "transfer": cube.transfer,
+        "status": cube.status,
+        "scores": _plain(cube.scores),
+        "provenance": _plain(cube.provenance),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """`value` in JSON's own types; NaN and infinities, which JSON has not, become null."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple | set):
+        return [_plain(item) for item in value]
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    return value if value is None or isinstance(value, bool | int | str) else str(value)
+
+
+def from_json(path: Path, document: object, extinction: NDArray[np.float32], targets: NDArray[np.uint8] | None) -> Cube:
+    """Build the cube again; `InputError` naming `path` and the key where the document cannot be right."""
+    check_version(path, document)
+    try:
+        said = _CubeJson.model_validate(document)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise damaged(path, f"{key}: {first['msg'][0].lower()}{first['msg'][1:]}") from error
+    if extinction.dtype != np.float32 or extinction.ndim != 4:
+        raise damaged(path, f"extinction is {extinction.dtype} with {extinction.ndim} axes, not float32 with 4")
+    try:
+        _, nz, ny, nx = extinction.shape
+        views = Views(**{**said.views.model_dump(), "picture_shape": tuple(said.views.picture_shape)})
+        _check_light(views)
+        return Cube(
+            extinction,
+            Grid((nz, ny, nx), said.voxel_mm),
+            views,
+            np.array(said.lamp_powers, dtype=np.float64),
+            targets,
+            tuple(said.names),
+            said.transfer,
+            said.scores,
+            said.provenance,
+            said.status,
+        )
+    except ValueError as error:  # InputError among them
+        raise damaged(path, str(error)) from error
+
+
+def check_version(path: Path, document: object) -> None:
+    """Raise `InputError` unless `document` is a light cube's, in a format that this version knows."""
+    if not isinstance(document, Mapping) or "format_version" not in document:
+        raise InputError(f"{path} is no light cube: it has no lightcube metadata, give a file that lightcube wrote")
+    found = document["format_version"]
+    if isinstance(found, int) and found > FORMAT_VERSION:
+        raise InputError(
+            f"{path} is in format {found} of a newer lightcube, and this one reads up to {FORMAT_VERSION}: "
+            "update lightcube"
+        )
+
+
+def damaged(path: Path, what: str) -> InputError:
+    """Return the exception for a file that is a light cube's but not whole."""
+    return InputError(f"{path} is a damaged light cube ({what}): get another copy or make it again")
+
+
+def _check_light(views: Views) -> None:
+    """Raise `InputError` where a lamp shines nowhere or a screen has no size."""
+    lamps = views.lamps
+    if not np.all(np.isin(lamps[:, 3], (0.0, 1.0))):
+        raise InputError("lamps: the fourth number of a lamp is 0 or 1")
+    if not np.all((lamps[:, 3] == 1) | np.any(lamps[:, :3] != 0, axis=1)):
+        raise InputError("lamps: a direction of light is zero")
+    if not np.all(np.any(np.cross(views.column_steps, views.row_steps) != 0, axis=1)):
+        raise InputError("column_steps: a screen's columns and rows run along one line")

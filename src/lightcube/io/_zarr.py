@@ -1,0 +1,173 @@
+"""A cube as a Zarr group: an OME-Zarr 0.5 image with one more attribute.
+
+Zarr's own coroutines run in an event loop that ends with each call, so that no thread is left behind.
+"""
+
+import asyncio
+import concurrent.futures
+import math
+import zipfile
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+import zarr
+from numpy.typing import NDArray
+from zarr.codecs import ZstdCodec
+from zarr.storage import LocalStore, ZipStore
+
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.io import _metadata
+from lightcube.io._files import system_errors
+
+Value = TypeVar("Value")
+Parts = tuple[object, NDArray[np.float32], NDArray[np.uint8] | None]
+
+#: A chunk is as many whole slices as fit into this many bytes, at least one.
+_CHUNK_BYTES = 8 << 20
+_IMAGE, _TARGETS, _ATTRIBUTE = "0", "targets", "lightcube"
+_COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
+
+
+def write_zarr(folder: Path, cube: Cube) -> None:
+    """Write `cube` as a new Zarr group, format 3, into `folder`, which does not exist yet."""
+    _run(lambda: _write(folder, cube))
+
+
+def read_zarr(path: Path) -> Cube:
+    """Read a cube from a Zarr folder."""
+    if not (path / "zarr.json").is_file():
+        raise InputError(f"{path} is no light cube: there is no zarr.json in it, give a folder that lightcube wrote")
+    return _metadata.from_json(path, *_reading(path, lambda: _read(path, LocalStore(path, read_only=True))))
+
+
+def write_zarr_zip(file: Path, cube: Cube) -> None:
+    """Write `cube` as a Zarr group in one zip archive, stored as it is: its chunks are compressed already."""
+    folder = file.with_name(file.name + ".unzipped")
+    write_zarr(folder, cube)
+    zip_folder(folder, file)
+
+
+def zip_folder(folder: Path, file: Path) -> None:
+    """Put a Zarr folder into a zip archive, its root metadata first."""
+    members = sorted(member for member in folder.rglob("*") if member.is_file())
+    members.sort(key=lambda member: (member.name != "zarr.json", len(member.parts)))
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        for member in members:
+            archive.write(member, member.relative_to(folder).as_posix())
+
+
+def read_zarr_zip(path: Path) -> Cube:
+    """Read a cube from a Zarr group in a zip archive."""
+    return _metadata.from_json(path, *_reading(path, lambda: _read(path, ZipStore(path, mode="r"))))
+
+
+async def _write(folder: Path, cube: Cube) -> None:
+    """Write group, arrays and attributes."""
+    channels, nz, ny, nx = cube.extinction.shape
+    attributes = {"ome": _ome(cube), _ATTRIBUTE: _metadata.to_json(cube)}
+    group = await zarr.AsyncGroup.from_store(LocalStore(folder), attributes=attributes, zarr_format=3)
+    slab = max(1, min(nz, _CHUNK_BYTES // (4 * channels * ny * nx)))
+    arrays: list[tuple[str, NDArray[Any], tuple[int, ...], list[str]]] = [
+        (_IMAGE, cube.extinction, (channels, slab, ny, nx), ["c", "z", "y", "x"])
+    ]
+    if cube.targets is not None:
+        view = max(1, min(len(cube.targets), _CHUNK_BYTES // cube.targets[0].size))
+        axes = ["view", "row", "column", "channel"]
+        arrays.append((_TARGETS, cube.targets, (view, *cube.targets.shape[1:]), axes))
+    for name, values, chunks, axes in arrays:
+        array = await group.create_array(
+            name,
+            shape=values.shape,
+            dtype=values.dtype,
+            chunks=chunks,
+            dimension_names=axes,
+            compressors=ZstdCodec(level=3, checksum=True),
+            fill_value=0,
+            config={"write_empty_chunks": True},  # a chunk that is missing is then known to be lost
+        )
+        await array.setitem(..., values)
+
+
+def _ome(cube: Cube) -> dict[str, Any]:
+    """OME-Zarr 0.5 metadata of the image: axes, voxel size, and colours of the channels."""
+    side = cube.grid.voxel_mm
+    channels = len(cube.extinction)
+    colours = _COLOURS if channels == len(_COLOURS) else [(str(index + 1), "FFFFFF") for index in range(channels)]
+    most = float(cube.extinction.max()) or 1.0
+    space = [{"name": axis, "type": "space", "unit": "millimeter"} for axis in "zyx"]
+    return {
+        "version": "0.5",
+        "multiscales": [
+            {
+                "name": "extinction",
+                "axes": [{"name": "c", "type": "channel"}, *space],
+                "datasets": [
+                    {
+                        "path": _IMAGE,
+                        "coordinateTransformations": [{"type": "scale", "scale": [1.0, side, side, side]}],
+                    }
+                ],
+            }
+        ],
+        "omero": {
+            "channels": [
+                {
+                    "label": f"extinction {label}",
+                    "color": colour,
+                    "active": True,
+                    "window": {"min": 0.0, "max": most, "start": 0.0, "end": most},
+                }
+                for label, colour in colours
+            ]
+        },
+    }
+
+
+async def _read(path: Path, store: LocalStore | ZipStore) -> Parts:
+    """Metadata, extinction and targets."""
+    try:
+        group = await zarr.AsyncGroup.open(store, zarr_format=3)
+        document = group.attrs.get(_ATTRIBUTE)
+        _metadata.check_version(path, document)
+        extinction = await _array(path, group, _IMAGE, np.dtype(np.float32))
+        if extinction is None:
+            raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
+        return document, extinction, await _array(path, group, _TARGETS, np.dtype(np.uint8))
+    finally:
+        store.close()
+
+
+async def _array(path: Path, group: zarr.AsyncGroup, name: str, dtype: np.dtype[Any]) -> NDArray[Any] | None:
+    """All of an array, or None where there is none; `InputError` where chunks are missing."""
+    if not await group.contains(name):
+        return None
+    array = await group.getitem(name)
+    if not isinstance(array, zarr.AsyncArray) or array.dtype != dtype or array.ndim != 4:
+        raise _metadata.damaged(path, f"{name!r} is not an array of {dtype} with 4 axes")
+    wanted = math.prod(-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True))
+    if await array.nchunks_initialized() != wanted:
+        raise _metadata.damaged(path, f"parts of its array {name!r} are missing")
+    return np.asarray(await array.getitem(...))
+
+
+def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:
+    """Run `read`; whatever Zarr and its codecs raise over damaged bytes becomes one sentence."""
+    try:
+        with system_errors(path, "reading"):
+            return _run(read)
+    except InputError:
+        raise
+    except MemoryError as error:
+        raise InputError(f"{path} does not fit into this machine's memory: open it on a larger one") from error
+    except Exception as error:  # Zarr, zipfile and numcodecs raise whatever they trip over
+        detail = " ".join(str(error).split())[:100] or type(error).__name__
+        raise _metadata.damaged(path, detail) from error
+
+
+def _run(work: Callable[[], Coroutine[Any, Any, Value]]) -> Value:
+    """Run a coroutine to its end in a thread of its own: the caller's may have an event loop already."""
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        return pool.submit(lambda: asyncio.run(work())).result()

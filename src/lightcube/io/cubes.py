@@ -1,0 +1,167 @@
+"""Saving and loading cubes, by suffix."""
+
+import json
+import warnings
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.io import _metadata
+from lightcube.io._files import check_free, suffix_entry, system_errors, written_whole
+from lightcube.io._zarr import read_zarr, read_zarr_zip, write_zarr, write_zarr_zip
+from lightcube.io.partial import PARTIAL_SUFFIX, discard_partial, newest_state
+
+
+class UnfinishedCube(UserWarning):
+    """A cube that was loaded is a partial one, or its solver was stopped early."""
+
+
+def check_cube_target(path: str | Path, *, overwrite: bool = False) -> None:
+    """Raise `InputError` unless `save` could write to `path`: ask before long work."""
+    path = Path(path)
+    suffix_entry(path, _FORMATS, "a cube")
+    check_free(path, overwrite=overwrite, replaceable=_is_cube_folder)
+
+
+def save(cube: Cube, path: str | Path, *, overwrite: bool = False) -> Path:
+    """Save a cube by the suffix of `path`; the file appears when it is whole.
+
+    Parameters
+    ----------
+    path
+        ``.zarr`` (a folder, OME-Zarr 0.5: napari and others open it as it is), ``.zarr.zip`` (the same in one
+        file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
+    overwrite
+        Whether an existing file, or an existing folder with a cube in it, is replaced.
+
+    Returns
+    -------
+    `path`.
+
+    Raises
+    ------
+    InputError
+        Where the suffix is unknown, the target exists, or the disk is full. Nothing is left behind.
+
+    Notes
+    -----
+    All arrays and numbers come back bit for bit. `scores` and `provenance` come back as JSON's types: tuples as
+    lists, NaN and infinities as None, anything that JSON does not know as its text.
+    """
+    path = Path(path)
+    _, write = suffix_entry(path, _FORMATS, "a cube")
+    with written_whole(path, overwrite=overwrite, replaceable=_is_cube_folder) as fresh:
+        write(fresh, cube)
+    return path
+
+
+def load(path: str | Path) -> Cube:
+    """Load a cube from a file that `save` wrote, or from a ``.partial`` folder of one that is being made.
+
+    Warns
+    -----
+    UnfinishedCube
+        Where the cube is a partial one, or its solver was stopped early.
+
+    Raises
+    ------
+    InputError
+        Where there is no such file, it is no light cube, it is damaged, or a newer version wrote it.
+    """
+    path = Path(path)
+    cube = _load(path)
+    partial = path.name.lower().endswith(PARTIAL_SUFFIX)
+    if partial or cube.status != "complete":
+        why = "it is still being made" if partial else "its solver was stopped early"
+        warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=2)
+    return cube
+
+
+def _load(path: Path) -> Cube:
+    """`load` without its warning."""
+    if path.name.lower().endswith(PARTIAL_SUFFIX):
+        return read_zarr(newest_state(path))
+    read, _ = suffix_entry(path, _FORMATS, "a cube")
+    with system_errors(path, "reading"):
+        there, is_folder = path.exists(), path.is_dir()
+    if not there:
+        raise InputError(f"there is no {path}: give the file of a light cube")
+    if is_folder != (read is read_zarr):
+        raise InputError(f"{path} is a {'folder' if is_folder else 'file'}, and no cube of that suffix is one")
+    return read(path)
+
+
+def publish(partial: str | Path, *, overwrite: bool = False) -> Path:
+    """Turn ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``) into NAME, and return NAME.
+
+    The newest whole state is checked and saved under its name with the status it has, then the partial folder
+    is removed.
+
+    Raises
+    ------
+    InputError
+        Where there is no such folder, nothing whole in it, or NAME exists and `overwrite` is not asked for;
+        the partial folder is kept then.
+    """
+    partial = Path(partial)
+    if not partial.name.lower().endswith(PARTIAL_SUFFIX) or len(partial.name) == len(PARTIAL_SUFFIX):
+        raise InputError(f"{partial} is no unfinished cube: give a folder that ends with {PARTIAL_SUFFIX}")
+    out = partial.with_name(partial.name[: -len(PARTIAL_SUFFIX)])
+    cube = _load(partial)
+    check_cube_target(out, overwrite=overwrite)
+    save(cube, out, overwrite=overwrite)
+    discard_partial(out)
+    return out
+
+
+def _write_npz(path: Path, cube: Cube) -> None:
+    """Write NumPy's archive."""
+    arrays: dict[str, Any] = {"extinction": cube.extinction, "lightcube": np.array(json.dumps(_metadata.to_json(cube)))}
+    if cube.targets is not None:
+        arrays["targets"] = cube.targets
+    with path.open("wb") as file:
+        np.savez(file, **arrays)
+
+
+def _read_npz(path: Path) -> Cube:
+    """Read NumPy's archive."""
+    try:
+        with (
+            system_errors(path, "reading"),
+            path.open("rb") as file,
+            np.lib.npyio.NpzFile(file, allow_pickle=False) as arrays,
+        ):
+            document = json.loads(str(arrays["lightcube"])) if "lightcube" in arrays else None
+            _metadata.check_version(path, document)
+            if "extinction" not in arrays:
+                raise _metadata.damaged(path, "its array 'extinction' is missing")
+            extinction = arrays["extinction"]
+            targets = arrays["targets"] if "targets" in arrays else None  # noqa: SIM401 - not a mapping with get
+    except InputError:
+        raise
+    except MemoryError as error:
+        raise InputError(f"{path} does not fit into this machine's memory: open it on a larger one") from error
+    except (ValueError, EOFError, zipfile.BadZipFile, KeyError, RecursionError, NotImplementedError) as error:
+        raise _metadata.damaged(path, " ".join(str(error).split())[:100]) from error
+    return _metadata.from_json(path, document, extinction, targets)
+
+
+def _is_cube_folder(path: Path) -> bool:
+    """Whether a folder holds a light cube, and may therefore be replaced by another one."""
+    try:
+        document = json.loads((path / "zarr.json").read_bytes())
+        return "lightcube" in document["attributes"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+_FORMATS: dict[str, tuple[Callable[[Path], Cube], Callable[[Path, Cube], None]]] = {
+    ".zarr": (read_zarr, write_zarr),
+    ".zarr.zip": (read_zarr_zip, write_zarr_zip),
+    ".npz": (_read_npz, _write_npz),
+}

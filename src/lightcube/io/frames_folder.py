@@ -1,0 +1,144 @@
+"""A folder of pictures: natural order, and `views.toml` with the angles they are to be seen at."""
+
+import json
+import re
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from lightcube.errors import InputError
+from lightcube.fitting import distinct_angles
+from lightcube.geometry import Views, check_elevation, spread_angles
+from lightcube.io._files import system_errors
+
+VIEWS_FILE = "views.toml"
+PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff")
+
+_Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class _ViewsToml(BaseModel):
+    """The keys of `views.toml`; all are optional."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    angles: list[_Finite] | None = None
+    span: _Finite | None = None
+    elevation: _Finite | None = None
+    names: list[str] | None = None
+
+
+@dataclass(frozen=True)
+class FolderViews:
+    """What `views.toml` says; None where it says nothing."""
+
+    angles: NDArray[np.float64] | None = None
+    elevation: float | None = None
+    names: tuple[str, ...] | None = None
+
+
+def natural_key(name: str) -> tuple[list[tuple[int, str]], str]:
+    """Sort key that puts ``"2"`` before ``"10"`` and ignores case."""
+    parts = re.split(r"([0-9]+)", name.casefold())
+    return [(int(part), "") if index % 2 else (0, part) for index, part in enumerate(parts)], name
+
+
+def picture_files(folder: Path) -> list[Path]:
+    """Return the picture files of `folder` in natural order, hidden ones left out; `InputError` where there is none."""
+    with system_errors(folder, "reading"):
+        visible = [entry for entry in folder.iterdir() if not entry.name.startswith(".")]
+        found = [entry for entry in visible if entry.suffix.lower() in PICTURE_SUFFIXES and entry.is_file()]
+    if not visible:
+        raise InputError(f"the folder {folder} is empty: put at least two pictures into it")
+    if not found:
+        raise InputError(
+            f"there are no pictures in the folder {folder}: put in files that end with {', '.join(PICTURE_SUFFIXES)}"
+        )
+    return sorted(found, key=lambda file: natural_key(file.name))
+
+
+def read_views(folder: Path, count: int) -> FolderViews:
+    """Read `views.toml` of `folder` for `count` pictures; all None where there is no such file.
+
+    The file has the keys `angles` (list of degrees, one per picture) or `span` (degrees over which they are
+    spread evenly), `elevation` (degrees) and `names` (list of text), all optional.
+
+    Raises
+    ------
+    InputError
+        Naming the file and the key where something in it cannot be used.
+    """
+    file = folder / VIEWS_FILE
+    if not file.exists():
+        return FolderViews()
+    said = _parse(file)
+    for key, values in (("angles", said.angles), ("names", said.names)):
+        if values is not None and len(values) != count:
+            raise InputError(f"{file}: {key}: {len(values)} are listed for {count} pictures, give one per picture")
+    if said.angles is not None and said.span is not None:
+        raise InputError(f"{file}: span: angles are given already, use one of the two")
+    angles = None
+    key = "elevation"
+    try:
+        elevation = None if said.elevation is None else check_elevation(said.elevation)
+        if said.angles is not None:
+            key = "angles"
+            angles = distinct_angles(said.angles)
+        elif said.span is not None:
+            key = "span"
+            angles = distinct_angles(spread_angles(count, said.span, elevation=elevation or 0.0))
+    except InputError as error:
+        raise InputError(f"{file}: {key}: {error}") from error
+    return FolderViews(angles, elevation, None if said.names is None else tuple(said.names))
+
+
+def _parse(file: Path) -> _ViewsToml:
+    """Read and check the keys of one `views.toml`."""
+    try:
+        with system_errors(file, "reading"):
+            text = file.read_bytes().decode("utf-8")
+        return _ViewsToml.model_validate(tomllib.loads(text))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise InputError(f"{file} is not a TOML file: {error}") from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        if first["type"] == "extra_forbidden":
+            known = ", ".join(_ViewsToml.model_fields)
+            raise InputError(f"{file}: {key}: there is no such key, use {known}") from error
+        raise InputError(f"{file}: {key}: {first['msg'][0].lower()}{first['msg'][1:]}") from error
+
+
+def views_text(views: Views | None, names: Sequence[str] | None) -> str:
+    """Return the text of a `views.toml`.
+
+    Raises
+    ------
+    InputError
+        Where `views` are not those of a turntable with one elevation: the file cannot say more.
+    """
+    lines = []
+    if views is not None:
+        parallel = not np.any(views.lamps[:, 3])
+        elevations = views.elevations
+        if not parallel or np.ptp(elevations) > 1e-9:
+            raise InputError(
+                f"{VIEWS_FILE} can only hold a turntable's views with one elevation in parallel light: "
+                "write the pictures without views"
+            )
+        lines.append(f"angles = [{', '.join(repr(float(angle)) for angle in views.angles)}]")
+        lines.append(f"elevation = {float(elevations[0])!r}")
+    if names is not None:
+        lines.append(f"names = [{', '.join(_toml_text(name) for name in names)}]")
+    return "".join(line + "\n" for line in lines)
+
+
+def _toml_text(text: str) -> str:
+    """`text` as a TOML basic string: JSON's escapes, and DEL, which only TOML wants escaped."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

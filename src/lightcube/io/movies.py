@@ -1,0 +1,211 @@
+"""Writing pictures: a movie, an animation, a folder of PNGs, or numbers."""
+
+import math
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from lightcube.errors import InputError
+from lightcube.geometry import Views
+from lightcube.io import _encoders
+from lightcube.io._files import check_free, suffix_entry, written_whole
+from lightcube.io.frames_folder import VIEWS_FILE, views_text
+from lightcube.transfer import Transfer, check_transfer, encode
+
+Picture = NDArray[np.float32]
+
+
+class ClippedPictures(UserWarning):
+    """Pictures have values that a display cannot show: below black or above white."""
+
+
+@dataclass(frozen=True)
+class _Job:
+    """What every writer is told."""
+
+    count: int
+    transfer: Transfer
+    fps: Fraction
+    views: str
+
+
+@dataclass
+class _Clipped:
+    """How many values of how many were clipped."""
+
+    values: int = 0
+    total: int = 0
+
+
+def check_pictures_target(path: str | Path, *, overwrite: bool = False) -> None:
+    """Raise `InputError` unless `write_pictures` could write to `path`: ask before long work."""
+    path = Path(path)
+    if path.suffix:
+        suffix_entry(path, _WRITERS, "a movie")
+    check_free(path, overwrite=overwrite, replaceable=_is_frames_folder)
+
+
+def write_pictures(
+    path: str | Path,
+    pictures: Picture | Iterable[Picture],
+    *,
+    count: int | None = None,
+    transfer: Transfer = "srgb",
+    fps: float = 10.0,
+    scale: int = 1,
+    views: Views | None = None,
+    names: Sequence[str] | None = None,
+    overwrite: bool = False,
+) -> Path:
+    """Write pictures by the suffix of `path`; the file appears when it is whole.
+
+    Parameters
+    ----------
+    path
+        ``.mp4`` (H.264 4:4:4, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256 colours for all
+        pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no
+        suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given.
+    pictures
+        ``(view, row, column, 3)``, or one ``(row, column, 3)`` after the other, in linear light, 1 = white.
+        Only one of them is in memory at a time.
+    count
+        How many there are; needed where `pictures` has no length.
+    fps
+        Pictures per second of a movie.
+    scale
+        Enlarges each pixel to a square of so many.
+    views, names
+        One view and one name per picture, for a folder's `views.toml`.
+    overwrite
+        Whether an existing file, or an existing folder of frames, is replaced.
+
+    Returns
+    -------
+    `path`.
+
+    Warns
+    -----
+    ClippedPictures
+        Once, with the number of values that were clipped to black or white.
+
+    Raises
+    ------
+    InputError
+        Where the suffix is unknown, the target exists, the disk is full, or the pictures cannot be used.
+        Nothing is left behind.
+    """
+    path = Path(path)
+    writer = suffix_entry(path, _WRITERS, "a movie") if path.suffix else _write_folder
+    if count is None:
+        if not isinstance(pictures, Sized):
+            raise TypeError("pictures without a length need a count")
+        count = len(pictures)
+    for what, given in (("views", views), ("names", names)):
+        if given is not None and len(given) != count:
+            raise InputError(f"{len(given)} {what} for {count} pictures: give one per picture")
+    if count < 1 or int(scale) != scale or scale < 1:
+        raise InputError(f"cannot write {count} pictures at scale {scale}: both must be whole numbers of at least 1")
+    job = _Job(count, check_transfer(transfer), _rate(fps), views_text(views, names))
+    clipped = _Clipped()
+    with written_whole(path, overwrite=overwrite, replaceable=_is_frames_folder) as fresh:
+        try:
+            writer(fresh, _checked(pictures, count, int(scale)), job, clipped)
+        except av.error.FFmpegError as error:
+            if isinstance(error, OSError):
+                raise
+            raise InputError(
+                f"{path} cannot be encoded ({error.strerror}): try another suffix, fewer or smaller pictures"
+            ) from error
+    if clipped.values:
+        warnings.warn(
+            f"{clipped.values} of {clipped.total} values in {path} were clipped to black or white: "
+            "write .npy to keep them",
+            ClippedPictures,
+            stacklevel=2,
+        )
+    return path
+
+
+def _rate(fps: float) -> Fraction:
+    """`fps` as the fraction that containers want."""
+    if not (math.isfinite(fps) and 1e-3 <= fps <= 1000):
+        raise InputError(f"pictures per second must be a number from 0.001 to 1000, not {fps}")
+    return Fraction(fps).limit_denominator(1001)
+
+
+def _checked(pictures: Iterable[Picture], count: int, scale: int) -> Iterator[Picture]:
+    """Yield exactly `count` finite pictures of one shape, enlarged."""
+    shape: tuple[int, ...] | None = None
+    number = 0
+    for number, picture in enumerate(pictures, 1):
+        shape = shape or picture.shape
+        if picture.ndim != 3 or picture.shape != shape or picture.size == 0 or number > count:
+            raise ValueError(f"picture {number} of {count} has shape {picture.shape}, the first one {shape}")
+        if not np.all(np.isfinite(picture)):
+            raise InputError(f"picture number {number} holds NaN or infinite values and cannot be written: mend it")
+        yield picture.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else picture
+    if number != count:
+        raise ValueError(f"{count} pictures were announced and {number} came")
+
+
+def _levels(pictures: Iterable[Picture], transfer: Transfer, clipped: _Clipped) -> Iterator[NDArray[np.uint8]]:
+    """8-bit display levels of each picture, counting what was clipped."""
+    for picture in pictures:
+        if picture.shape[2] != 3:
+            raise InputError(f"a movie has three colour channels, not {picture.shape[2]}: write .npy instead")
+        wanted = np.rint(encode(np.asarray(picture, np.float32), transfer) * 255)
+        shown = np.clip(wanted, 0, 255)
+        clipped.values += int(np.count_nonzero(wanted != shown))
+        clipped.total += wanted.size
+        yield np.ascontiguousarray(shown.astype(np.uint8))
+
+
+def _movie(encoder: _encoders.Encoder) -> Callable[[Path, Iterable[Picture], _Job, _Clipped], None]:
+    """Writer that hands 8-bit levels to an encoder."""
+
+    def write(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
+        encoder(path, _levels(pictures, job.transfer, clipped), job.fps)
+
+    return write
+
+
+def _write_folder(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
+    """PNGs whose numbers have the same number of digits, and `views.toml` where there is something to say."""
+    path.mkdir()
+    digits = len(str(job.count))
+    for number, levels in enumerate(_levels(pictures, job.transfer, clipped), 1):
+        Image.fromarray(levels).save(path / f"{number:0{digits}d}.png")
+    if job.views:
+        (path / VIEWS_FILE).write_bytes(job.views.encode("utf-8", errors="replace"))
+
+
+def _write_npy(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
+    """NumPy's own format, one picture after the other."""
+    with path.open("wb") as file:
+        for number, picture in enumerate(pictures):
+            if not number:
+                header = {"descr": "<f4", "fortran_order": False, "shape": (job.count, *picture.shape)}
+                np.lib.format.write_array_header_1_0(file, header)
+            file.write(picture.astype("<f4").tobytes())
+
+
+def _is_frames_folder(path: Path) -> bool:
+    """Whether a folder holds nothing but what `_write_folder` writes."""
+    return all(entry.name == VIEWS_FILE or entry.suffix == ".png" for entry in path.iterdir())
+
+
+_WRITERS = {
+    ".mp4": _movie(_encoders.encode_mp4),
+    ".webm": _movie(_encoders.encode_webm),
+    ".gif": _movie(_encoders.encode_gif),
+    ".webp": _movie(_encoders.encode_webp),
+    ".apng": _movie(_encoders.encode_apng),
+    ".npy": _write_npy,
+}

@@ -1,0 +1,103 @@
+"""Reading pictures: a folder of them, an animation, or a video."""
+
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.errors import InputError
+from lightcube.frames import Pictures
+from lightcube.io._decode import Budget, Levels, Take, read_animation, read_single
+from lightcube.io._files import suffix_entry, system_errors
+from lightcube.io._video import read_video
+from lightcube.io.frames_folder import PICTURE_SUFFIXES, FolderViews, picture_files, read_views
+from lightcube.transfer import Transfer, check_transfer, decode
+
+_READERS: dict[str, Callable[[Path, Budget, Take], None]] = {
+    ".gif": read_animation,
+    ".apng": read_animation,
+    **dict.fromkeys(PICTURE_SUFFIXES, read_animation),
+    **dict.fromkeys((".mp4", ".webm", ".mkv", ".mov", ".avi"), read_video),
+}
+
+
+class TransparentPictures(UserWarning):
+    """Some pictures that were read are not opaque, and were put on white."""
+
+
+def read_pictures(path: str | Path, *, transfer: Transfer = "srgb") -> Pictures:
+    """Read pictures in linear light.
+
+    Parameters
+    ----------
+    path
+        A folder of PNG, JPEG, WebP or TIFF files, taken in natural order (2 before 10), whose `views.toml`, if
+        there is one, gives angles, elevation and names; or an animated GIF, WebP or APNG, or a TIFF of several
+        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken.
+    transfer
+        How display values become linear light.
+
+    Returns
+    -------
+    Pictures in float32, 1 = white, upright as their EXIF orientation says, with all the bits that the file has
+    (8 or 16). Colour profiles are not applied: numbers are taken as sRGB.
+
+    Warns
+    -----
+    TransparentPictures
+        Once, where pictures are not opaque: they are put on white, in linear light.
+
+    Raises
+    ------
+    InputError
+        Where there is nothing to read, a file is damaged or of another kind, there is only one picture, they
+        would not fit into half of the machine's memory, or `views.toml` has a fault.
+    """
+    path = Path(path)
+    transfer = check_transfer(transfer)
+    with system_errors(path, "reading"):
+        there, is_folder = path.exists(), path.is_dir()
+    if not there:
+        raise InputError(f"there is no {path}: give a folder of pictures, an animation or a video")
+    images: list[NDArray[np.float32]] = []
+    transparent = 0
+
+    def take(levels: Levels) -> None:
+        nonlocal transparent
+        image, opaque = _linear_light(levels, transfer)
+        images.append(image)
+        transparent += not opaque
+
+    views = FolderViews()
+    if is_folder:
+        files = picture_files(path)
+        views = read_views(path, len(files))
+        budget = Budget()
+        for file in files:
+            read_single(file, budget, take)
+        names = views.names or tuple(file.stem for file in files)
+    else:
+        suffix_entry(path, _READERS, "pictures")(path, Budget(), take)
+        names = tuple(str(index + 1) for index in range(len(images)))
+    if len(images) < 2:
+        held = "one picture" if images else "no picture"
+        raise InputError(f"{path} holds {held}, and a cube needs at least two: add more")
+    if transparent:
+        warnings.warn(
+            f"{transparent} of {len(images)} pictures in {path} are partly transparent: they were put on white",
+            TransparentPictures,
+            stacklevel=2,
+        )
+    return Pictures(tuple(images), names, views.angles, views.elevation, transfer)
+
+
+def _linear_light(levels: Levels, transfer: Transfer) -> tuple[NDArray[np.float32], bool]:
+    """Levels ``(row, column, 3 or 4)`` as linear light on white, and whether they were opaque."""
+    full = np.float32(np.iinfo(levels.dtype).max)
+    light = decode(levels[..., :3].astype(np.float32) / full, transfer).astype(np.float32, copy=False)
+    if levels.shape[2] == 3:
+        return light, True
+    opacity = levels[..., 3:].astype(np.float32) / full
+    return opacity * light + (1 - opacity), bool(np.all(opacity == 1))

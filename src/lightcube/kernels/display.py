@@ -1,0 +1,80 @@
+"""The two-sided residual in display values, entry by entry (see `lightcube.solvers.display`)."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+#: Slope that a beam too dark is pulled back with at least, per unit of ln light.
+SLOPE_FLOOR = 0.03
+#: sRGB (IEC 61966-2-1): where the straight toe ends in linear light, its slope; offset and gamma of the power above.
+_TOE, _TOE_SLOPE, _OFFSET, _GAMMA = 0.0031308, 12.92, 0.055, 2.4
+
+
+@njit(cache=True)
+def display_of_log(u: float) -> tuple[float, float, float]:
+    """Return g, g' and g'' at `u` = ln(linear light), with g the sRGB display value."""
+    if u <= math.log(_TOE):
+        value = _TOE_SLOPE * math.exp(u)
+        return value, value, value
+    power = (1 + _OFFSET) * math.exp(u / _GAMMA)
+    return power - _OFFSET, power / _GAMMA, power / (_GAMMA * _GAMMA)
+
+
+@njit(cache=True)
+def residual(u: float, wanted: float) -> tuple[float, float]:
+    """Return the two-sided residual and its slope in `u`; both arguments are ln(linear light)."""
+    target, slope, _ = display_of_log(wanted)
+    if u > wanted:
+        value, steepness, _ = display_of_log(u)
+        return value - target, steepness
+    slope = max(slope, SLOPE_FLOOR)
+    return slope * (u - wanted), slope
+
+
+@njit(cache=True)
+def curvature(u: float, wanted: float) -> float:
+    """Return the largest second derivative of half the squared residual for any light up to `u` or the wanted one."""
+    target, slope, _ = display_of_log(wanted)
+    value, steepness, bend = display_of_log(max(u, wanted))
+    dark = max(slope, SLOPE_FLOOR)
+    return max(steepness * steepness + (value - target) * bend, dark * dark)
+
+
+@njit(cache=True, parallel=True)
+def descend(absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, slopes: Array) -> Array:
+    """Write the derivative of the objective by the absorbance to `slopes`; return the objective of each column.
+
+    ``lamp[view, channel]`` is ln P; the objective is half the weighted sum of squared residuals.
+    """
+    rows, columns = absorbance.shape
+    parts = 64
+    sums = np.zeros((parts, columns))
+    for part in prange(parts):
+        for row in range(part * rows // parts, (part + 1) * rows // parts):
+            powers = lamp[view_of_row[row]]
+            for column in range(columns):
+                u = powers[column % len(powers)] - absorbance[row, column]
+                value, slope = residual(u, wanted[row, column])
+                weighted = weights[row, column] * value
+                slopes[row, column] = -weighted * slope
+                sums[part, column] += 0.5 * weighted * value
+    return sums.sum(axis=0)
+
+
+@njit(cache=True, parallel=True)
+def curvatures(
+    absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, room: float, bounds: Array
+) -> None:
+    """Write to `bounds` the weighted `curvature` that holds while ln light rises by no more than `room`."""
+    rows, columns = absorbance.shape
+    for row in prange(rows):
+        powers = lamp[view_of_row[row]]
+        for column in range(columns):
+            brightest = powers[column % len(powers)]
+            u = min(brightest - absorbance[row, column] + room, brightest)
+            bounds[row, column] = weights[row, column] * curvature(u, wanted[row, column])

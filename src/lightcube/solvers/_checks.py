@@ -1,0 +1,123 @@
+"""What a solver is given, checked once, with sentences for what cannot be used."""
+
+import operator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.errors import InputError
+from lightcube.solvers._absorbance import absorbance_wanted, fixed_lamp
+from lightcube.solvers.contract import Floats, Operator
+
+
+@dataclass(frozen=True)
+class LinearProblem:
+    """``A x = b`` within bounds, as the methods that work on logarithms see it; all in the dtype of `B`."""
+
+    #: ``(equations, columns)``, absorbance wanted.
+    b: Floats
+    #: ``(equations, columns)``, a read-only view where it was broadcast.
+    weights: Floats
+    #: ``(unknowns, columns)``, where to start: the solver's own array, within the bounds.
+    x: Floats
+    lower: float
+    upper: float
+    #: ``(views, channels)``.
+    lamp_powers: Floats
+
+
+def check_shapes(A: Operator, B: Floats) -> None:
+    """Raise `InputError` unless `B` is a float matrix with as many rows as `A`."""
+    if B.ndim != 2 or B.shape[0] != A.shape[0] or B.shape[1] == 0:
+        raise InputError(f"B must have shape ({A.shape[0]}, columns) for a matrix of shape {A.shape}, not {B.shape}")
+    if B.dtype not in (np.float32, np.float64):
+        raise InputError(f"B must be float32 or float64, not {B.dtype}")
+
+
+def check_weights(weights: Floats | None, B: Floats) -> Floats:
+    """Return `weights` in the shape and dtype of `B` (None = all 1), finite and at least 0, else raise `InputError`."""
+    given = np.asarray(1.0 if weights is None else weights)
+    try:
+        whole = np.broadcast_to(given.astype(B.dtype), B.shape)
+    except ValueError as error:
+        raise InputError(f"weights of shape {given.shape} do not fit B of shape {B.shape}") from error
+    if not np.all(np.isfinite(given)) or np.any(given < 0):
+        raise InputError("weights must be finite and at least 0: use 0 for don't care")
+    return whole
+
+
+def check_views(view_of_row: NDArray[np.integer[Any]] | None, equations: int) -> int:
+    """Return how many views `view_of_row` names (None: one), or raise `InputError`."""
+    if view_of_row is None:
+        return 1
+    if view_of_row.shape != (equations,) or not np.issubdtype(view_of_row.dtype, np.integer):
+        raise InputError(
+            f"view_of_row must be {equations} whole numbers, one per equation, "
+            f"not {view_of_row.dtype} of shape {view_of_row.shape}"
+        )
+    if view_of_row.min() < 0:
+        raise InputError(f"view_of_row must count views from 0, not from {view_of_row.min()}")
+    return int(view_of_row.max()) + 1
+
+
+def check_bounds(bounds: tuple[float, float]) -> tuple[float, float]:
+    """Return the bounds of `x` as floats, or raise `InputError` unless there is a number between them."""
+    lower, upper = (float(bound) for bound in bounds)
+    if not (lower <= upper and lower < np.inf and upper > -np.inf):  # also refuses NaN
+        raise InputError(f"bounds must be a lower bound and an upper bound that is not less, not ({lower}, {upper})")
+    return lower, upper
+
+
+def check_start(
+    x0: Floats | None, shape: tuple[int, int], bounds: tuple[float, float], dtype: np.dtype[np.floating[Any]]
+) -> Floats:
+    """Return a fresh start of `shape` and `dtype` within `bounds` from `x0` (None = all 0), or raise `InputError`."""
+    start = np.zeros(shape) if x0 is None else np.asarray(x0)
+    if start.shape != shape or not np.all(np.isfinite(start)):
+        raise InputError(f"x0 must be finite numbers of shape {shape} (unknowns, columns), not {start.shape}")
+    return np.ascontiguousarray(np.clip(start.astype(dtype), *bounds), dtype=dtype)
+
+
+def check_iterations(iterations: int) -> int:
+    """Return `iterations`, or raise `InputError` unless it is a whole number of at least 1."""
+    try:
+        count = operator.index(iterations)
+    except TypeError as error:
+        raise InputError(f"iterations must be a whole number, not {iterations!r}") from error
+    if count < 1:
+        raise InputError(f"iterations must be at least 1, not {count}")
+    return count
+
+
+def linear_problem(
+    method: str,
+    A: Operator,
+    B: Floats,
+    weights: Floats | None,
+    view_of_row: NDArray[np.integer[Any]] | None,
+    lamp_bounds: tuple[Floats, Floats] | None,
+    x0: Floats | None,
+    bounds: tuple[float, float],
+) -> LinearProblem:
+    """Check what `method` was given and take logarithms; `InputError` names what cannot be used.
+
+    The parameters are those of `lightcube.solvers.contract.Solver`.
+    """
+    check_shapes(A, B)
+    views = check_views(view_of_row, A.shape[0])
+    lamp_powers = fixed_lamp(lamp_bounds, method) if lamp_bounds is not None else np.ones((views, 1))
+    if lamp_powers.ndim != 2 or not np.all(np.isfinite(lamp_powers)) or np.any(lamp_powers <= 0):
+        raise InputError("lamp powers must be positive and finite, in an array of shape (views, channels)")
+    if len(lamp_powers) < views:
+        raise InputError(f"view_of_row names {views} views, but there are lamp powers for {len(lamp_powers)}")
+    lower, upper = check_bounds(bounds)
+    return LinearProblem(
+        b=np.ascontiguousarray(absorbance_wanted(B, lamp_powers, view_of_row)),
+        weights=check_weights(weights, B),
+        x=check_start(x0, (A.shape[1], B.shape[1]), (lower, upper), B.dtype),
+        lower=lower,
+        upper=upper,
+        lamp_powers=lamp_powers,
+    )

@@ -1,0 +1,89 @@
+"""Simultaneous iterative reconstruction: all beams correct all voxels at once."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.solvers._checks import check_iterations, linear_problem
+from lightcube.solvers._momentum import run_ahead
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+
+#: A column has converged once a step is shorter than this part of its right-hand side (both in the method's norms).
+_TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
+
+
+def sirt(
+    A: Operator,
+    B: Floats,
+    *,
+    weights: Floats | None = None,
+    view_of_row: NDArray[np.integer[Any]] | None = None,
+    lamp_bounds: tuple[Floats, Floats] | None = None,
+    x0: Floats | None = None,
+    bounds: tuple[float, float] = (0.0, np.inf),
+    iterations: int = 100,
+    callback: Callback | None = None,
+) -> Result:
+    """Minimise ``sum_i w_i / r_i * (b - A x)_i^2`` within the bounds, ``b = ln P - ln B`` and ``r`` the row sums of A.
+
+    The parameters are those of `lightcube.solvers.contract.Solver`; `A` must hold no negative number and the
+    lamp powers must be fixed. The update is ``x <- clip(y + C A^T R W (b - A y))`` with ``R = 1 / r`` and ``C``
+    one over the column sums of ``W A``, from a point ``y`` that runs ahead of ``x``: Nesterov's momentum, dropped
+    for a column whenever it points uphill. Momentum changes the way but not the minimum. Where the minimum is not
+    unique, without bounds and from 0, the limit is the minimiser of least ``sum_j x_j^2 / C_j``; a voxel that no
+    weighted beam meets keeps its start.
+
+    Returns
+    -------
+    `Result` whose `residuals` are the square root of what is minimised, over all columns. It stops as
+    ``"converged"`` once every column's step is at most 1e-12 (float32: 1e-6) of its right-hand side, the step
+    measured as ``sqrt(sum d_j^2 / C_j)`` and the right-hand side in the norm that is minimised.
+
+    References
+    ----------
+    P. Gilbert, J. Theor. Biol. 36 (1972); A. van der Sluis, H. A. van der Vorst, Linear Algebra Appl. 130 (1990);
+    B. O'Donoghue, E. Candes, Found. Comput. Math. 15 (2015), for the restart.
+    """
+    problem = linear_problem("sirt", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
+    iterations = check_iterations(iterations)
+    b, x = problem.b, problem.x
+    row_weights = problem.weights * _inverse(A.forward(np.ones((A.shape[1], 1), B.dtype)))
+    column_sums = _column_sums(A, problem.weights)
+    C = _inverse(column_sums)
+    ax = A.forward(x)
+    small = _TOLERANCE[B.dtype] * np.maximum(_norms(row_weights, b), _norms(row_weights, ax))
+    y, ay, momentum = x, ax, np.ones(B.shape[1])
+    residuals: list[float] = []
+    reason = "iterations"
+    for iteration in range(1, iterations + 1):
+        before, ax_before = x, ax
+        x = np.clip(y + C * A.adjoint(row_weights * (b - ay)), problem.lower, problem.upper)
+        ax = A.forward(x)
+        step, moved = x - y, x - before
+        residuals.append(float(np.linalg.norm(_norms(row_weights, b - ax))))
+        asked = callback is not None and callback(Progress(iteration, iterations, x, ax, residuals[-1]))
+        if asked or np.all(_norms(column_sums, step) <= small):
+            reason = "callback" if asked else "converged"
+            break
+        uphill = np.sum(column_sums * step * moved, axis=0) < 0
+        ahead, momentum = run_ahead(momentum, uphill)
+        y = x + ahead.astype(B.dtype) * moved
+        ay = ax + ahead.astype(B.dtype) * (ax - ax_before)
+    return Result(x, problem.lamp_powers, np.array(residuals), stop_reason=reason)
+
+
+def _column_sums(A: Operator, weights: Floats) -> Floats:
+    """Column sums of ``W A``, ``(unknowns, columns)``, or ``(unknowns, 1)`` where all columns have the same weights."""
+    same = np.array_equal(weights, np.broadcast_to(weights[:, :1], weights.shape))
+    return A.adjoint(np.ascontiguousarray(weights[:, :1] if same else weights))
+
+
+def _inverse(sums: Floats) -> Floats:
+    """One over `sums`, and 0 where they are 0: a beam without voxels, a voxel without beams."""
+    return np.divide(1, sums, out=np.zeros_like(sums), where=sums > 0)
+
+
+def _norms(weights: Floats, values: Floats) -> NDArray[np.float64]:
+    """Weighted 2-norm of each column."""
+    return np.sqrt(np.sum(weights * values**2, axis=0, dtype=np.float64))

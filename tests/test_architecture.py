@@ -1,0 +1,130 @@
+"""Who may import whom, who may touch files and print, and the list of public names."""
+
+import ast
+import sys
+from pathlib import Path
+
+import pytest
+
+import lightcube
+
+PACKAGE = Path(lightcube.__file__).parent
+MODULES = sorted(PACKAGE.rglob("*.py"))
+
+#: Rooms from the ground up: a module imports from its own room and from those before it.
+STOREYS = [
+    ["errors", "kernels"],
+    ["transfer", "absorption", "geometry", "layout"],
+    ["frames", "cube", "projector", "solvers"],
+    ["fitting"],
+    ["backward", "forward", "scene"],
+    ["metrics", "consistency", "sheet"],
+    ["io"],
+    ["console", "demo", "cli", ""],
+]
+ALLOWED_IN_KERNELS = {"numpy", "numba", "math", "typing"}
+FILE_AND_SCREEN = {"pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "zarr", "matplotlib", "trimesh"}
+
+
+def room(dotted: str) -> str:
+    """The first name below ``lightcube``."""
+    return dotted.split(".")[1] if dotted.startswith("lightcube.") else ""
+
+
+def storey(name: str) -> int:
+    return next(level for level, names in enumerate(STOREYS) if name in names)
+
+
+def imports(file: Path) -> set[str]:
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{file}: relative import"
+            module = node.module or ""
+            found |= {f"{module}.{alias.name}" for alias in node.names} if module == "lightcube" else {module}
+    return found
+
+
+def dotted(file: Path) -> str:
+    return ".".join(["lightcube", *file.relative_to(PACKAGE).with_suffix("").parts]).removesuffix(".__init__")
+
+
+def is_kernel(file: Path) -> bool:
+    return "kernels" in file.relative_to(PACKAGE).parts
+
+
+@pytest.mark.parametrize("file", MODULES, ids=dotted)
+def test_imports_run_downhill(file: Path) -> None:
+    own = room(dotted(file))
+    for name in imports(file):
+        if name.split(".")[0] == "lightcube":
+            assert storey(room(name)) <= storey(own), f"{dotted(file)} imports {name}"
+
+
+@pytest.mark.parametrize("file", [file for file in MODULES if is_kernel(file)], ids=dotted)
+def test_kernels_import_numpy_and_numba_only(file: Path) -> None:
+    for name in imports(file):
+        assert name.split(".")[0] in ALLOWED_IN_KERNELS or ".kernels" in name, f"{dotted(file)} imports {name}"
+
+
+def test_solvers_never_import_the_projector() -> None:
+    for file in (PACKAGE / "solvers").glob("*.py"):
+        assert not any("projector" in name for name in imports(file)), file
+
+
+@pytest.mark.parametrize("file", MODULES, ids=dotted)
+def test_only_the_upper_rooms_touch_files_and_print(file: Path) -> None:
+    if storey(room(dotted(file))) >= storey("io"):
+        return
+    assert not {name.split(".")[0] for name in imports(file)} & FILE_AND_SCREEN
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            assert node.func.id not in ("open", "print"), f"{dotted(file)} line {node.lineno}"
+
+
+def test_every_module_has_a_room() -> None:
+    rooms = {room(dotted(file)) for file in MODULES}
+    assert rooms - {""} == {name for names in STOREYS for name in names} - {""}
+    assert {name.split(".")[0] for file in MODULES for name in imports(file)} <= {
+        *sys.stdlib_module_names,
+        *("lightcube", "numpy", "scipy", "numba", "skimage", "PIL", "av", "zarr", "typer", "click", "rich", "pydantic"),
+        *("pydantic_core", "trimesh"),
+    }
+
+
+def test_public_names_are_a_list() -> None:
+    assert sorted(lightcube.__all__) == [
+        "Cube",
+        "Frames",
+        "Grid",
+        "InputError",
+        "METHODS",
+        "Pictures",
+        "Projector",
+        "Result",
+        "Scene",
+        "Solution",
+        "Views",
+        "cast",
+        "dot_test",
+        "fit",
+        "lamp_at",
+        "load",
+        "play",
+        "publish",
+        "read_pictures",
+        "read_scene",
+        "save",
+        "scene_frames",
+        "scene_views",
+        "score",
+        "solve",
+        "spread_angles",
+        "turntable",
+        "views_at",
+        "write_pictures",
+    ]
+    for name in lightcube.__all__:
+        assert name == "METHODS" or getattr(lightcube, name).__doc__, name

@@ -1,0 +1,167 @@
+"""Program 2: every method of the table through the same tests, and the orchestration around them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lightcube.backward import BLACK, Step, memory_needed, solve
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.forward import play
+from lightcube.frames import Frames
+from lightcube.geometry import Grid, spread_angles, turntable
+from lightcube.metrics import score
+from lightcube.solvers import METHODS
+from lightcube.transfer import decode
+
+SHAPE = (3, 4, 5)
+ITERATIONS: Mapping[str, dict[str, Any]] = {
+    "display": {"iterations": 300},
+    "gauss-seidel": {"iterations": 300},
+    "row-reduction": {},
+    "sirt": {"iterations": 1500},
+    "cgls": {"iterations": 300},
+}
+
+
+def known_cube(views: int, elevation: float, power: float) -> Cube:
+    grid = Grid(SHAPE, 0.5)
+    extinction = np.random.default_rng(0).uniform(0, 0.4, (3, *SHAPE)).astype(np.float32)
+    turned = turntable(grid, spread_angles(views, elevation=elevation), elevation=elevation)
+    return Cube(extinction, grid, turned, lamp_powers=np.full((views, 3), power))
+
+
+def test_every_method_is_tested_here() -> None:
+    assert set(ITERATIONS) == set(METHODS)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_cubes_own_shadows_come_back(method: str, elevation: float) -> None:
+    cube = known_cube(6, elevation, power=1.0)
+    frames = Frames(play(cube), cube.views)
+    solution = solve(frames, cube.grid, method=method, dtype=np.float64, **ITERATIONS[method])
+    assert solution.cube.status == "complete"
+    assert solution.cube.provenance["method"] == method
+    assert score(solution.cube, frames)["psnr_min"] >= 60
+    assert solution.cube.extinction.min() >= 0
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_stronger_lamp_is_accounted_for(method: str) -> None:
+    cube = known_cube(4, 0.0, power=2.5)
+    frames = Frames(play(cube), cube.views)
+    solution = solve(frames, cube.grid, method=method, lamp_power=2.5, dtype=np.float64, **ITERATIONS[method])
+    assert np.all(solution.cube.powers == 2.5)
+    assert score(solution.cube, frames)["psnr_min"] >= 60
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_pixels_of_no_weight_do_not_matter(method: str) -> None:
+    cube = known_cube(12, 0.0, power=1.0)
+    shown = play(cube)
+    weights = np.random.default_rng(1).integers(0, 2, shown.shape[:3]).astype(np.float32)
+    spoiled = np.where(weights[..., None] > 0, shown, np.float32(0.123))
+    one, other = (
+        solve(Frames(pictures, cube.views, weights), cube.grid, method=method, dtype=np.float64, **ITERATIONS[method])
+        for pictures in (shown, spoiled)
+    )
+    assert np.allclose(one.cube.extinction, other.cube.extinction, atol=1e-6)
+    assert score(other.cube, Frames(shown, cube.views, weights))["psnr_min"] >= 60
+
+
+@pytest.mark.parametrize("method", ["display", "sirt", "cgls", "gauss-seidel"])
+def test_the_largest_extinction_is_kept(method: str) -> None:
+    cube = known_cube(4, 0.0, power=1.0)
+    dark = Frames(play(cube) * np.float32(0.01), cube.views)
+    solution = solve(dark, cube.grid, method=method, max_extinction=0.3, iterations=20)
+    assert solution.cube.extinction.max() <= 0.3 * (1 + 1e-6)
+    if method != "gauss-seidel":  # which throws out equations that ask for more
+        assert solution.cube.extinction.max() == pytest.approx(0.3)
+
+
+def test_black_pictures_are_raised_to_the_screens_black() -> None:
+    grid = Grid(SHAPE)
+    views = turntable(grid, [20.0, 100.0], picture_shape=(3, 2))
+    solution = solve(Frames(np.zeros((2, 3, 2, 3), np.float32), views), grid, iterations=200)
+    darkest = float(decode(np.array([BLACK]))[0])
+    assert np.all(play(solution.cube) < 2 * darkest)
+
+
+def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
+    cube = known_cube(4, 35.0, power=2.0)
+    frames = Frames(play(cube), cube.views)
+    seen: list[np.ndarray] = []
+
+    def callback(step: Step) -> bool:
+        seen.append(step.shown())
+        return step.iteration == 3
+
+    solution = solve(frames, cube.grid, lamp_power=2.0, callback=callback)
+    assert len(seen) == 3
+    assert solution.cube.status == "interrupted"
+    assert solution.stop_reason == "callback"
+    assert np.allclose(seen[-1], play(solution.cube), rtol=1e-4, atol=1e-5)
+
+
+def test_the_store_is_given_unfinished_cubes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lightcube.backward.CHECKPOINT_S", 0.0)
+    kept: list[Cube] = []
+
+    class Shelf:
+        def keep(self, cube: Cube) -> None:
+            kept.append(cube)
+
+    cube = known_cube(4, 0.0, power=1.0)
+    frames = Frames(play(cube), cube.views)
+    solution = solve(frames, cube.grid, iterations=3, store=Shelf())
+    assert [c.status for c in kept] == ["interrupted"] * 3
+    assert np.array_equal(kept[-1].extinction, solution.cube.extinction)
+    assert solution.cube.status == "complete"
+    solve(frames, cube.grid, iterations=3, store=Shelf(), callback=lambda step: True)
+    assert len(kept) == 5
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation: float) -> None:
+    """One pixel of a redundant set is made wrong; Gauss-Seidel must name it."""
+    cube = known_cube(12, elevation, power=1.0)
+    shown = play(cube).astype(np.float64)
+    # a pixel whose beam crosses the middle of the cube
+    _, rows, columns, _ = shown.shape
+    wrong = (5, rows // 2, columns // 2, 1)
+    shown[wrong] *= 0.5
+    frames = Frames(shown.astype(np.float32), cube.views)
+    solution = solve(frames, cube.grid, method="gauss-seidel", dtype=np.float64, iterations=3000)
+    assert solution.rejected.tolist() == [list(wrong)]
+    assert solution.cube.provenance["rejected"] == 1
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"method": "magic"},
+        {"lamp_power": 0.0},
+        {"lamp_power": float("nan")},
+        {"max_extinction": -1.0},
+        {"iterations": 0},
+    ],
+)
+def test_nonsense_is_refused(options: dict[str, Any]) -> None:
+    cube = known_cube(2, 0.0, power=1.0)
+    with pytest.raises(InputError):
+        solve(Frames(play(cube), cube.views), cube.grid, **options)
+
+
+def test_frames_of_another_grid_are_refused() -> None:
+    cube = known_cube(2, 0.0, power=1.0)
+    with pytest.raises(InputError, match="larger than"):
+        solve(Frames(play(cube), cube.views), Grid((2, 2, 2), 0.5))
+
+
+def test_memory_grows_with_the_cube_and_the_pictures() -> None:
+    small = memory_needed(Grid((8, 8, 8)), (8, 8), 4)
+    assert memory_needed(Grid((16, 16, 16)), (8, 8), 4) > 4 * small
+    assert memory_needed(Grid((8, 8, 8)), (16, 16), 64) > 4 * small

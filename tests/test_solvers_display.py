@@ -1,0 +1,156 @@
+"""The display solver: its objective, its optimum, its limits."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import Bounds, minimize
+
+from lightcube.errors import InputError
+from lightcube.geometry import Grid, spread_angles, turntable
+from lightcube.kernels.display import curvature, display_of_log, residual
+from lightcube.projector import Projector
+from lightcube.solvers.contract import Progress
+from lightcube.solvers.display import display_values
+from lightcube.transfer import encode
+
+
+def plain_objective(matrix: np.ndarray, x: np.ndarray, wanted: np.ndarray, power: float, weight: np.ndarray) -> float:
+    """Half the weighted squared two-sided residual, one entry at a time."""
+    total = 0.0
+    light = power * np.exp(-(matrix @ x))
+    for index in np.ndindex(*wanted.shape):
+        u, goal = np.log(light[index]), np.log(wanted[index])
+        g_u, g_goal = (float(encode(np.array([value]))[0]) for value in (light[index], wanted[index]))
+        step = 1e-6
+        pair = encode(np.exp(np.array([goal - step, goal + step])))
+        slope = max(float(pair[1] - pair[0]) / (2 * step), 0.03)
+        value = g_u - g_goal if u > goal else slope * (u - goal)
+        total += 0.5 * float(weight[index]) * value**2
+    return total
+
+
+@given(st.floats(-9, 4))
+def test_display_of_log_is_the_srgb_curve_and_its_derivatives(u: float) -> None:
+    value, slope, bend = display_of_log(u)
+    assert value == pytest.approx(float(encode(np.exp(np.array([u])))[0]), abs=1e-7)
+    if abs(u - np.log(0.0031308)) > 1e-3:
+        step = 1e-5
+        low, high = display_of_log(u - step), display_of_log(u + step)
+        assert slope == pytest.approx((high[0] - low[0]) / (2 * step), rel=1e-4)
+        assert bend == pytest.approx((high[1] - low[1]) / (2 * step), rel=1e-4)
+
+
+@given(st.floats(-9, 3), st.floats(-9, 0))
+def test_the_bound_on_the_curvature_holds_below(u: float, wanted: float) -> None:
+    bound = curvature(u, wanted)
+    step = 1e-4
+    for other in np.linspace(-9, max(u, wanted) - 2 * step, 7):
+        if min(abs(other - wanted), abs(other - np.log(0.0031308))) < 3 * step:
+            continue  # half the square has a kink in its slope there
+        halves = [0.5 * residual(float(v), wanted)[0] ** 2 for v in (other - step, other, other + step)]
+        second = (halves[0] - 2 * halves[1] + halves[2]) / step**2
+        assert second <= bound + 1e-4
+
+
+def small_problem() -> tuple[Projector, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    grid = Grid((1, 3, 4))
+    views = turntable(grid, spread_angles(3))
+    matrix = Projector(grid, views)
+    random = np.random.default_rng(0)
+    wanted = random.uniform(0.02, 1.4, (matrix.shape[0], 2))
+    weight = random.choice([0.0, 1.0, 2.0], wanted.shape)
+    powers = np.full((3, 2), 1.5)
+    return matrix, wanted, weight, powers, matrix.to_sparse().toarray()
+
+
+@pytest.mark.parametrize("bounds", [(0.0, np.inf), (0.0, 0.4)])
+def test_matches_a_generic_bounded_optimiser(bounds: tuple[float, float]) -> None:
+    matrix, wanted, weight, powers, dense = small_problem()
+    result = display_values(
+        matrix,
+        wanted,
+        weights=weight,
+        view_of_row=matrix.view_of_row,
+        lamp_bounds=(powers, powers),
+        bounds=bounds,
+        iterations=400,
+    )
+
+    def flat_objective(flat: np.ndarray) -> float:
+        return plain_objective(dense, flat.reshape(result.x.shape), wanted, 1.5, weight)
+
+    generic = minimize(
+        flat_objective,
+        np.full(result.x.size, 0.1),
+        method="L-BFGS-B",
+        bounds=Bounds(*bounds),
+        options={"maxiter": 300},
+    )
+    ours = plain_objective(dense, result.x, wanted, 1.5, weight)
+    assert result.residuals[-1] == pytest.approx(ours, rel=1e-6)
+    assert ours <= generic.fun * (1 + 1e-3)
+    assert result.x.min() >= bounds[0]
+    assert result.x.max() <= bounds[1]
+
+
+def test_the_objective_at_the_end_is_a_minimum_in_every_direction() -> None:
+    """Convex and optimal: no feasible step of any unknown lowers the objective by more than rounding."""
+    matrix, wanted, weight, powers, dense = small_problem()
+    args = {"weights": weight, "view_of_row": matrix.view_of_row, "lamp_bounds": (powers, powers)}
+    result = display_values(matrix, wanted, iterations=400, **args)  # type: ignore[arg-type]
+    best = plain_objective(dense, result.x, wanted, 1.5, weight)
+    for index in np.ndindex(*result.x.shape):
+        for step in (-0.02, 0.02):
+            moved = result.x.copy()
+            moved[index] = max(float(moved[index]) + step, 0.0)
+            assert plain_objective(dense, moved, wanted, 1.5, weight) >= best - 1e-4
+
+
+def test_a_beam_that_is_much_too_dark_comes_back() -> None:
+    """Started from nearly black, where display values alone have no gradient left."""
+    grid = Grid((1, 2, 3))
+    matrix = Projector(grid, turntable(grid, [30.0, 100.0]))
+    truth = np.random.default_rng(1).random((6, 3)) * 0.3
+    wanted = np.exp(-matrix.forward(truth))
+    result = display_values(matrix, wanted, x0=np.full((6, 3), 20.0), iterations=800)
+    assert np.max(np.abs(encode(np.exp(-matrix.forward(result.x))) - encode(wanted))) < 0.01
+
+
+def test_bright_beams_beyond_the_lamp_pull_to_transparent() -> None:
+    grid = Grid((1, 2, 3))
+    matrix = Projector(grid, turntable(grid, [30.0]))
+    result = display_values(matrix, np.full((matrix.shape[0], 1), 2.0), x0=np.full((6, 1), 0.5), iterations=50)
+    assert np.allclose(result.x, 0)
+
+
+def test_voxels_that_no_weighted_beam_meets_stay_where_they_are() -> None:
+    grid = Grid((1, 4, 6))
+    matrix = Projector(grid, turntable(grid, [0.0], picture_shape=(1, 2)))
+    result = display_values(matrix, np.full((matrix.shape[0], 1), 0.5), iterations=5)
+    unseen = np.asarray(matrix.to_sparse().sum(axis=0)).ravel() == 0
+    assert unseen.any()
+    assert np.all(result.x[unseen] == 0)
+    assert np.all(result.x[~unseen] > 0)
+
+
+def test_a_free_lamp_is_refused() -> None:
+    grid = Grid((1, 2, 3))
+    matrix = Projector(grid, turntable(grid, [0.0, 50.0]))
+    free = (np.full((2, 1), 0.5), np.full((2, 1), 2.0))
+    with pytest.raises(InputError, match="lamp"):
+        display_values(matrix, np.full((matrix.shape[0], 1), 0.5), view_of_row=matrix.view_of_row, lamp_bounds=free)
+
+
+def test_the_callback_sees_the_absorbance_of_x_and_stops() -> None:
+    matrix, wanted, _, _, dense = small_problem()
+    seen: list[int] = []
+
+    def callback(progress: Progress) -> bool:
+        assert np.allclose(progress.absorbance, dense @ progress.x)
+        seen.append(progress.iteration)
+        return progress.iteration == 4
+
+    result = display_values(matrix, wanted, callback=callback)
+    assert seen == [1, 2, 3, 4]
+    assert result.stop_reason == "callback"
