@@ -265,6 +265,6 @@ def test_warnings_are_notes(run, frames: Path, tmp_path: Path) -> None:  # type:
 def test_help_names_every_command() -> None:
     environment = {**os.environ, "COLUMNS": "100"}
     command = [sys.executable, "-c", "from lightcube.cli import main; main()", "--help"]
-    text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout  # noqa: S603
+    text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
     for name in ("trace", "solve", "play", "score", "info", "publish", "demo"):
         assert name in text

@@ -65,6 +65,13 @@ def test_at_the_frames_size_pictures_are_not_touched(mode: Fit, elevation: float
     assert frames.names == read.names
 
 
+@pytest.mark.parametrize("size", [(14, 18), (22, 26), (18, 22), (49, 47), (61, 59)])
+def test_rounding_of_the_aspect_touches_nothing(size: tuple[int, int]) -> None:
+    read = pictures(size, size)
+    frames = fit(read, Grid((size[0], size[1], size[1])))
+    np.testing.assert_array_equal(frames.pictures, np.stack(read.images))
+
+
 @pytest.mark.parametrize("first", [(9, 12), (30, 40), (45, 60), (31, 40)])
 def test_crop_is_a_centred_lanczos_of_the_part_with_the_right_aspect(first: tuple[int, int]) -> None:
     read = pictures(first, (40, 30), (11, 60), (12, 17))
@@ -93,7 +100,14 @@ def test_stretch_takes_all_of_each_picture() -> None:
 
 @pytest.mark.parametrize(
     ("size", "inside"),
-    [((24, 16), (12, 8)), ((12, 8), (12, 8)), ((8, 32), (4, 16)), ((12, 16), (12, 16)), ((1, 100), (2, 16))],
+    [
+        ((24, 16), (12, 8)),
+        ((12, 8), (12, 8)),
+        ((8, 32), (4, 16)),
+        ((12, 16), (12, 16)),
+        ((1, 100), (2, 16)),
+        ((23, 16), (12, 8)),
+    ],
 )
 def test_pad_keeps_all_and_does_not_care_about_the_rest(size: tuple[int, int], inside: tuple[int, int]) -> None:
     read = pictures((24, 32), size)

@@ -442,6 +442,16 @@ def test_cut_and_changed_bytes_are_refused_or_harmless(tmp_path: Path, suffix: s
         (path / name).write_bytes(before)
 
 
+@pytest.mark.parametrize("name", ["0/c/0/0/0/0", "targets/c/0/0/0/0"])
+def test_a_changed_bit_of_an_array_is_noticed(tmp_path: Path, name: str) -> None:
+    file = save(make(), tmp_path / "a.zarr") / name
+    before = file.read_bytes()
+    for at in range(len(before) // 3, len(before), 97):
+        file.write_bytes(before[:at] + bytes([before[at] ^ 1]) + before[at + 1 :])
+        with pytest.raises(InputError, match="damaged light cube"):
+            load(tmp_path / "a.zarr")
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_an_interrupted_cube_loads_with_a_warning(tmp_path: Path, suffix: str) -> None:
     cube = make(status="interrupted")
@@ -469,7 +479,20 @@ class TestPartial:
 
     def test_a_complete_one_is_published_complete(self, tmp_path: Path, suffix: str) -> None:
         out = tmp_path / f"a{suffix}"
-        assert_same(load(publish(write_partial(out, make()))), make())
+        partial = write_partial(out, make())
+        with pytest.warns(UnfinishedCube, match="still being made"):
+            assert_same(load(partial), make())
+        assert_same(load(publish(partial)), make())
+
+    def test_the_newest_state_counts(self, tmp_path: Path, suffix: str) -> None:
+        out = tmp_path / f"a{suffix}"
+        (state,) = write_partial(out, make((5, 3, 7))).iterdir()
+        state.rename(state.with_name("state-9"))
+        save(make((5, 3, 7)), tmp_path / "old.zarr")
+        write_partial(out, make())
+        (tmp_path / "old.zarr").rename(partial_path(out) / "state-9")
+        assert files_in(partial_path(out)) == ["state-10", "state-9"]
+        assert_same(load(publish(partial_path(out))), make())
 
     def test_publish_overwrites_only_when_asked(self, tmp_path: Path, suffix: str) -> None:
         out = save(make((5, 3, 7)), tmp_path / f"a{suffix}")

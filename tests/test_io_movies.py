@@ -6,6 +6,7 @@ import resource
 import signal
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import av
@@ -191,8 +192,10 @@ def test_views_that_the_file_cannot_hold_are_refused(tmp_path: Path) -> None:
         low.row_steps,
         low.picture_shape,
     )
-    with pytest.raises(InputError, match="one elevation"):
-        write_pictures(tmp_path / "a", from_uint8(levels(2)), views=mixed)
+    near = replace(low, lamps=low.lamps + np.array([0, 0, 0, 1]))
+    for wrong in (mixed, near):
+        with pytest.raises(InputError, match="one elevation"):
+            write_pictures(tmp_path / "a", from_uint8(levels(2)), views=wrong)
     assert files_in(tmp_path) == []
 
 

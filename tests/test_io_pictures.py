@@ -17,7 +17,7 @@ from PIL import Image, ImageOps
 
 from lightcube.errors import InputError
 from lightcube.geometry import spread_angles
-from lightcube.io import TransparentPictures, _decode, read_pictures
+from lightcube.io import TransparentPictures, _decode, read_pictures, write_pictures
 from lightcube.transfer import Transfer, decode, from_uint8, to_uint8
 
 Array = NDArray[np.uint8] | NDArray[np.uint16]
@@ -417,11 +417,21 @@ class TestRefused:
         with pytest.raises(InputError, match="no video"):
             read_pictures(tmp_path / "a.mkv")
 
-    def test_a_playlist_under_the_name_of_a_video_opens_nothing(self, tmp_path: Path) -> None:
+    @pytest.mark.parametrize("text", ["ffconcat version 1.0\nfile 'real.mp4'\n", "#EXTM3U\n#EXTINF:1,\nreal.mp4\n"])
+    def test_a_playlist_under_the_name_of_a_video_opens_nothing(self, tmp_path: Path, text: str) -> None:
         sample(tmp_path / "real.mp4")
-        (tmp_path / "a.mp4").write_text(f"#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\n{tmp_path / 'real.mp4'}\n")
+        (tmp_path / "a.mkv").write_text(text)
         with pytest.raises(InputError, match="cannot be read"):
-            read_pictures(tmp_path / "a.mp4")
+            read_pictures(tmp_path / "a.mkv")
+
+    def test_a_video_with_damaged_pictures(self, tmp_path: Path) -> None:
+        path = write_pictures(tmp_path / "a.mp4", np.random.default_rng(1).random((8, 65, 97, 3), dtype=np.float32))
+        content = bytearray(path.read_bytes())
+        middle = len(content) // 2
+        content[middle : middle + 60] = bytes(byte ^ 0x5A for byte in content[middle : middle + 60])
+        path.write_bytes(content)
+        with pytest.raises(InputError, match="cannot be read"):
+            read_pictures(path)
 
     @pytest.mark.parametrize("limit", [5, 30])
     @pytest.mark.parametrize("suffix", [".png", ".gif", ".mp4"])
@@ -454,6 +464,22 @@ class TestRefused:
     def test_unknown_transfer(self, tmp_path: Path) -> None:
         with pytest.raises(InputError, match="transfer"):
             read_pictures(tmp_path, transfer="gamma")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".webp", ".mp4", ".mov", ".mkv", ".webm", ".avi"])
+def test_containers_know_their_length(tmp_path: Path, suffix: str) -> None:
+    whole, cut = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
+    sample(whole)
+    if suffix in (".mp4", ".mov"):  # with its index in front, where a cut loses pictures and nothing else
+        write_pictures(tmp_path / "c.mp4", np.stack(read_pictures(whole).images))
+        (tmp_path / "c.mp4").rename(whole)
+    content = whole.read_bytes()
+    assert len(read_pictures(whole)) == 3
+    for kept in (len(content) - 1, len(content) * 3 // 4, len(content) // 2):
+        cut.write_bytes(content[:kept])
+        # Of WebP its own decoder sees it first.
+        with pytest.raises(InputError, match="cut short" if suffix == ".webp" else "its end is missing"):
+            read_pictures(cut)
 
 
 @pytest.mark.parametrize("suffix", [*SUFFIXES, ".png", ".jpg"])

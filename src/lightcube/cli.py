@@ -291,6 +291,9 @@ def main() -> None:
     except typer.TyperException as error:
         err.print(f"lightcube: {error.format_message()}", markup=False)
         code = 2
+    except OSError as error:
+        err.print(f"lightcube: {error.filename or 'the system'}: {error.strerror or error}", markup=False)
+        code = 2
     except MemoryError:
         err.print("lightcube: the machine has not enough memory for this: use a smaller cube or fewer pictures")
         code = 2

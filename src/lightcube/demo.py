@@ -1,6 +1,7 @@
 """The demonstrations: photographs and a traced scene in a cube, and the paper's own experiment."""
 
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,29 +23,29 @@ from lightcube.solvers import METHODS
 from lightcube.transfer import decode
 
 #: scikit-image's own photographs, in an order that puts no two dark ones side by side.
-_PHOTOGRAPHS = (
-    "astronaut",
-    "coffee",
-    "chelsea",
-    "rocket",
-    "retina",
-    "immunohistochemistry",
-    "camera",
-    "hubble_deep_field",
-)
+_PHOTOGRAPHS: dict[str, Callable[[], NDArray[np.uint8]]] = {
+    "astronaut": skimage.data.astronaut,
+    "coffee": skimage.data.coffee,
+    "cat": skimage.data.chelsea,
+    "rocket": skimage.data.rocket,
+    "retina": skimage.data.retina,
+    "tissue": skimage.data.immunohistochemistry,
+    "camera": skimage.data.camera,
+    "stars": skimage.data.hubble_deep_field,
+}
 _SIDE = 64
 
 
 def photographs() -> Pictures:
     """Photographs that come with scikit-image, cut square."""
     images = []
-    for name in _PHOTOGRAPHS:
-        image = np.atleast_3d(getattr(skimage.data, name)())[..., :3].astype(np.float32) / 255
+    for read in _PHOTOGRAPHS.values():
+        image = np.atleast_3d(read())[..., :3].astype(np.float32) / 255
         side = min(image.shape[:2])
         top, left = (image.shape[0] - side) // 2, (image.shape[1] - side) // 2
         square = np.broadcast_to(image[top : top + side, left : left + side], (side, side, 3))
         images.append(np.ascontiguousarray(decode(square), dtype=np.float32))
-    return Pictures(tuple(images), _PHOTOGRAPHS)
+    return Pictures(tuple(images), tuple(_PHOTOGRAPHS))
 
 
 def run(folder: Path) -> None:
@@ -54,7 +55,7 @@ def run(folder: Path) -> None:
     out.print(f"Two cubes of {_SIDE} x {_SIDE} x {_SIDE} voxels, 100 mm wide.")
     rows = [
         _one("photographs", fit(photographs(), grid, elevation=35.0, frame_width=0.5), grid, folder),
-        _one("carousel", _carousel(grid), grid, folder),
+        _one("juggler", _juggler(grid), grid, folder, lamp_power=2.0),
     ]
     io.write_json(folder / "metrics.json", {row["name"]: row for row in rows}, overwrite=True)
     out.print()
@@ -69,18 +70,20 @@ def run(folder: Path) -> None:
     out.print(f"\nLook at the movies and contact sheets in {folder}/", markup=False)
 
 
-def _carousel(grid: Grid) -> Frames:
-    """A traced scene that turns, one picture for every step of half a turn of the cube."""
-    views = turntable(grid, spread_angles(_SIDE), picture_shape=(_SIDE, _SIDE))
+def _juggler(grid: Grid) -> Frames:
+    """A traced scene, one picture for every step of a whole turn of the cube under a raised lamp."""
+    views = turntable(grid, spread_angles(32, elevation=35.0), elevation=35.0, picture_shape=(48, 48))
     with progress("tracing", as_json=False) as advance:
-        return scene_frames(io.read_scene("carousel"), views, grid, callback=advance)
+        return scene_frames(io.read_scene("juggler"), views, grid, callback=advance)
 
 
-def _one(name: str, frames: Frames, grid: Grid, folder: Path) -> dict[str, Any]:
+def _one(name: str, frames: Frames, grid: Grid, folder: Path, lamp_power: float = 1.0) -> dict[str, Any]:
     """Solve, save, play and score one cube; returns a row of the table."""
     began = time.monotonic()
     with progress(f"solving {name}", as_json=False) as advance:
-        solution = backward.solve(frames, grid, callback=lambda step: advance(step.iteration, step.iterations))
+        solution = backward.solve(
+            frames, grid, lamp_power=lamp_power, callback=lambda step: advance(step.iteration, step.iterations)
+        )
     seconds = time.monotonic() - began
     cube = solution.cube
     scores = metrics.score(cube, frames)
@@ -88,13 +91,13 @@ def _one(name: str, frames: Frames, grid: Grid, folder: Path) -> dict[str, Any]:
     shown = forward.play(cube)
     sheet = contact_sheet(shown, frames, [view["psnr"] for view in scores["views"]])
     io.write_sheet(folder / f"{name}.png", sheet, overwrite=True)
-    stops = forward.cast(cube, cube.views, cube.powers)
+    stops = _on_a_screen(forward.cast(cube, cube.views, cube.powers))
     io.write_pictures(
         folder / f"{name}-stops.mp4", stops, count=len(frames), fps=min(10, len(frames) / 4), scale=6, overwrite=True
     )
     turn = np.arange(0, 360, 2.0)
     views, powers = forward.views_at(cube, turn, whole_screen=True), forward.lamp_at(cube, turn)
-    turning = forward.cast(cube, views, powers)
+    turning = _on_a_screen(forward.cast(cube, views, powers))
     io.write_pictures(folder / f"{name}-turn.mp4", turning, count=len(turn), fps=20, scale=4, overwrite=True)
     rows, columns = frames.views.picture_shape
     return {
@@ -104,6 +107,11 @@ def _one(name: str, frames: Frames, grid: Grid, folder: Path) -> dict[str, Any]:
         "seconds": seconds,
         **scores,
     }
+
+
+def _on_a_screen(pictures: Iterator[NDArray[np.float32]]) -> Iterator[NDArray[np.float32]]:
+    """Pictures no brighter than a screen's white: around the cube a strong lamp is."""
+    return (np.minimum(picture, 1) for picture in pictures)
 
 
 def paper(folder: Path) -> None:

@@ -30,8 +30,8 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
 
     Returns
     -------
-    ``(row, column, 3)`` 8-bit sRGB. The difference of display values is drawn around mid grey, doubled. Of more
-    than 32 views, 32 are shown.
+    ``(row, column, 3)`` 8-bit sRGB. The difference of display values is drawn around mid grey. Of more than 32
+    views, 32 are shown.
     """
     count = len(frames)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST)).round().astype(int))
@@ -43,7 +43,7 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
     sheet = Image.new("RGB", (per_line * cell_width + _GAP, lines * cell_height + _GAP + _LINE), _PAPER)
     draw = ImageDraw.Draw(sheet)
     font = ImageFont.load_default(11)
-    draw.text((_GAP, 3), "from top to bottom: wanted, shown, difference (doubled, around grey)", _INK, font)
+    draw.text((_GAP, 3), "from top to bottom: wanted, shown, difference (around grey)", _INK, font)
     for place, view in enumerate(chosen):
         left = _GAP + place % per_line * cell_width
         top = _GAP + _LINE + place // per_line * cell_height

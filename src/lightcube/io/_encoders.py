@@ -129,8 +129,8 @@ def _int24(value: int) -> bytes:
 
 
 def _write_chunk(file: io.BufferedWriter, name: bytes, data: bytes) -> None:
-    """Write a RIFF chunk, padded to an even length."""
-    file.write(name + len(data).to_bytes(4, "little") + data + b"\0" * (len(data) % 2))
+    """Write a RIFF chunk of an even length."""
+    file.write(name + len(data).to_bytes(4, "little") + data)
 
 
 def _encode(path: Path, frames: Iterator[av.VideoFrame], fps: Fraction, codec: _Codec) -> None:

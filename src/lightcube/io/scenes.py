@@ -72,8 +72,8 @@ def _read_mesh(path: Path, where: str) -> NDArray[np.float64]:
     try:
         mesh = trimesh.load_mesh(path, process=False)
         triangles = np.asarray(mesh.triangles, dtype=np.float64)
-    except Exception as error:  # the reader raises whatever a damaged file makes it stumble over
-        raise InputError(f"{where}: {path.name} cannot be read as a mesh, it may be damaged ({error})") from None
+    except Exception:  # the reader raises whatever a damaged file makes it stumble over
+        raise InputError(f"{where}: {path.name} cannot be read as a mesh: it may be damaged, export it again") from None
     if triangles.size == 0:
         raise InputError(f"{where}: {path.name} holds no triangles: give a mesh of at least one")
     return triangles

@@ -1,0 +1,37 @@
+"""Make the README's picture: wanted pictures of the juggler above the whole shadows of one cube.
+
+python examples/juggler.py [OUT.png]
+"""
+
+import sys
+
+import numpy as np
+
+import lightcube as lc
+from lightcube.transfer import to_uint8
+
+STOPS, SCALE = (0, 6, 13, 19, 26), 3
+
+
+def main(out: str) -> None:
+    grid = lc.Grid((64, 64, 64), voxel_mm=1.5)
+    angles = lc.spread_angles(32, elevation=35)
+    views = lc.turntable(grid, angles, elevation=35, picture_shape=(48, 48))
+    frames = lc.scene_frames(lc.read_scene("juggler"), views, grid)
+    cube = lc.solve(frames, grid, lamp_power=2.0).cube
+    chosen = list(STOPS)
+    shadows = lc.play(cube, angles[chosen], whole_screen=True)
+    lower = np.concatenate(list(shadows), axis=1)
+    rows, columns = shadows.shape[1:3]
+    wanted = np.ones((5, 48, columns, 3), np.float32)
+    left = (columns - 48) // 2
+    wanted[:, :, left : left + 48] = frames.pictures[chosen]
+    upper = np.concatenate(list(wanted), axis=1)
+    gap = np.ones((4, upper.shape[1], 3), np.float32)
+    sheet = to_uint8(np.concatenate([upper, gap, lower], axis=0)).repeat(SCALE, axis=0).repeat(SCALE, axis=1)
+    lc.io.write_sheet(out, sheet, overwrite=True)
+    print(f"{out}: {lc.score(cube, frames)['psnr_mean']:.1f} dB, {rows} rows")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1] if len(sys.argv) > 1 else "juggler.png")

@@ -1,0 +1,1 @@
+"""Numba loops of the scene tracer. Imports numpy, numba and each other only."""

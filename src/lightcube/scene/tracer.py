@@ -1,0 +1,161 @@
+"""Pictures of a scene: seen by its camera, or as shadows on the screen of a turntable."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.errors import InputError
+from lightcube.frames import Frames
+from lightcube.geometry import Grid, Views, spread_angles, turntable
+from lightcube.scene.compiled import compiled, sight
+from lightcube.scene.description import ShadowCamera
+from lightcube.scene.kernels.render import shaded, shadowed
+from lightcube.scene.scene import Scene
+
+#: Called with (pictures made, pictures wanted).
+Callback = Callable[[int, int], None]
+
+#: Pictures per call of a kernel: enough for all threads, few enough for a lively progress bar.
+_BATCH = 16
+
+
+def casts_shadows(scene: Scene) -> bool:
+    """Whether the scene's camera is the shadow camera."""
+    return isinstance(scene.description.camera, ShadowCamera)
+
+
+def times(count: int) -> NDArray[np.float64]:
+    """Instants ``i / count`` of the pictures of an animation: in a loop the last is followed by the first."""
+    return np.arange(count) / count
+
+
+def trace(
+    scene: Scene, frames: int, picture_shape: tuple[int, int], *, callback: Callback | None = None
+) -> NDArray[np.float32]:
+    """Ray-trace a scene as its perspective or parallel camera sees it.
+
+    Parameters
+    ----------
+    frames
+        Number of pictures; picture ``i`` is seen at time ``i / frames``.
+    picture_shape
+        ``(rows, columns)``; pixels are square.
+    callback
+        Called with (pictures made, pictures wanted) now and then.
+
+    Returns
+    -------
+    ``(frame, row, column, 3)`` float32 in linear light, 0 to 1 (brighter beams count as white).
+
+    Raises
+    ------
+    InputError
+        For a shadow camera, or sizes below 1.
+
+    Notes
+    -----
+    Light is Lambert's law and Blinn's highlight [1]_ of all lights that reach a surface, plus ambient light. Glass
+    absorbs along the straight line (Beer-Lambert); its shadows are tinted. Lights do not weaken with distance.
+
+    References
+    ----------
+    .. [1] J. F. Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977.
+    """
+    if casts_shadows(scene):
+        raise InputError(f"{scene.name} has a shadow camera: its pictures need the views of a cube (use shadows)")
+    rows, columns = picture_shape
+    if min(frames, rows, columns) < 1:
+        raise InputError(f"cannot trace {frames} pictures of {rows} x {columns} pixels: each must be at least 1")
+    pictures = np.empty((frames, rows, columns, 3), dtype=np.float32)
+    seen, shapes = sight(scene.description), compiled(scene)
+    instants = times(frames)
+    for start in range(0, frames, _BATCH):
+        part = slice(start, min(start + _BATCH, frames))
+        shaded(shapes.at(instants[part]), seen, pictures[part])
+        if callback is not None:
+            callback(part.stop, frames)
+    return pictures
+
+
+def shadows(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None = None) -> NDArray[np.float32]:
+    """Shadows of a scene's glass on the screen of a turntable, where the light cube of `grid` would stand.
+
+    Parameters
+    ----------
+    views
+        Lamp and screen of each picture; view ``i`` of N sees the solids at time ``i / N``.
+    grid
+        The cube: ``cube_width`` scene units of the scene's camera are as wide as it (its y axis).
+    callback
+        Called with (pictures made, pictures wanted) now and then.
+
+    Returns
+    -------
+    ``(view, row, column, 3)`` float32: for each colour ``exp(-sum sigma * chord)`` along the beam to the pixel's
+    centre. Chords are exact, and solids that overlap add up.
+
+    Raises
+    ------
+    InputError
+        For a scene without a shadow camera.
+    """
+    camera = scene.description.camera
+    if not isinstance(camera, ShadowCamera):
+        raise InputError(f"{scene.name} has no shadow camera: set camera.type to 'shadow' (or use trace)")
+    unit_mm = grid.size_mm[1] / camera.cube_width
+    # A point lamp stands somewhere; parallel light only goes somewhere.
+    lamps = np.where(views.lamps[:, 3:] != 0, views.lamps / np.array([unit_mm, unit_mm, unit_mm, 1.0]), views.lamps)
+    origins, column_steps, row_steps = (a / unit_mm for a in (views.origins, views.column_steps, views.row_steps))
+    shapes = compiled(scene)
+    pictures = np.empty((len(views), *views.picture_shape, 3), dtype=np.float32)
+    instants = times(len(views))
+    for start in range(0, len(views), _BATCH):
+        part = slice(start, min(start + _BATCH, len(views)))
+        world = shapes.at(instants[part])
+        shadowed(world, lamps[part], origins[part], column_steps[part], row_steps[part], pictures[part])
+        if callback is not None:
+            callback(part.stop, len(views))
+    return pictures
+
+
+def scene_views(
+    scene: Scene,
+    count: int | None = None,
+    size: tuple[int, int] | None = None,
+    span: float | None = None,
+    elevation: float | None = None,
+) -> tuple[Grid, Views]:
+    """Cube and views that a scene is made for, unless something else is wanted.
+
+    Parameters
+    ----------
+    count
+        Number of pictures; default the scene's own ``frames.count``.
+    size
+        ``(width, height)`` of the pictures in pixels; default the scene's own ``frames.size``.
+    span, elevation
+        Degrees over which the views are spread, and elevation of the lamp; default the scene's own.
+
+    Returns
+    -------
+    A grid as wide and as high as the pictures with voxels of 1 mm, and a turntable's views of it at angles spread
+    evenly over the scene's ``frames.span`` at its ``frames.elevation``.
+    """
+    table = scene.description.frames
+    width, height = size or table.size
+    grid = Grid((height, width, width))
+    raised = table.elevation if elevation is None else elevation
+    angles = spread_angles(
+        table.count if count is None else count, table.span if span is None else span, elevation=raised
+    )
+    return grid, turntable(grid, angles, elevation=raised, picture_shape=(height, width))
+
+
+def scene_frames(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None = None) -> Frames:
+    """Pictures of a scene for `views` of the cube `grid`, one per view: by its camera, or its `shadows`."""
+    if casts_shadows(scene):
+        pictures = shadows(scene, views, grid, callback=callback)
+    else:
+        pictures = trace(scene, len(views), views.picture_shape, callback=callback)
+    return Frames(pictures, views)

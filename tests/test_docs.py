@@ -1,0 +1,67 @@
+"""The README's code runs, its verbs are the command line's, and its links lead somewhere."""
+
+import os
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from lightcube import cli
+from tests.test_cli import run
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md"]
+INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
+
+__all__ = ["run"]
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", page.read_text(), re.DOTALL)
+
+
+def small(code: str) -> str:
+    """The same with smaller cubes where kernels run interpreted."""
+    if not INTERPRETED:
+        return code
+    for large, little in (
+        ("64, 64", "6, 6"),
+        ("(6, 6, 64)", "(6, 6, 6)"),
+        ("--n 64", "--n 8"),
+        ("32x32", "4x4"),
+        ("(64, 48)", "(4, 3)"),
+    ):
+        code = code.replace(large, little)
+    return code.replace("iterations=60", "iterations=2").replace("--frames 16", "--frames 3")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_python_blocks_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for code in blocks(page, "python"):
+        exec(compile(small(code), str(page), "exec"), {})  # noqa: S102
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_the_readmes_commands_run(run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.chdir(tmp_path)
+    lines = [line for block in blocks(ROOT / "README.md", "bash") for line in block.splitlines()]
+    assert len(lines) >= 5
+    for line in lines:
+        done = run(*shlex.split(small(line), comments=True)[1:])
+        assert done.code == 0, f"{line}: {done.err}"
+
+
+def test_the_readme_names_every_verb() -> None:
+    readme = (ROOT / "README.md").read_text()
+    for command in cli.app.registered_commands:
+        assert command.callback is not None
+        name = command.name or command.callback.__name__
+        assert f"| `{name}" in readme, name
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_links_between_pages_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
+        assert target.startswith("https://") or (page.parent / target).exists(), target
