@@ -107,7 +107,7 @@ def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
 
 
 def test_the_store_is_given_unfinished_cubes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lightcube.backward.CHECKPOINT_S", 0.0)
+    monkeypatch.setattr("lightcube.backward.FIRST_CHECKPOINT_S", 0.0)
     kept: list[Cube] = []
 
     class Shelf:
@@ -145,6 +145,14 @@ def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation: flo
         {"method": "magic"},
         {"lamp_power": 0.0},
         {"lamp_power": float("nan")},
+        {"lamp_power": 1e300},
+        {"lamp_max": 0.5},
+        {"lamp_max": float("inf")},
+        {"lamp": "fixed", "lamp_max": 4.0},
+        {"lamp": "per-view", "lamp_power": 1.0},
+        {"lamp": "global", "lamp_power": 1.0},
+        {"lamp": "strobe"},
+        {"lamp": "per-view", "method": "sirt"},
         {"max_extinction": -1.0},
         {"iterations": 0},
     ],
@@ -161,7 +169,27 @@ def test_frames_of_another_grid_are_refused() -> None:
         solve(Frames(play(cube), cube.views), Grid((2, 2, 2), 0.5))
 
 
-def test_memory_grows_with_the_cube_and_the_pictures() -> None:
-    small = memory_needed(Grid((8, 8, 8)), (8, 8), 4)
-    assert memory_needed(Grid((16, 16, 16)), (8, 8), 4) > 4 * small
-    assert memory_needed(Grid((8, 8, 8)), (16, 16), 64) > 4 * small
+def test_memory_grows_with_the_cube_the_pictures_and_the_matrix() -> None:
+    small = memory_needed("display", Grid((8, 8, 8)), (8, 8), 4)
+    assert memory_needed("display", Grid((16, 16, 16)), (8, 8), 4) > 4 * small
+    assert memory_needed("display", Grid((8, 8, 8)), (16, 16), 64) > 4 * small
+    assert memory_needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4) > small
+    assert memory_needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4, 35.0) > 2 * small
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_lamp_powers_are_found_per_view_or_for_all_views(elevation: float) -> None:
+    """Pictures cast with lamps of several powers: per-view finds them, global finds one between, fixed stays."""
+    cube = known_cube(5, elevation, power=1.0)
+    powers = np.random.default_rng(6).uniform(0.5, 3.0, (5, 3))
+    frames = Frames(play(Cube(cube.extinction, cube.grid, cube.views, lamp_powers=powers)), cube.views)
+    free = solve(frames, cube.grid, iterations=600, dtype=np.float64).cube
+    assert free.provenance["lamp"] == "per-view"
+    assert np.allclose(free.powers, powers, rtol=0.05)
+    assert score(free, frames)["psnr_min"] > 50
+    shared = solve(frames, cube.grid, lamp="global", lamp_max=4.0, iterations=100).cube
+    assert np.all(shared.powers == shared.powers[0])
+    assert np.all((shared.powers >= powers.min(axis=0) * 0.9) & (shared.powers <= 4.0))
+    fixed = solve(frames, cube.grid, lamp_power=2.0, iterations=100).cube
+    assert np.all(fixed.powers == 2.0)
+    assert score(free, frames)["psnr_mean"] > score(shared, frames)["psnr_mean"] > score(fixed, frames)["psnr_mean"]

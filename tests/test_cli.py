@@ -209,7 +209,19 @@ BAD = [
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--iterations", "0"),
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "-2"),
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "4000"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "1e300"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-max", "0.5"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp", "fixed", "--lamp-max", "4"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp", "per-view", "--lamp-power", "4"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp", "per-view", "--method", "cgls"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--frame-width", "1e308"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "1e-300"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "nan"),
     ("solve", "{frames}"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--stops", "--angles", "5"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles", "5", "--count", "3"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--from", "5", "--to", "5"),
+    ("trace", "carousel", "-o", "{tmp}/a", "--frames", "100000000", "--size", "640x480"),
     ("play", "{none}", "-o", "{tmp}/a.mp4"),
     ("play", "{frames}", "-o", "{tmp}/a.mp4"),
     ("play", "{cube}", "-o", "{tmp}/a.doc"),
@@ -251,6 +263,48 @@ def test_bad_input_is_one_sentence_and_exit_code_2(  # type: ignore[no-untyped-d
     assert len(sentences[0]) > 20
     assert "Traceback" not in done.err
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_an_old_partial_outlives_options_that_are_refused(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    kept = tmp_path / "a.zarr.partial" / "state-1"
+    kept.mkdir(parents=True)
+    out = tmp_path / "a.zarr"
+    for options in (("--method", "magic"), ("--n", 0), ("--lamp-power", -1), ("--frame-width", 9)):
+        assert run("solve", frames, "-o", out, "--overwrite", *options).code == 2
+    assert run("solve", tmp_path / "none", "-o", out, "--overwrite").code == 2
+    assert kept.is_dir()
+
+
+def test_what_is_no_partial_is_never_touched(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    other = tmp_path / "a.zarr.partial"
+    other.mkdir()
+    (other / "mine.txt").write_text("dear diary")
+    refused = run("solve", frames, "-o", tmp_path / "a.zarr", "--n", 6, "--overwrite")
+    assert refused.code == 2
+    assert "is none" in refused.err
+    assert (other / "mine.txt").exists()
+
+
+def test_names_with_brackets_and_letters_a_terminal_lacks(frames: Path, tmp_path: Path) -> None:
+    (frames / "views.toml").write_text('names = ["[/a]", "[red]b", "\u2603", ":cat:"]\n')
+    command = [sys.executable, "-c", "from lightcube.cli import main; main()"]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    arguments = ["solve", str(frames), "-o", str(tmp_path / "a.npz"), "--n", "6", "--method", "gauss-seidel"]
+    solved = subprocess.run([*command, *arguments], capture_output=True, text=True, env=environment)
+    assert solved.returncode == 0, solved.stderr
+    told = subprocess.run([*command, "score", str(tmp_path / "a.npz")], capture_output=True, text=True, env=environment)
+    assert told.returncode == 0, told.stderr
+    assert "[/a]" in told.stdout
+    assert ":cat:" in told.stdout
+
+
+def test_score_remembers_how_pictures_were_fitted(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    Image.new("RGB", (12, 6), (200, 180, 160)).save(frames / "4.png")
+    run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 30, "--fit", "pad", "--json")
+    again = json.loads(run("score", tmp_path / "a.npz", frames, "--json").out)
+    assert again["psnr_mean"] == pytest.approx(load(tmp_path / "a.npz").scores["psnr_mean"])
+    (frames / "views.toml").write_text("angles = [1, 2, 3, 4]\n")
+    assert "other angles" in run("score", tmp_path / "a.npz", frames).err
 
 
 def test_warnings_are_notes(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from lightcube import cli
+from lightcube.io import scene_names
 from tests.test_cli import run
 
 ROOT = Path(__file__).parent.parent
@@ -51,6 +52,17 @@ def test_the_readmes_commands_run(run, tmp_path: Path, monkeypatch: pytest.Monke
     for line in lines:
         done = run(*shlex.split(small(line), comments=True)[1:])
         assert done.code == 0, f"{line}: {done.err}"
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CHANGELOG.md"], ids=lambda p: p.name)
+def test_no_page_has_a_gap(page: Path) -> None:
+    assert "@@" not in page.read_text()
+
+
+def test_the_readme_names_every_scene() -> None:
+    readme = (ROOT / "README.md").read_text()
+    for name in scene_names():
+        assert f"`{name}`" in readme, name
 
 
 def test_the_readme_names_every_verb() -> None:

@@ -8,7 +8,7 @@ from lightcube.consistency import mirror_conflicts
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import targets
-from lightcube.forward import cast, lamp_at, play, views_at
+from lightcube.forward import cast, lamp_at, play, turn, views_at
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, Views, turntable
 from lightcube.metrics import mean_psnr, psnr, score, ssim
@@ -101,6 +101,35 @@ def test_ssim_is_1_for_the_same_picture_and_needs_3_pixels() -> None:
     assert ssim(picture, random.random((9, 8, 3)), weight) < 0.5
     assert np.isnan(ssim(picture[:2], picture[:2], weight[:2]))
     assert ssim(picture[:4, :5], picture[:4, :5], weight[:4, :5]) == pytest.approx(1)
+
+
+def test_ssim_does_not_see_pixels_of_no_weight() -> None:
+    random = np.random.default_rng(5)
+    wanted = random.random((9, 8, 3))
+    weight = np.ones((9, 8))
+    weight[:, :3] = 0
+    spoiled = wanted.copy()
+    spoiled[:, :3] = random.random((9, 3, 3))
+    assert ssim(spoiled, wanted, weight) == pytest.approx(1)
+    spoiled[4, 5] = 1 - spoiled[4, 5]
+    assert ssim(spoiled, wanted, weight) < 0.99
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("count", [7, 24, 60])
+def test_a_turn_meets_every_stop_and_stays_even_elsewhere(elevation: float, count: int) -> None:
+    cube = make_cube([10.1, 77.3, 140.0], elevation)
+    angles = turn(cube, count)
+    even = np.arange(count) * 360 / count
+    assert np.all(np.diff(angles) > 0)
+    assert np.max(np.abs(angles - even)) <= 180 / count + 1e-9
+    for stop in cube.views.angles:
+        assert np.min(np.abs(angles - stop)) < 1e-9
+        assert (np.min(np.abs(angles - stop - 180)) < 1e-9) == (elevation == 0)
+    assert np.sum(np.abs(angles - even) > 1e-9) <= (6 if elevation == 0 else 3)
+    part = turn(cube, 10, 0.0, 50.0)
+    assert part.min() >= -2.5
+    assert part.max() <= 50.0
 
 
 def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:

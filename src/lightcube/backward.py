@@ -1,10 +1,11 @@
 """Program 2, the backward computation: from pictures to the cube that casts them."""
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from importlib.metadata import version
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from lightcube.cube import Cube, Status
 from lightcube.errors import InputError
 from lightcube.fitting import targets
 from lightcube.frames import Frames
-from lightcube.geometry import Grid, raster_shape
+from lightcube.geometry import Grid, Views, raster_shape
 from lightcube.layout import columns_from_pictures, pictures_from_columns, volume_from_columns
 from lightcube.projector import Projector
 from lightcube.solvers import METHODS
@@ -22,8 +23,11 @@ from lightcube.transfer import decode
 
 #: The darkest that a screen can show: half a display level.
 BLACK = 0.5 / 255
-#: Seconds between checkpoints.
-CHECKPOINT_S = 30.0
+Lamp = Literal["per-view", "global", "fixed"]
+#: Bounds of the power of a lamp that is not fixed, unless the upper one is given.
+LAMP_MIN, LAMP_MAX = 1e-4, 16.0
+#: Seconds from the start to the first checkpoint, and between checkpoints later on; the gaps double in between.
+FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
 
 
 class Store(Protocol):
@@ -75,7 +79,9 @@ def solve(
     grid: Grid,
     *,
     method: str = "display",
-    lamp_power: float = 1.0,
+    lamp: Lamp | None = None,
+    lamp_power: float | None = None,
+    lamp_max: float | None = None,
     max_extinction: float = np.inf,
     iterations: int | None = None,
     dtype: type[np.floating[Any]] = np.float32,
@@ -92,8 +98,14 @@ def solve(
         The block of voxels.
     method
         A name in `lightcube.solvers.METHODS`.
+    lamp
+        ``"per-view"``: each view and colour has the lamp power that suits it best; ``"global"``: each colour has one
+        for all views; ``"fixed"``: all have `lamp_power`. Default per-view, but fixed where `lamp_power` is given or
+        the method cannot choose.
     lamp_power
-        Power of the lamp in every view and colour, linear light; 1 shows white where a beam meets nothing.
+        Power of a fixed lamp, linear light; 1 (the default) shows white where a beam meets nothing.
+    lamp_max
+        Largest power of a lamp that is not fixed, linear light, at least 1; default 16.
     max_extinction
         Upper bound of the extinction, 1/mm.
     iterations
@@ -103,7 +115,7 @@ def solve(
     callback
         Called after each iteration; True stops the solver, and the cube's status becomes ``"interrupted"``.
     store
-        Keeps an unfinished cube every 30 s and when the solver was stopped.
+        Keeps an unfinished cube after 2 s, ever more seldom up to every 30 s, and when the solver was stopped.
 
     Raises
     ------
@@ -111,36 +123,38 @@ def solve(
         For an unknown method, numbers out of range, or frames that do not belong to the grid.
     """
     solver = find_method(method)
-    _check_numbers(lamp_power, max_extinction, iterations)
+    kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations)
     check_frames(frames, grid)
     matrix = Projector(grid, frames.views)
     wanted = np.maximum(frames.pictures, decode(np.array([BLACK], np.float32), frames.transfer)).astype(dtype)
     channels = wanted.shape[-1]
     weights = np.repeat(frames.weight[..., None], channels, axis=-1).astype(dtype)
-    powers = np.full((len(frames), channels), float(lamp_power))
+    lamps = (1 if kind == "global" else len(frames), channels)
+    strongest = np.full(lamps, lamp_power or 1.0) if kind == "fixed" else np.full(lamps, lamp_max or LAMP_MAX)
+    weakest = strongest if kind == "fixed" else np.full(lamps, LAMP_MIN)
     draft = Cube(
         extinction=np.zeros((channels, *grid.shape), np.float32),
         grid=grid,
         views=frames.views,
-        lamp_powers=powers,
         targets=targets(frames),
         names=frames.names,
         transfer=frames.transfer,
         status="interrupted",
     )
 
-    def cube_of(x: NDArray[Any]) -> Cube:
+    def cube_of(x: NDArray[Any], powers: NDArray[Any]) -> Cube:
         columns = x.reshape(grid.shape[1] * grid.shape[2], -1)
-        return replace(draft, extinction=volume_from_columns(columns, grid.shape, channels))
+        extinction = volume_from_columns(columns, grid.shape, channels)
+        return replace(draft, extinction=extinction, lamp_powers=_per_view(powers, len(frames)))
 
-    watch = _watch(cube_of, powers, frames.views.picture_shape, callback, store)
+    watch = _watch(cube_of, frames.views, callback, store)
     options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
     result = solver(
         matrix,
         columns_from_pictures(wanted).reshape(matrix.shape[0], -1),
         weights=columns_from_pictures(weights).reshape(matrix.shape[0], -1),
-        view_of_row=matrix.view_of_row,
-        lamp_bounds=(powers, powers),
+        view_of_row=matrix.view_of_row if kind != "global" else np.zeros_like(matrix.view_of_row),
+        lamp_bounds=(weakest, strongest),
         bounds=(0.0, max_extinction),
         callback=watch,
         **options,
@@ -148,14 +162,15 @@ def solve(
     provenance = {
         "lightcube": version("lightcube"),
         "method": method,
-        "lamp_power": float(lamp_power),
+        "lamp": kind,
+        "lamp_power" if kind == "fixed" else "lamp_max": float(strongest[0, 0]),
         "max_extinction": None if np.isinf(max_extinction) else float(max_extinction),
         "iterations": len(result.residuals),
         "stop_reason": result.stop_reason,
         "rejected": len(result.rejected),
     }
     status: Status = "interrupted" if result.stop_reason == "callback" else "complete"
-    cube = replace(cube_of(result.x), provenance=provenance, status=status)
+    cube = replace(cube_of(result.x, result.lamp_powers), provenance=provenance, status=status)
     if store is not None and status == "interrupted":
         store.keep(cube)
     undetermined = 0 if result.undetermined is None else int(np.sum(result.undetermined))
@@ -183,43 +198,83 @@ def check_frames(frames: Frames, grid: Grid) -> None:
         )
 
 
-def memory_needed(grid: Grid, picture_shape: tuple[int, int], views: int, channels: int = 3, itemsize: int = 4) -> int:
-    """Bytes that `solve` needs at its peak with method display (measured: 9 volumes and 10 sets of pictures)."""
-    volume = channels * grid.shape[0] * grid.shape[1] * grid.shape[2]
-    pictures = channels * picture_shape[0] * picture_shape[1] * views
-    return itemsize * (9 * volume + 10 * pictures)
+def memory_needed(method: str, grid: Grid, picture_shape: tuple[int, int], views: int, elevation: float = 0.0) -> int:
+    """Bytes that `solve` needs at its peak, in float32 with three channels, from measured counts of arrays.
+
+    Methods that need single rows also hold the sparse matrix: about 1.3 voxels per beam and voxel of the cube's width.
+    """
+    rows, columns = picture_shape
+    nz, ny, nx = grid.shape
+    arrays = 4 * 3 * ((18 if method == "cgls" else 12) * nz * ny * nx + 10 * rows * columns * views)
+    if method not in ("gauss-seidel", "row-reduction"):
+        return arrays
+    level = elevation == 0 and rows == nz
+    pieces = 1.3 * max(ny, nx) + (0 if level else min(nz, 1.3 * max(ny, nx) * math.tan(math.radians(abs(elevation)))))
+    return arrays + int(60 * pieces * columns * views * (1 if level else rows))
 
 
-def _check_numbers(lamp_power: float, max_extinction: float, iterations: int | None) -> None:
-    if not (np.isfinite(lamp_power) and lamp_power > 0):
-        raise InputError(f"a lamp power must be a positive number, not {lamp_power}")
+def _check_lamp(method: str, lamp: Lamp | None, lamp_power: float | None, lamp_max: float | None) -> Lamp:
+    """Return the kind of lamp that is meant, or raise `InputError` where its options contradict each other."""
+    if lamp is None:
+        lamp = "per-view" if method == "display" and lamp_power is None else "fixed"
+    if lamp not in get_args(Lamp):
+        raise InputError(f"unknown lamp {lamp!r}: use one of {', '.join(get_args(Lamp))}")
+    if lamp == "fixed" and lamp_max is not None:
+        raise InputError("a fixed lamp has no largest power: leave that out, or use a lamp per-view or global")
+    if lamp != "fixed" and lamp_power is not None:
+        raise InputError(f"a lamp that is {lamp} has no given power: leave that out, or use a fixed lamp")
+    if lamp != "fixed" and method != "display":
+        raise InputError(f"method {method} cannot choose lamp powers: use a fixed lamp, or method display")
+    if lamp_power is not None and not LAMP_MIN <= lamp_power <= 1e6:
+        raise InputError(f"a lamp power must lie between {LAMP_MIN:g} and 1e6, not {lamp_power:g}")
+    if lamp_max is not None and not 1 <= lamp_max <= 1e6:
+        raise InputError(f"the largest lamp power must lie between 1 and 1e6, not {lamp_max:g}")
+    return lamp
+
+
+def _per_view(powers: NDArray[Any], views: int) -> NDArray[np.float64]:
+    """Lamp powers ``(views, channels)`` from those, or from one lamp for all views."""
+    return np.array(np.broadcast_to(powers, (views, powers.shape[1])), dtype=np.float64)
+
+
+def check_options(
+    method: str,
+    lamp: Lamp | None = None,
+    lamp_power: float | None = None,
+    lamp_max: float | None = None,
+    max_extinction: float = np.inf,
+    iterations: int | None = None,
+) -> Lamp:
+    """Return the kind of lamp that is meant, or raise `InputError` where `solve` would refuse its options."""
+    find_method(method)
     if not max_extinction > 0:
         raise InputError(f"the largest extinction must be a positive number (1/mm), not {max_extinction}")
     if iterations is not None and iterations < 1:
         raise InputError(f"a solver needs at least 1 iteration, not {iterations}")
+    return _check_lamp(method, lamp, lamp_power, lamp_max)
 
 
 def _watch(
-    cube_of: Callable[[NDArray[Any]], Cube],
-    powers: NDArray[np.float64],
-    picture_shape: tuple[int, int],
+    cube_of: Callable[[NDArray[Any], NDArray[Any]], Cube],
+    views: Views,
     callback: Callable[[Step], bool | None] | None,
     store: Store | None,
 ) -> Callable[[Progress], bool | None]:
     """What the solver calls after each iteration: checkpoints, and the caller's callback."""
-    last = time.monotonic()
+    last, gap = time.monotonic(), FIRST_CHECKPOINT_S
 
     def watch(progress: Progress) -> bool | None:
-        nonlocal last
-        if store is not None and time.monotonic() - last > CHECKPOINT_S:
-            store.keep(cube_of(progress.x))
-            last = time.monotonic()
+        nonlocal last, gap
+        if store is not None and time.monotonic() - last > gap:
+            store.keep(cube_of(progress.x, progress.lamp_powers))
+            last, gap = time.monotonic(), min(2 * gap, CHECKPOINT_S)
         if callback is None:
             return None
 
         def shown() -> NDArray[np.float32]:
-            light = np.exp(-progress.absorbance).reshape(len(powers) * picture_shape[1], -1)
-            pictures = pictures_from_columns(light, picture_shape, powers.shape[1])
+            powers = _per_view(progress.lamp_powers, len(views))
+            light = np.exp(-progress.absorbance).reshape(len(views) * views.picture_shape[1], -1)
+            pictures = pictures_from_columns(light, views.picture_shape, powers.shape[1])
             return (pictures * powers[:, None, None, :]).astype(np.float32)
 
         return callback(Step(progress.iteration, progress.iterations, progress.residual, shown))

@@ -6,19 +6,19 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from lightcube import backward, consistency, demo, forward, io, metrics
-from lightcube.console import ctrl_c, err, json_document, json_line, out, plain_warnings, progress
+from lightcube import backward, between, consistency, demo, forward, io, metrics, plots
+from lightcube.console import ctrl_c, err, json_document, json_line, out, plain_warnings, prepare, progress
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.fitting import Fit, fit, fit_report, fit_to_views, frames_from_targets
+from lightcube.fitting import Fit, check_fit, fit, fit_report, fit_to_views, frames_from_targets
 from lightcube.frames import Frames, Pictures
-from lightcube.geometry import Grid
+from lightcube.geometry import Grid, check_angles
 from lightcube.scene.tracer import scene_frames, scene_views
 from lightcube.sheet import beside_targets, contact_sheet
 from lightcube.transfer import Transfer
@@ -35,6 +35,7 @@ app = typer.Typer(
 OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
 OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
 JSON = typer.Option("--json", help="Print JSON for machines.")
+_LAMP = "One power per picture and colour, one per colour, or fixed.  [default: per-view]"
 FPS = typer.Option("--fps", help="Pictures per second of a movie.")
 
 
@@ -62,6 +63,7 @@ def trace(
         width, height = _whole_numbers(size, "x", "--size", 2)
         shape = (width, height)
     grid, views = scene_views(described, frames, shape, span, elevation)
+    _check_memory(24 * len(views) * views.picture_shape[0] * views.picture_shape[1])
     with progress("tracing", as_json=as_json) as advance:
         made = scene_frames(described, views, grid, callback=advance)
     io.write_pictures(output, made.pictures, fps=fps, views=views, overwrite=overwrite)
@@ -83,7 +85,11 @@ def solve(
     elevation: Annotated[float | None, typer.Option(help="Elevation of the lamp in degrees.")] = None,
     method: Annotated[str, typer.Option(help=f"One of {', '.join(backward.METHODS)}.")] = "display",
     iterations: Annotated[int | None, typer.Option(help="At most so many; default the method's own.")] = None,
-    lamp_power: Annotated[float, typer.Option(help="Power of the lamp, linear light; 1 shows white.")] = 1.0,
+    lamp: Annotated[backward.Lamp | None, typer.Option(help=_LAMP)] = None,
+    lamp_power: Annotated[float | None, typer.Option(help="Power of a fixed lamp, linear light; 1 is white.")] = None,
+    lamp_max: Annotated[
+        float | None, typer.Option(help="Largest power of the lamp, at least 1.  [default: 16]")
+    ] = None,
     max_extinction: Annotated[float | None, typer.Option(help="Largest extinction of the material, 1/mm.")] = None,
     transfer: Annotated[Transfer, typer.Option(help="How picture values become linear light.")] = "srgb",
     overwrite: Annotated[bool, OVERWRITE] = False,
@@ -92,13 +98,15 @@ def solve(
     """Compute the cube whose shadows are the frames."""
     io.check_cube_target(output, overwrite=overwrite)
     _check_partial(output, overwrite=overwrite)
-    backward.find_method(method)
+    most = np.inf if max_extinction is None else max_extinction
+    backward.check_options(method, lamp, lamp_power, lamp_max, most, iterations)
     grid = _grid(n, shape, size_mm)
-    _check_memory(backward.memory_needed(grid, (1, 1), 1))
+    _check_memory(backward.memory_needed(method, grid, (1, 1), 1))
     pictures = io.read_pictures(frames, transfer=transfer)
     turned = None if angles is None else _numbers(angles, "--angles")
     fitted = fit(pictures, grid, angles=turned, span=span, elevation=elevation, frame_width=frame_width, fit=fit_mode)
-    _check_memory(backward.memory_needed(grid, fitted.views.picture_shape, len(fitted)))
+    raised = float(fitted.views.elevations[0])
+    _check_memory(backward.memory_needed(method, grid, fitted.views.picture_shape, len(fitted), raised))
     _say_before(pictures, fitted, fit_mode, as_json=as_json)
     began = time.monotonic()
     with ctrl_c() as stopped, progress("solving", as_json=as_json) as advance:
@@ -117,12 +125,16 @@ def solve(
             fitted,
             grid,
             method=method,
+            lamp=lamp,
             lamp_power=lamp_power,
-            max_extinction=np.inf if max_extinction is None else max_extinction,
+            lamp_max=lamp_max,
+            max_extinction=most,
             iterations=iterations,
             callback=step,
             store=io.PartialStore(output),
         )
+    made = {**solution.cube.provenance, "fit": fit_mode}
+    solution = replace(solution, cube=replace(solution.cube, provenance=made))
     _finish(solution, fitted, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
 
 
@@ -133,8 +145,8 @@ def _finish(
     cube = solution.cube
     if cube.status == "interrupted":
         partial = io.partial_path(output)
-        err.print(f"interrupted: {partial} holds what was reached; publish it with", markup=False)
-        err.print(f"  lightcube publish {partial}", markup=False)
+        err.print(f"interrupted: {partial} holds what was reached; publish it with")
+        err.print(f"  lightcube publish {partial}")
         raise typer.Exit(130)
     scores = metrics.score(cube, frames)
     io.publish(io.write_partial(output, replace(cube, scores=scores)), overwrite=overwrite)
@@ -159,7 +171,6 @@ def _finish(
         f"{output}: PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), "
         f"SSIM {scores['ssim_mean']:.3f}, colour difference {scores['delta_e_mean']:.1f}; "
         f"{len(solution.residuals)} passes in {seconds:.0f} s",
-        markup=False,
     )
 
 
@@ -168,9 +179,9 @@ def play(
     cube: Annotated[Path, typer.Argument(help="A cube.")],
     output: Annotated[Path, OUT],
     angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
-    start: Annotated[float, typer.Option("--from", help="First angle in degrees.")] = 0.0,
-    end: Annotated[float, typer.Option("--to", help="Angle in degrees where the turn ends.")] = 360.0,
-    count: Annotated[int, typer.Option(help="Number of pictures between --from and --to.")] = 120,
+    start: Annotated[float | None, typer.Option("--from", help="First angle in degrees.  [default: 0]")] = None,
+    end: Annotated[float | None, typer.Option("--to", help="Where the turn ends, in degrees.  [default: 360]")] = None,
+    count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120]")] = None,
     stops: Annotated[bool, typer.Option("--stops", help="Play just the views that the cube was made for.")] = False,
     scale: Annotated[int, typer.Option(help="Enlarge each pixel to a square of so many.")] = 1,
     target: Annotated[
@@ -213,31 +224,56 @@ def score(
     frames: Annotated[
         Path | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
-    fit_mode: Annotated[Fit, typer.Option("--fit", help="How the pictures were fitted.")] = "crop",
     sheet: Annotated[Path | None, typer.Option(help="Write a contact sheet: wanted, shown, difference (PNG).")] = None,
+    between_frames: Annotated[
+        bool, typer.Option("--between", help="Add PSNR and SSIM between the frames, and how far each one stands.")
+    ] = False,
+    robust: Annotated[bool, typer.Option("--robust", help="Add what a set-up that is a little off costs.")] = False,
+    plot: Annotated[Path | None, typer.Option(help="Draw PSNR against the angle (PNG or SVG).")] = None,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compare what a cube really casts with what was wanted: PSNR, SSIM and CIEDE2000 of every view."""
     if sheet is not None:
         io.check_sheet_target(sheet, overwrite=overwrite)
+    if plot is not None:
+        io.check_figure_target(plot, overwrite=overwrite)
     loaded = io.load(cube)
-    wanted = frames_from_targets(loaded) if frames is None else _refitted(loaded, frames, fit_mode)
+    wanted = frames_from_targets(loaded) if frames is None else _refitted(loaded, frames)
     scores = metrics.score(loaded, wanted)
+    if between_frames or plot is not None:
+        curve = between.curve(loaded, wanted)
+        columns = {"angles": curve.angles, "nearest": curve.nearest, "psnr": curve.psnr, "ssim": curve.ssim}
+        scores["between"] = {name: column.tolist() for name, column in {**columns, "lobe_deg": curve.lobes}.items()}
+        if plot is not None:
+            io.write_figure(plot, plots.between_plot({"": curve}), overwrite=overwrite)
+    if robust:
+        scores["robust"] = between.robust(loaded, wanted)
     if sheet is not None:
         shown = forward.play(loaded)
-        io.write_sheet(sheet, contact_sheet(shown, wanted, [view["psnr"] for view in scores["views"]]))
+        picture = contact_sheet(shown, wanted, [view["psnr"] for view in scores["views"]])
+        io.write_sheet(sheet, picture, overwrite=overwrite)
     if as_json:
         json_document(scores)
-        return
-    out.print(f"{'view':>20} {'angle':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}")
-    for view in scores["views"]:
+    else:
+        _score_table(scores)
+
+
+def _score_table(scores: dict[str, Any]) -> None:
+    """Print one line per view, the means, and what was asked for besides."""
+    lobes = scores["between"]["lobe_deg"] if "between" in scores else []
+    out.print(f"{'view':>20} {'angle':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}" + " 30 dB over" * bool(lobes))
+    for number, view in enumerate(scores["views"]):
         figures = f"{view['angle']:9.3f} {view['psnr']:7.2f} {view['ssim']:7.4f} {view['delta_e']:7.2f}"
-        out.print(f"{view['name'][:20]:>20} {figures}", markup=False)
+        lobe = f" {lobes[number]:9.2f}°" if lobes else ""
+        out.print(f"{view['name'][:20]:>20} {figures}{lobe}")
     worst, mean = scores["psnr_min"], scores["psnr_mean"]
     out.print(
         f"mean PSNR {mean:.2f} dB (worst {worst:.2f}), SSIM {scores['ssim_mean']:.4f}, dE {scores['delta_e_mean']:.2f}"
     )
+    for name, left in scores.get("robust", {}).items():
+        figures = f"{left['psnr_mean']:6.2f} dB (worst {left['psnr_min']:5.2f})"
+        out.print(f"  {figures}  {between.DISTURBANCES[name]}")
 
 
 @app.command()
@@ -251,7 +287,7 @@ def info(
         json_document(facts)
         return
     for name, value in facts.items():
-        out.print(f"{name:>18}  {value}", markup=False)
+        out.print(f"{name:>18}  {value}")
 
 
 @app.command()
@@ -260,7 +296,7 @@ def publish(
     overwrite: Annotated[bool, OVERWRITE] = False,
 ) -> None:
     """Turn the unfinished cube of an interrupted solve into a cube file, marked as interrupted."""
-    out.print(f"{io.publish(partial, overwrite=overwrite)}", markup=False)
+    out.print(f"{io.publish(partial, overwrite=overwrite)}")
 
 
 @app.command("demo")
@@ -277,22 +313,24 @@ def demo_command(
 
 def main() -> None:
     """Run the command line: exit code 0, 2 for what the user can mend, 130 for Ctrl-C."""
+    prepare()
+    code: int | None = None
     try:
         with plain_warnings():
-            code = app(standalone_mode=False)
+            code = app(args=sys.argv[1:] or ["--help"], standalone_mode=False)
     except InputError as error:
-        err.print(f"lightcube: {error}", markup=False)
+        err.print(f"lightcube: {error}")
         code = 2
     except typer.Exit as stop:
         code = stop.exit_code
     except (KeyboardInterrupt, typer.Abort):
-        err.print("interrupted: nothing was written")
+        err.print("interrupted: no file was finished")
         code = 130
     except typer.TyperException as error:
-        err.print(f"lightcube: {error.format_message()}", markup=False)
+        err.print(f"lightcube: {error.format_message()}".replace("Value error, ", ""))
         code = 2
     except OSError as error:
-        err.print(f"lightcube: {error.filename or 'the system'}: {error.strerror or error}", markup=False)
+        err.print(f"lightcube: {error.filename or 'the system'}: {error.strerror or error}")
         code = 2
     except MemoryError:
         err.print("lightcube: the machine has not enough memory for this: use a smaller cube or fewer pictures")
@@ -304,7 +342,7 @@ def _done(as_json: bool, sentence: str, **fields: object) -> None:
     if as_json:
         json_line("result", **fields)
     else:
-        out.print(sentence, markup=False)
+        out.print(sentence)
 
 
 def _numbers(text: str, option: str) -> list[float]:
@@ -339,28 +377,29 @@ def _grid(n: int | None, shape: str | None, size_mm: float) -> Grid:
 
 
 def _check_partial(output: Path, *, overwrite: bool) -> None:
-    """Refuse to run over an interrupted solve; with --overwrite remove it."""
+    """Refuse to run over an interrupted solve unless it is to be replaced; never touch what is none."""
     partial = io.partial_path(output)
     if not partial.exists():
         return
+    if not io.is_partial(partial):
+        raise InputError(f"{partial} stands where the unfinished cube would, and is none: move it or use another name")
     if not overwrite:
         raise InputError(f"{partial} holds an interrupted solve: publish it, or use --overwrite to start anew")
-    io.discard_partial(output)
 
 
 def _check_memory(needed: int) -> None:
     free = io.free_memory()
     if needed > free:
         raise InputError(
-            f"this solve needs {needed / 1e9:.1f} GB of memory and {free / 1e9:.1f} GB are free: "
-            "use a smaller --n or --frame-width, or fewer pictures"
+            f"this needs {needed / 1e9:.3g} GB of memory and {free / 1e9:.3g} GB are free: "
+            "use a smaller cube, or fewer or smaller pictures"
         )
 
 
 def _say_before(pictures: Pictures, frames: Frames, fit_mode: Fit, *, as_json: bool) -> None:
     """Print what was done to the pictures, and what no cube can do."""
     if not as_json:
-        err.print(fit_report(pictures, frames, fit_mode), markup=False)
+        err.print(fit_report(pictures, frames, fit_mode))
     conflicts = consistency.mirror_conflicts(frames)
     if conflicts:
         first, second = (frames.names[view] for view in conflicts[0])
@@ -368,7 +407,6 @@ def _say_before(pictures: Pictures, frames: Frames, fit_mode: Fit, *, as_json: b
         err.print(
             f"note: {first} and {second} are half a turn apart, where a level lamp shows mirror images, but they are "
             f"different pictures{more}: use other angles or raise the lamp (--elevation)",
-            markup=False,
         )
 
 
@@ -379,17 +417,22 @@ def _by_view(rejected: NDArray[np.int64], cube: Cube) -> str:
 
 
 def _play_angles(
-    cube: Cube, angles: str | None, start: float, end: float, count: int, *, stops: bool
+    cube: Cube, angles: str | None, start: float | None, end: float | None, count: int | None, *, stops: bool
 ) -> NDArray[np.float64]:
+    """Stops, given angles, or a turn in which each stop is met exactly."""
+    turn = [start, end, count] != [None] * 3
+    if stops + (angles is not None) + turn > 1:
+        raise InputError("--stops, --angles, and --from, --to and --count are three ways to say the same: use one")
     if stops:
         return cube.views.angles
     if angles is not None:
-        return np.array(_numbers(angles, "--angles"))
-    if count < 1:
-        raise InputError(f"--count {count}: give at least 1 picture")
-    if not np.isfinite([start, end]).all():
-        raise InputError(f"--from {start} --to {end}: give finite numbers of degrees")
-    return np.linspace(start, end, count, endpoint=False)
+        return check_angles(_numbers(angles, "--angles"))
+    first, last, pictures = start or 0.0, 360.0 if end is None else end, 120 if count is None else count
+    if pictures < 1:
+        raise InputError(f"--count {pictures}: give at least 1 picture")
+    if not (np.isfinite([first, last]).all() and first != last):
+        raise InputError(f"--from {first} --to {last}: give two different finite numbers of degrees")
+    return forward.turn(cube, pictures, first, last)
 
 
 def _counted(
@@ -400,7 +443,13 @@ def _counted(
         advance(number, count)
 
 
-def _refitted(cube: Cube, frames: Path, fit_mode: Fit) -> Frames:
+def _refitted(cube: Cube, frames: Path) -> Frames:
     """Pictures as `solve` fitted them to the cube."""
     pictures = io.read_pictures(frames, transfer=cube.transfer)
-    return fit_to_views(pictures, cube.views, fit_mode)
+    if pictures.angles is not None and len(pictures) == len(cube.views):
+        apart = np.abs(np.remainder(pictures.angles - cube.views.angles + 180, 360) - 180)
+        if np.max(apart) > 1e-6:
+            raise InputError(
+                f"{frames} says other angles than the cube was made for: give the pictures it was made from"
+            )
+    return fit_to_views(pictures, cube.views, check_fit(cube.provenance.get("fit", "crop")))

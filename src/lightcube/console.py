@@ -1,5 +1,6 @@
 """What the commands print and how they are stopped: sentences, progress, JSON lines, Ctrl-C."""
 
+import io
 import json
 import math
 import signal
@@ -14,8 +15,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
 #: Results go to standard output, all else to standard error.
-out = Console(soft_wrap=True, highlight=False)
-err = Console(soft_wrap=True, highlight=False, stderr=True)
+out = Console(soft_wrap=True, highlight=False, markup=False, emoji=False)
+err = Console(soft_wrap=True, highlight=False, markup=False, emoji=False, stderr=True)
 
 #: Seconds between two lines of progress.
 _BEAT = 0.5
@@ -23,13 +24,13 @@ _BEAT = 0.5
 
 def json_line(event: str, **fields: Any) -> None:
     """Print one line of JSON: ``{"event": event, ...}``; NaN becomes null."""
-    sys.stdout.write(json.dumps({"event": event, **_plain(fields)}, ensure_ascii=False) + "\n")
+    sys.stdout.write(json.dumps({"event": event, **_plain(fields)}) + "\n")
     sys.stdout.flush()
 
 
 def json_document(document: dict[str, Any]) -> None:
     """Print a document as JSON, indented; NaN becomes null."""
-    sys.stdout.write(json.dumps(_plain(document), indent=2, ensure_ascii=False) + "\n")
+    sys.stdout.write(json.dumps(_plain(document), indent=2) + "\n")
 
 
 def _plain(value: Any) -> Any:
@@ -48,7 +49,7 @@ def plain_warnings() -> Iterator[None]:
     def show(message: Warning | str, *_: Any, **__: Any) -> None:
         if str(message) not in said:
             said.add(str(message))
-            err.print(f"note: {message}", markup=False)
+            err.print(f"note: {message}")
 
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
@@ -77,7 +78,7 @@ def progress(task: str, *, as_json: bool) -> Iterator[Callable[..., None]]:
         TextColumn("{task.fields[figures]}"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=err, transient=True) as bar:
+    with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as bar:
         running = bar.add_task(task, total=None, figures="")
 
         def show(done: int, of: int, **figures: float) -> None:
@@ -89,7 +90,7 @@ def progress(task: str, *, as_json: bool) -> Iterator[Callable[..., None]]:
 
 @contextmanager
 def ctrl_c() -> Iterator[Callable[[], bool]]:
-    """Yield a function that tells whether Ctrl-C was pressed; a second Ctrl-C stops at once."""
+    """Yield a function that tells whether Ctrl-C was pressed; a second Ctrl-C stops at once. SIGTERM is the same."""
     pressed = False
 
     def handle(number: int, frame: Any) -> None:
@@ -97,9 +98,23 @@ def ctrl_c() -> Iterator[Callable[[], bool]]:
         if pressed:
             raise KeyboardInterrupt
         pressed = True
+        err.print("stopping after this pass; press Ctrl-C again to stop at once")
 
-    before = signal.signal(signal.SIGINT, handle)
+    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield lambda: pressed
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def prepare() -> None:
+    """Let no letter that the terminal lacks stop a command, and let SIGTERM clean up as Ctrl-C does."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+    def stop(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, stop)

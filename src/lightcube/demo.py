@@ -67,7 +67,7 @@ def run(folder: Path) -> None:
             f"{row['name']:>14} {row['pictures']:>16} {row['elevation']:>5.0f}° {row['psnr_mean']:>5.1f} dB "
             f"{row['psnr_min']:>4.1f} dB {row['ssim_mean']:>7.3f} {row['delta_e_mean']:>7.2f} {row['seconds']:>5.0f} s"
         )
-    out.print(f"\nLook at the movies and contact sheets in {folder}/", markup=False)
+    out.print(f"\nLook at the movies and contact sheets in {folder}/")
 
 
 def _juggler(grid: Grid) -> Frames:
@@ -95,7 +95,7 @@ def _one(name: str, frames: Frames, grid: Grid, folder: Path, lamp_power: float 
     io.write_pictures(
         folder / f"{name}-stops.mp4", stops, count=len(frames), fps=min(10, len(frames) / 4), scale=6, overwrite=True
     )
-    turn = np.arange(0, 360, 2.0)
+    turn = forward.turn(cube, 180)
     views, powers = forward.views_at(cube, turn, whole_screen=True), forward.lamp_at(cube, turn)
     turning = _on_a_screen(forward.cast(cube, views, powers))
     io.write_pictures(folder / f"{name}-turn.mp4", turning, count=len(turn), fps=20, scale=4, overwrite=True)
@@ -124,9 +124,7 @@ def paper(folder: Path) -> None:
     rows, columns = raster_shape(grid)
     shown = pictures_from_columns(transmittance(Projector(grid, turning).forward(x)), (rows, columns), 3)
     io.write_pictures(folder / "paper.gif", shown.astype(np.float32), fps=12, scale=48, overwrite=True)
-    out.print(
-        f"A random cube of 3 x 3 x 3 voxels turns: {columns} x {rows} pictures in {folder}/paper.gif", markup=False
-    )
+    out.print(f"A random cube of 3 x 3 x 3 voxels turns: {columns} x {rows} pictures in {folder}/paper.gif")
     views = turntable(grid, spread_angles(8))
     matrix = Projector(grid, views)
     pictures = transmittance(matrix.forward(x))

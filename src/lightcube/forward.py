@@ -30,6 +30,27 @@ def views_at(cube: Cube, angles: ArrayLike, *, whole_screen: bool = False) -> Vi
     return turntable(cube.grid, angles, elevation=float(elevations[0]), picture_shape=window)
 
 
+def turn(cube: Cube, count: int, start: float = 0.0, end: float = 360.0) -> NDArray[np.float64]:
+    """`count` angles from `start` to before `end` (degrees), each stop's nearest one moved onto the stop.
+
+    A picture falls apart within a degree of its stop, so an even turn would pass between the stops and show none.
+    With level light a stop is passed twice, half a turn apart. Stops more than half a step outside are left out.
+    """
+    even = np.linspace(start, end, count, endpoint=False)
+    step = abs(end - start) / count
+    stops = cube.views.angles
+    if np.all(cube.views.elevations == 0):
+        stops = np.concatenate([stops, stops + 180])
+    apart = np.remainder(stops[:, None] - even + 180, 360) - 180
+    nearest = np.argmin(np.abs(apart), axis=1)
+    gaps = apart[np.arange(len(stops)), nearest]
+    angles = even.copy()
+    for stop in np.argsort(-np.abs(gaps)):  # where two stops want the same one, the nearer has it
+        if abs(gaps[stop]) <= step / 2 + 1e-9:
+            angles[nearest[stop]] = even[nearest[stop]] + gaps[stop]
+    return angles
+
+
 def lamp_at(cube: Cube, angles: ArrayLike) -> NDArray[np.float64]:
     """Lamp power at other turntable angles (degrees), ``(angles, channels)``: linear in ln P between the stops.
 

@@ -96,6 +96,9 @@ class Frames:
                 raise InputError(
                     f"{what} {names[view]!r} holds negative or non-finite numbers: mend or leave out that picture"
                 )
+        blank = np.max(weights, axis=(1, 2)) == 0
+        if np.any(blank):
+            raise InputError(f"picture {names[int(np.argmax(blank))]!r} has no pixel of weight above 0: leave it out")
         object.__setattr__(self, "pictures", pictures)
         object.__setattr__(self, "weights", weights)
         object.__setattr__(self, "names", tuple(names))

@@ -35,8 +35,8 @@ class Grid:
     def __post_init__(self) -> None:
         if len(self.shape) != 3 or any(int(n) != n or n < 1 for n in self.shape):
             raise InputError(f"a grid's shape is three whole numbers of at least 1 (nz, ny, nx), not {self.shape}")
-        if not (math.isfinite(self.voxel_mm) and self.voxel_mm > 0):
-            raise InputError(f"a voxel's side must be a positive number of millimetres, not {self.voxel_mm}")
+        if not 1e-6 <= self.voxel_mm <= 1e6:
+            raise InputError(f"a voxel's side must lie between 1e-6 and 1e6 millimetres, not {self.voxel_mm:g}")
         object.__setattr__(self, "shape", tuple(int(n) for n in self.shape))
         object.__setattr__(self, "voxel_mm", float(self.voxel_mm))
 
@@ -163,13 +163,13 @@ def picture_shape(grid: Grid, frame_width: float, aspect: float, elevation: floa
     if not (math.isfinite(aspect) and aspect > 0):
         raise InputError(f"an aspect (width / height) must be a positive number, not {aspect}")
     most_rows, most_columns = raster_shape(grid, elevation)
-    columns = _nearest(frame_width * grid.shape[1], most_columns % 2)
+    columns = _nearest(min(frame_width * grid.shape[1], most_columns + 2), most_columns % 2)
     if columns > most_columns:
         raise InputError(
-            f"a frame width of {frame_width:g} is {columns} pixels, wider than the cube's screen of {most_columns}: "
+            f"a frame width of {frame_width:g} of the cube's is wider than its screen of {most_columns} pixels: "
             f"use at most {most_columns / grid.shape[1]:.3f}"
         )
-    rows = min(_nearest(columns / aspect, most_rows % 2), most_rows)
+    rows = min(_nearest(min(columns / aspect, most_rows + 2), most_rows % 2), most_rows)
     return rows, columns
 
 
@@ -203,8 +203,10 @@ def spread_angles(count: int, span: float | None = None, *, elevation: float = 0
     """
     if span is None:
         span = 360.0 if elevation else 180.0
-    if count < 1 or not (math.isfinite(span) and 0 < abs(span) <= 360):
-        raise InputError(f"cannot spread {count} angles over {span:g} degrees: use a span in (0, 360]")
+    if count < 1:
+        raise InputError(f"cannot spread {count} angles: at least 1 is needed")
+    if not 0 < span <= 360:
+        raise InputError(f"cannot spread angles over {span:g} degrees: use a span above 0 and up to 360")
     step = span / count
     for offset in (1 / 2, 1 / 3):
         angles = (np.arange(count, dtype=np.float64) + offset) * step

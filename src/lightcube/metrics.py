@@ -34,8 +34,10 @@ def psnr(shown: Display, wanted: Display, weight: Display) -> float:
 def ssim(shown: Display, wanted: Display, weight: Display) -> float:
     """Structural similarity of display values, the weighted mean over pixels (scikit-image, uniform window).
 
-    The window is 7 x 7 pixels, or the largest odd one that fits a smaller picture; NaN below 3 x 3 pixels.
+    The window is 7 x 7 pixels, or the largest odd one that fits a smaller picture; NaN below 3 x 3 pixels. Pixels of
+    no weight that a window reaches over count as right.
     """
+    shown = np.where(weight[..., None] > 0, shown, wanted)
     smallest = min(shown.shape[:2])
     if smallest < 3:
         return float("nan")

@@ -1,9 +1,10 @@
 """Reading and writing files, by suffix."""
 
 from lightcube.io.cubes import UnfinishedCube, check_cube_target, load, publish, save
+from lightcube.io.figures import check_figure_target, write_figure
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures, check_pictures_target, write_pictures
-from lightcube.io.partial import PartialStore, discard_partial, partial_path, write_partial
+from lightcube.io.partial import PartialStore, discard_partial, is_partial, partial_path, write_partial
 from lightcube.io.pictures import TransparentPictures, read_pictures
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.sheets import check_sheet_target, write_json, write_sheet
@@ -14,10 +15,12 @@ __all__ = [
     "TransparentPictures",
     "UnfinishedCube",
     "check_cube_target",
+    "check_figure_target",
     "check_pictures_target",
     "check_sheet_target",
     "discard_partial",
     "free_memory",
+    "is_partial",
     "load",
     "partial_path",
     "publish",
@@ -25,6 +28,7 @@ __all__ = [
     "read_scene",
     "save",
     "scene_names",
+    "write_figure",
     "write_json",
     "write_partial",
     "write_pictures",

@@ -3,8 +3,9 @@
 import io
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import chain
 from pathlib import Path
 from typing import cast
 
@@ -43,22 +44,35 @@ class _Codec:
 
 
 _MP4 = _Codec("mp4", "libx264", "yuv444p", {"crf": "4", "preset": "medium"}, {"movflags": "+faststart"})
+#: The same with half the colour resolution, which every player knows.
+_MP4_COMMON = replace(_MP4, pixels="yuv420p")
 _WEBM = _Codec("webm", "libvpx-vp9", "gbrp", {"lossless": "1", "row-mt": "1", "cpu-used": "4"}, {})
 _APNG = _Codec("apng", "apng", "rgb24", {"pred": "mixed"}, {"plays": "0"})
 _GIF = _Codec("gif", "gif", "pal8", {"gifflags": "0"}, {"loop": "0"})
 
 
 def encode_mp4(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
-    """H.264 at full colour resolution (4:4:4, BT.709), visually lossless."""
+    """H.264 (BT.709), visually lossless: 4:2:0, which every player knows, for pictures enlarged evenly, else 4:4:4."""
+    all_pictures = iter(pictures)
+    first = next(all_pictures)
+    codec = _MP4_COMMON if _is_doubled(first) else _MP4
 
     def frames() -> Iterator[av.VideoFrame]:
-        for picture in pictures:
+        for picture in chain([first], all_pictures):
             rgb = av.VideoFrame.from_ndarray(picture, format="rgb24")
-            frame = rgb.reformat(format=_MP4.pixels, dst_colorspace=_BT709, dst_color_range=_NARROW)
+            frame = rgb.reformat(format=codec.pixels, dst_colorspace=_BT709, dst_color_range=_NARROW)
             frame.colorspace, frame.color_range = _BT709, _NARROW
             yield frame
 
-    _encode(path, frames(), fps, _MP4)
+    _encode(path, frames(), fps, codec)
+
+
+def _is_doubled(picture: Levels) -> bool:
+    """Tell whether the picture is made of uniform squares of 2 x 2 pixels."""
+    if picture.shape[0] % 2 or picture.shape[1] % 2:
+        return False
+    corner = picture[::2, ::2]
+    return all(np.array_equal(corner, picture[row::2, column::2]) for row, column in ((0, 1), (1, 0), (1, 1)))
 
 
 def encode_webm(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:

@@ -40,7 +40,7 @@ def check_free(path: Path, *, overwrite: bool, replaceable: Callable[[Path], boo
     if not has_place:
         raise InputError(f"there is no folder {path.parent} to write {path.name} into: make it first")
     if taken and not overwrite:
-        raise InputError(f"{path} exists already: give another name, or ask to overwrite it")
+        raise InputError(f"{path} exists already: give another name, or overwrite it (--overwrite)")
     if other_folder:
         raise InputError(f"{path} is a folder with other things in it and is not overwritten: give another name")
 

@@ -10,8 +10,9 @@ def free_memory() -> int:
     try:
         lines = Path("/proc/meminfo").read_text().splitlines()
         limits += [int(line.split()[1]) * 1024 for line in lines if line.startswith("MemAvailable:")]
-        most, used = (Path(f"/sys/fs/cgroup/memory.{name}").read_text() for name in ("max", "current"))
-        limits += [] if most.strip() == "max" else [int(most) - int(used)]
+        most, used, parts = (Path(f"/sys/fs/cgroup/memory.{name}").read_text() for name in ("max", "current", "stat"))
+        cache = sum(int(line.split()[1]) for line in parts.splitlines() if line.startswith("inactive_file "))
+        limits += [] if most.strip() == "max" else [int(most) - int(used) + cache]
     except OSError:
         pass
     if limits:

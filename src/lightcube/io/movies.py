@@ -69,7 +69,7 @@ def write_pictures(
     Parameters
     ----------
     path
-        ``.mp4`` (H.264 4:4:4, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256 colours for all
+        ``.mp4`` (H.264, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256 colours for all
         pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no
         suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given.
     pictures

@@ -77,12 +77,15 @@ def newest_state(partial: Path) -> Path:
     return states[max(states)]
 
 
+def is_partial(partial: Path) -> bool:
+    """Tell whether there is a folder that `write_partial` made, or an empty one."""
+    return partial.is_dir() and all(_STATE.fullmatch(item.name) or item.name == _UNNAMED for item in partial.iterdir())
+
+
 def discard_partial(out: str | Path) -> None:
     """Remove the partial folder of `out`; `InputError` where there is none, or where it is something else."""
     folder = partial_path(out)
-    if not folder.is_dir() or any(
-        not _STATE.fullmatch(item.name) and item.name != _UNNAMED for item in folder.iterdir()
-    ):
+    if not is_partial(folder):
         raise InputError(f"there is no unfinished cube {folder} to remove: check the name")
     with system_errors(folder, "removing"):
         shutil.rmtree(folder)

@@ -66,6 +66,58 @@ def descend(absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, w
     return sums.sum(axis=0)
 
 
+@njit(cache=True)
+def _pull(u: float, wanted: float) -> tuple[float, float]:
+    """Return the first and second derivative by `u` of half the squared residual."""
+    target, slope, _ = display_of_log(wanted)
+    if u > wanted:
+        value, steepness, bend = display_of_log(u)
+        return (value - target) * steepness, steepness * steepness + (value - target) * bend
+    slope = max(slope, SLOPE_FLOOR)
+    return slope * slope * (u - wanted), slope * slope
+
+
+@njit(cache=True, parallel=True)
+def fit_lamp(
+    absorbance: Array, rows: Array, starts: Array, wanted: Array, weights: Array, low: Array, high: Array, lamp: Array
+) -> None:
+    """Replace ``lamp[view, channel]`` = ln P, where to start, by the best one between `low` and `high`.
+
+    The rows of view v are ``rows[starts[v]:starts[v + 1]]``. Newton's method on a convex function of one number,
+    kept inside a shrinking bracket by bisection.
+    """
+    views, channels = lamp.shape
+    for task in prange(views * channels):
+        view, channel = task // channels, task % channels
+        below, above = low[view, channel], high[view, channel]
+        u = min(max(lamp[view, channel], below), above)
+        tried_low, tried_high = u == below, u == above
+        for _ in range(40):
+            slope, bend = 0.0, 1e-30
+            for k in range(starts[view], starts[view + 1]):
+                row = rows[k]
+                for column in range(channel, absorbance.shape[1], channels):
+                    first, second = _pull(u - absorbance[row, column], wanted[row, column])
+                    slope += weights[row, column] * first
+                    bend += weights[row, column] * second
+            if slope > 0:
+                above, tried_high = u, True
+            else:
+                below, tried_low = u, True
+            following = u - slope / bend
+            if following >= above:
+                following = 0.5 * (below + above) if tried_high else high[view, channel]
+                tried_high = True
+            elif following <= below:
+                following = 0.5 * (below + above) if tried_low else low[view, channel]
+                tried_low = True
+            moved = abs(following - u)
+            u = following
+            if moved < 1e-6:
+                break
+        lamp[view, channel] = u
+
+
 @njit(cache=True, parallel=True)
 def curvatures(
     absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, room: float, bounds: Array

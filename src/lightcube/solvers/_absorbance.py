@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.absorption import absorbance
-from lightcube.errors import InputError
 from lightcube.solvers.contract import Floats
 from lightcube.transfer import encode
 
@@ -16,16 +15,6 @@ def lamp_per_entry(lamp_powers: Floats, view_of_row: NDArray[np.integer[Any]] | 
     equations, columns = shape
     rows = np.zeros(equations, np.intp) if view_of_row is None else view_of_row
     return lamp_powers[rows][:, np.arange(columns) % lamp_powers.shape[1]]
-
-
-def fixed_lamp(lamp_bounds: tuple[Floats, Floats] | None, method: str) -> Floats:
-    """Return the lamp powers ``(views, channels)`` where their bounds leave no choice, else raise `InputError`."""
-    if lamp_bounds is None:
-        return np.ones((1, 1))
-    lower, upper = (np.asarray(bound, dtype=np.float64) for bound in lamp_bounds)
-    if not np.array_equal(lower, upper):
-        raise InputError(f"method {method} cannot choose lamp powers: fix them, or use method display")
-    return lower
 
 
 def absorbance_wanted(

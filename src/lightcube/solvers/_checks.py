@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.solvers._absorbance import absorbance_wanted, fixed_lamp
+from lightcube.solvers._absorbance import absorbance_wanted
 from lightcube.solvers.contract import Floats, Operator
 
 
@@ -70,6 +70,23 @@ def check_bounds(bounds: tuple[float, float]) -> tuple[float, float]:
     return lower, upper
 
 
+def check_lamp(
+    lamp_bounds: tuple[Floats, Floats] | None, views: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the bounds of the lamp powers as float64 ``(views, channels)`` (None = power 1), or raise `InputError`."""
+    if lamp_bounds is None:
+        return np.ones((views, 1)), np.ones((views, 1))
+    low, high = (np.asarray(bound, dtype=np.float64) for bound in lamp_bounds)
+    for powers in (low, high):
+        if powers.ndim != 2 or powers.shape != low.shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):
+            raise InputError("lamp powers must be positive and finite, in an array of shape (views, channels)")
+    if len(low) < views:
+        raise InputError(f"view_of_row names {views} views, but there are lamp powers for {len(low)}")
+    if np.any(low > high):
+        raise InputError("a lower bound of the lamp powers is above the upper one: swap them")
+    return low, high
+
+
 def check_start(
     x0: Floats | None, shape: tuple[int, int], bounds: tuple[float, float], dtype: np.dtype[np.floating[Any]]
 ) -> Floats:
@@ -107,11 +124,9 @@ def linear_problem(
     """
     check_shapes(A, B)
     views = check_views(view_of_row, A.shape[0])
-    lamp_powers = fixed_lamp(lamp_bounds, method) if lamp_bounds is not None else np.ones((views, 1))
-    if lamp_powers.ndim != 2 or not np.all(np.isfinite(lamp_powers)) or np.any(lamp_powers <= 0):
-        raise InputError("lamp powers must be positive and finite, in an array of shape (views, channels)")
-    if len(lamp_powers) < views:
-        raise InputError(f"view_of_row names {views} views, but there are lamp powers for {len(lamp_powers)}")
+    lamp_powers, strongest = check_lamp(lamp_bounds, views)
+    if not np.array_equal(lamp_powers, strongest):
+        raise InputError(f"method {method} cannot choose lamp powers: fix them, or use method display")
     lower, upper = check_bounds(bounds)
     return LinearProblem(
         b=np.ascontiguousarray(absorbance_wanted(B, lamp_powers, view_of_row)),

@@ -75,7 +75,9 @@ def cgls(
 
         g = A.adjoint(w * (b - ax))
         residuals.append(float(np.sqrt(np.sum(w * (b - ax) ** 2, dtype=np.float64))))
-        if callback is not None and callback(Progress(iteration, iterations, x, ax, residuals[-1])):
+        if callback is not None and callback(
+            Progress(iteration, iterations, x, ax, residuals[-1], problem.lamp_powers)
+        ):
             reason = "callback"
             break
         free, leaving = _parts_of_gradient(problem, x, g)

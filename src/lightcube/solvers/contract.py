@@ -39,6 +39,8 @@ class Progress:
     absorbance: Floats
     #: What the solver minimises, or the norm it reports.
     residual: float
+    #: ``(views, channels)`` of this `x`.
+    lamp_powers: Floats
 
 
 #: Called after each iteration; True asks the solver to stop and return what it has.

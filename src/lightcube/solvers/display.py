@@ -4,24 +4,39 @@ With ``u = ln P - A x`` the ln of the light on the screen, ``u*`` the wanted one
 function of ``u``, the residual is ``g(u) - g(u*)`` where a beam is too bright, and its tangent ``g'(u*) (u - u*)``,
 of slope at least 0.03, where it is too dark. Display values alone would leave a beam that became much too dark
 without a gradient, a black speck for ever; logarithms alone would spend everything on darks that nobody can
-tell apart. The square of the two-sided residual is convex in ``x`` (but for a negligible kink at the toe of the curve).
+tell apart. The square of the two-sided residual is convex in ``(x, ln P)`` but for a negligible kink at the toe of
+the curve.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.absorption import absorbance
 from lightcube.kernels import display
-from lightcube.solvers._checks import check_iterations, linear_problem
+from lightcube.solvers._checks import (
+    check_bounds,
+    check_iterations,
+    check_lamp,
+    check_shapes,
+    check_start,
+    check_views,
+    check_weights,
+)
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
 
 #: The curvatures used hold as long as no beam's ln light rises by more than this.
 _ROOM = 0.1
 #: Curvatures are renewed after 1, 2, 3, 4, 5, 6, 8, 10, 13, ... iterations: each time costs an adjoint.
 _RENEWAL = 1.25
-#: Converged when this many iterations lower the objective by less than this part of it.
-_PATIENCE, _TOLERANCE = 20, 1e-4
+#: How much longer the steps are than the majoriser allows, and the part of it that a rise of the objective leaves.
+_STRIDE, _CAUTION = 1.3, 0.95
+#: Momentum must not lead to beams of less absorbance than this: below 0 they are brighter than the lamp.
+_LEAST_AHEAD = -0.5
+#: Converged when this many iterations lower the objective by less than this part of it, or it is as good as 0.
+_PATIENCE, _TOLERANCE, _PERFECT = 20, 1e-4, 1e-9
 
 
 def display_values(
@@ -36,16 +51,20 @@ def display_values(
     iterations: int = 200,
     callback: Callback | None = None,
 ) -> Result:
-    """Minimise half the weighted sum of squared two-sided residuals over ``lower <= x <= upper``.
+    """Minimise half the weighted sum of squared two-sided residuals over ``lower <= x <= upper`` and the lamp powers.
 
-    Accelerated projected gradient (FISTA) whose step per unknown is the inverse of a diagonal majoriser,
-    ``sum_i A_ij c_i sum_k A_ik`` with ``c_i`` a bound on the curvature of beam i's term; a column whose momentum
-    points uphill, or whose objective rose, starts its momentum anew. An iteration is one pass.
+    For any `x` the best lamp powers within their bounds are found exactly (a convex function of one number each, no
+    product with A), so the objective is a function of `x` alone, whose curvature is no larger than with fixed
+    powers. It is lowered by projected gradient with greedy momentum: every step starts from
+    ``y = x + (x - x before)``. The step of an unknown is 1.3 over a diagonal majoriser,
+    ``sum_i A_ij c_i sum_k A_ik`` with ``c_i`` a bound on the curvature of beam i's term. A column whose momentum
+    points uphill or far out of the bounds, or whose objective rose, starts anew from ``y = x``, in the last case
+    with a shorter stride. An iteration is one pass.
 
     Parameters
     ----------
     A, B, weights, view_of_row, lamp_bounds, x0, bounds, iterations, callback
-        As in `lightcube.solvers.contract.Solver`; lamp powers must be fixed (equal bounds).
+        As in `lightcube.solvers.contract.Solver`.
 
     Returns
     -------
@@ -54,53 +73,109 @@ def display_values(
     References
     ----------
     A. Beck, M. Teboulle, A fast iterative shrinkage-thresholding algorithm, SIAM J. Imaging Sci. 2 (2009) 183-202.
-    B. O'Donoghue, E. Candès, Adaptive restart for accelerated gradient schemes, Found. Comput. Math. 15 (2015) 715-732.
+    J. Liang, T. Luo, C.-B. Schönlieb, Improving "fast iterative shrinkage-thresholding algorithm": faster, smarter,
+    and greedier, SIAM J. Sci. Comput. 44 (2022) A1069-A1091, for momentum and stride.
+    G. Golub, V. Pereyra, Separable nonlinear least squares, Inverse Problems 19 (2003) R1-R26, for the lamp.
     """
-    problem = linear_problem("display", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
-    views = np.zeros(len(B), np.intp) if view_of_row is None else view_of_row
-    data = (np.log(problem.lamp_powers).astype(B.dtype), views, np.log(B), problem.weights)
+    screen = _Screen.of(A, B, weights, view_of_row, lamp_bounds)
+    lower, upper = check_bounds(bounds)
+    x = check_start(x0, (A.shape[1], B.shape[1]), (lower, upper), B.dtype)
     reach = A.forward(np.ones((A.shape[1], 1), B.dtype))
-
-    x = problem.x
     ax = A.forward(x)
     y, ay = x, ax
+    lamp = np.clip(np.zeros_like(screen.low), screen.low, screen.high)
     slopes = np.empty_like(B)
-    steps = x
-    momentum = np.ones(B.shape[1])
+    metric = steps = x
+    stride = np.full(B.shape[1], _STRIDE, B.dtype)
     objective = np.full(B.shape[1], np.inf)
     history: list[float] = []
     renewal = 1
     for iteration in range(1, check_iterations(iterations) + 1):
+        lamp = screen.best_lamp(ay, lamp)
         if iteration == renewal:
-            display.curvatures(ay, *data, _ROOM, slopes)
-            steps = _inverse(A.adjoint(slopes * reach))
+            metric = A.adjoint(screen.curvatures(ay, lamp, slopes) * reach)
+            steps = _inverse(metric)
             renewal = int(iteration * _RENEWAL) + 1
-        display.descend(ay, *data, slopes)
-        new = np.clip(y - steps * A.adjoint(slopes), problem.lower, problem.upper)
+        screen.descend(ay, lamp, slopes)
+        new = np.clip(y - stride * steps * A.adjoint(slopes), lower, upper)
         a_new = A.forward(new)
-        before, objective = objective, display.descend(a_new, *data, slopes)
-        uphill = np.einsum("ij,ij,ij->j", y - new, _inverse(steps), new - x) > 0
-        if np.any(objective > before):
+        lamp = screen.best_lamp(a_new, lamp)
+        before, objective = objective, screen.descend(a_new, lamp, slopes)
+        rose = objective > before
+        uphill = np.einsum("ij,ij,ij->j", y - new, metric, new - x) > 0
+        stride[rose] = np.maximum(1, _CAUTION * stride[rose])
+        if np.any(rose):
             renewal = iteration + 1
-        momentum[uphill | (objective > before)] = 1
-        following = (1 + np.sqrt(1 + 4 * momentum**2)) / 2
-        ahead = ((momentum - 1) / following).astype(B.dtype)
+        too_far = np.min(2 * a_new - ax, axis=0) < _LEAST_AHEAD
+        ahead = np.where(rose | uphill | too_far, 0, 1).astype(B.dtype)
         y, ay = new + ahead * (new - x), a_new + ahead * (a_new - ax)
-        x, ax, momentum = new, a_new, following
+        x, ax = new, a_new
         history.append(float(np.sum(objective)))
-        if callback is not None and callback(Progress(iteration, iterations, x, ax, history[-1])):
-            return Result(x, problem.lamp_powers, np.array(history), stop_reason="callback")
-        if _has_converged(history):
-            return Result(x, problem.lamp_powers, np.array(history), stop_reason="converged")
-    return Result(x, problem.lamp_powers, np.array(history))
+        progress = Progress(iteration, iterations, x, ax, history[-1], np.exp(lamp))
+        if callback is not None and callback(progress):
+            return Result(x, np.exp(lamp), np.array(history), stop_reason="callback")
+        if _has_converged(history, B.size):
+            return Result(x, np.exp(lamp), np.array(history), stop_reason="converged")
+    return Result(x, np.exp(lamp), np.array(history))
 
 
-def _inverse(steps: Floats) -> Floats:
-    """``1 / steps``, and 0 for unknowns that no weighted beam meets: they stay where they are."""
-    return np.divide(1, steps, out=np.zeros_like(steps), where=steps > 0)
+@dataclass(frozen=True)
+class _Screen:
+    """What is wanted of the screen, and the lamps that shine on it; lamp powers as ln P, ``(views, channels)``."""
+
+    wanted: Floats
+    weights: Floats
+    views: NDArray[np.integer[Any]]
+    #: The equations of view v are ``rows[starts[v]:starts[v + 1]]``.
+    rows: NDArray[np.integer[Any]]
+    starts: NDArray[np.integer[Any]]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+    @classmethod
+    def of(
+        cls,
+        A: Operator,
+        B: Floats,
+        weights: Floats | None,
+        view_of_row: NDArray[np.integer[Any]] | None,
+        lamp_bounds: tuple[Floats, Floats] | None,
+    ) -> "_Screen":
+        """Check what the solver was given; `InputError` names what cannot be used."""
+        check_shapes(A, B)
+        low, high = check_lamp(lamp_bounds, check_views(view_of_row, A.shape[0]))
+        views = np.zeros(len(B), np.intp) if view_of_row is None else view_of_row
+        rows = np.argsort(views, kind="stable")
+        starts = np.searchsorted(views[rows], np.arange(len(low) + 1))
+        wanted = -np.ascontiguousarray(absorbance(B))
+        return cls(wanted, check_weights(weights, B), views, rows, starts, np.log(low), np.log(high))
+
+    def best_lamp(self, ax: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the best ln P for absorbance `ax`, found from `start`."""
+        if np.array_equal(self.low, self.high):
+            return self.low
+        lamp = start.copy()
+        display.fit_lamp(ax, self.rows, self.starts, self.wanted, self.weights, self.low, self.high, lamp)
+        return lamp
+
+    def descend(self, ax: Floats, lamp: NDArray[np.float64], slopes: Floats) -> NDArray[np.float64]:
+        """Write the objective's derivative by the absorbance to `slopes`; return the objective per column."""
+        return display.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, slopes)
+
+    def curvatures(self, ax: Floats, lamp: NDArray[np.float64], out: Floats) -> Floats:
+        """Write to `out`, and return, bounds on the curvature of each entry's term."""
+        display.curvatures(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, _ROOM, out)
+        return out
 
 
-def _has_converged(history: list[float]) -> bool:
+def _inverse(metric: Floats) -> Floats:
+    """``1 / metric``, and 0 for unknowns that no weighted beam meets: they stay where they are."""
+    return np.divide(1, metric, out=np.zeros_like(metric), where=metric > 0)
+
+
+def _has_converged(history: list[float], entries: int) -> bool:
+    if history[-1] <= _PERFECT * entries:
+        return True
     if len(history) <= _PATIENCE:
         return False
     return history[-1 - _PATIENCE] - history[-1] <= _TOLERANCE * history[-1]

@@ -86,7 +86,9 @@ def gauss_seidel(
         residuals.append(float(np.linalg.norm(difference[judge.active])))
         changed = judge.look(difference)
         still = np.max(np.abs(x - start), axis=0) <= _SETTLED[dtype] * np.max(np.abs(x), axis=0)
-        if callback is not None and callback(Progress(iteration, iterations, x, ax, residuals[-1])):
+        if callback is not None and callback(
+            Progress(iteration, iterations, x, ax, residuals[-1], problem.lamp_powers)
+        ):
             reason = "callback"
             break
         if not changed and np.all(still & judge.agrees):

@@ -92,7 +92,7 @@ def row_reduction(
         ax = A.forward(x)
         remaining = (problem.weights > 0) & ~rejected & finished
         residuals.append(float(np.linalg.norm((problem.b - ax)[remaining])))
-        progress = Progress(int(np.sum(finished)), columns, x, ax, residuals[-1])
+        progress = Progress(int(np.sum(finished)), columns, x, ax, residuals[-1], problem.lamp_powers)
         if callback is not None and callback(progress):
             reason = "callback"
             break

@@ -62,7 +62,9 @@ def sirt(
         ax = A.forward(x)
         step, moved = x - y, x - before
         residuals.append(float(np.linalg.norm(_norms(row_weights, b - ax))))
-        asked = callback is not None and callback(Progress(iteration, iterations, x, ax, residuals[-1]))
+        asked = callback is not None and callback(
+            Progress(iteration, iterations, x, ax, residuals[-1], problem.lamp_powers)
+        )
         if asked or np.all(_norms(column_sums, step) <= small):
             reason = "callback" if asked else "converged"
             break

@@ -1,0 +1,106 @@
+"""Measure and draw what is seen between the frames: the tables and pictures of docs/between.md.
+
+python examples/between.py [FOLDER]
+"""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+import lightcube as lc
+from lightcube import demo, plots
+from lightcube.between import DISTURBANCES, Curve, curve, robust
+from lightcube.metrics import mean_psnr
+from lightcube.transfer import to_uint8
+
+#: Where the strips show a picture, as a fraction of the way to the next stop, and how much they are enlarged.
+PARTS, SCALE = (0.0, 1 / 64, 1 / 32, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 3 / 4, 1.0), 3
+
+
+def block(n: int) -> lc.Grid:
+    return lc.Grid((n, n, n), voxel_mm=96 / n)
+
+
+def photographs(grid: lc.Grid) -> lc.Frames:
+    return lc.fit(demo.photographs(), grid, elevation=35.0, frame_width=0.5)
+
+
+def juggler(grid: lc.Grid, count: int) -> lc.Frames:
+    views = lc.turntable(grid, lc.spread_angles(count, elevation=35.0), elevation=35.0, picture_shape=(32, 32))
+    return lc.scene_frames(lc.read_scene("juggler"), views, grid)
+
+
+def gems(grid: lc.Grid, count: int) -> lc.Frames:
+    views = lc.turntable(grid, lc.spread_angles(count), picture_shape=(64, 64))
+    return lc.scene_frames(lc.read_scene("gems"), views, grid)
+
+
+#: Name, voxels a side, frames, lamp power, and whether to draw it.
+CASES: list[tuple[str, int, Callable[[lc.Grid], lc.Frames], float, bool]] = [
+    ("8 photographs, n = 32", 32, photographs, 2.0, False),
+    ("8 photographs", 64, photographs, 2.0, True),
+    ("juggler, 8 frames", 64, lambda grid: juggler(grid, 8), 2.0, True),
+    ("juggler, 16 frames", 64, lambda grid: juggler(grid, 16), 2.0, False),
+    ("juggler, 32 frames", 64, lambda grid: juggler(grid, 32), 2.0, False),
+    ("juggler, 64 frames", 64, lambda grid: juggler(grid, 64), 2.0, True),
+    ("gems, 16 frames", 64, lambda grid: gems(grid, 16), 1.0, False),
+    ("gems, 64 frames", 64, lambda grid: gems(grid, 64), 1.0, True),
+]
+
+
+def over_the_turn(found: Curve) -> str:
+    """Spacing; PSNR at the stops; lobe, also as a part of the turn; PSNR over the turn; PSNR and SSIM halfway."""
+    spacing = found.period / len(found.lobes)
+    turn = np.trapezoid(found.psnr, found.angles) / found.period
+    halfway = np.isclose(np.abs(found.offsets), spacing / 2)
+    return (
+        f"{spacing:.1f}° | {np.mean(found.psnr[found.offsets == 0]):.1f} | {np.mean(found.lobes):.2f}° | "
+        f"{100 * found.lobes.sum() / found.period:.0f} % | {turn:.1f} | {np.mean(found.psnr[halfway]):.1f} | "
+        f"{np.mean(found.ssim[halfway]):.2f}"
+    )
+
+
+def strip(cube: lc.Cube, spacing: float) -> np.ndarray:
+    """What is seen from the first stop to the next, side by side, 8-bit, each picture 32 pixels wide."""
+    shown = lc.play(cube, cube.views.angles[0] + spacing * np.array(PARTS))
+    every = shown.shape[2] // 32
+    padded = np.pad(shown[:, ::every, ::every], [(0, 0), (0, 2), (0, 2), (0, 0)], constant_values=1)
+    return to_uint8(np.concatenate(list(padded), axis=1))
+
+
+def half_a_pixel(frames: lc.Frames) -> float:
+    """PSNR of the wanted pictures themselves, moved by half a pixel to the right: the mean of neighbours."""
+    columns = frames.pictures.shape[2]
+    left = np.maximum(np.arange(columns) - 1, 0)
+    return mean_psnr((frames.pictures + frames.pictures[:, :, left]) * np.float32(0.5), frames)
+
+
+def main(folder: Path) -> None:
+    curves, strips, left, moved = {}, [], {}, []
+    print("| pictures | spacing | at the stops | lobe | of the turn | over the turn | halfway | SSIM there |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name, n, make, power, drawn in CASES:
+        grid = block(n)
+        frames = make(grid)
+        cube = lc.solve(frames, grid, lamp_power=power).cube
+        found = curve(cube, frames)
+        print(f"| {name} | {over_the_turn(found)} |", flush=True)
+        if drawn:
+            curves[name], left[name] = found, robust(cube, frames)
+            moved.append(half_a_pixel(frames))
+            strips.append(strip(cube, found.period / len(frames)))
+    print("\n| set-up | " + " | ".join(left) + " |")
+    print("|---" * (1 + len(left)) + "|")
+    for kind, disturbance in DISTURBANCES.items():
+        words = "all of these at once" if kind == "all" else disturbance
+        print(f"| {words} | " + " | ".join(f"{each[kind]['psnr_mean']:.1f}" for each in left.values()) + " |")
+    print("| *the wanted picture half a pixel to the right* | " + " | ".join(f"{each:.1f}" for each in moved) + " |")
+    lc.io.write_figure(folder / "between.png", plots.between_plot(curves), overwrite=True)
+    sheet = np.concatenate(strips).repeat(SCALE, axis=0).repeat(SCALE, axis=1)
+    lc.io.write_sheet(folder / "between-strips.png", sheet, overwrite=True)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else "."))

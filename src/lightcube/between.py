@@ -1,0 +1,270 @@
+"""What one sees between the frames, and what a set-up that is not perfect makes of them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.forward import cast, lamp_at
+from lightcube.frames import Frames
+from lightcube.geometry import Views
+from lightcube.metrics import check_same_views, psnr, ssim
+from lightcube.transfer import encode
+
+Floats = NDArray[np.float64]
+
+#: A picture stands as long as its PSNR is at least this, dB.
+LOBE_DB = 30.0
+#: The ends of a lobe are enclosed by two samples so near to each other, degrees.
+_RESOLUTION = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """How well the nearer picture is seen as the cube turns, over one period.
+
+    The samples ascend in angle from half a spacing before the first stop. Where two cells meet there is one
+    sample against each of the two pictures.
+
+    Parameters
+    ----------
+    angles
+        Turntable angle of each sample, degrees.
+    nearest
+        Index of the view whose stop is nearest.
+    offsets
+        Degrees from that stop; 0 at the stops themselves.
+    psnr, ssim
+        What is cast there against the picture of that view.
+    lobes
+        ``(views,)`` degrees around each view's stop over which the PSNR stays at 30 dB or more, at most as far
+        as to halfway between the stop and its neighbours; 0 where the stop itself is below.
+    period
+        Degrees after which the curve repeats.
+    """
+
+    angles: Floats
+    nearest: NDArray[np.intp]
+    offsets: Floats
+    psnr: Floats
+    ssim: Floats
+    lobes: Floats
+    period: float
+
+
+def curve(cube: Cube, frames: Frames, steps: int = 8) -> Curve:
+    """Compare what is cast at, around and between the stops with the nearer of the two frames.
+
+    Parameters
+    ----------
+    frames
+        The wanted pictures in the cube's views.
+    steps
+        Parts that each gap between neighbouring stops is divided into. Near the stops, and where a picture
+        falls below 30 dB, samples lie closer, down to 0.05 degrees.
+
+    Raises
+    ------
+    InputError
+        Where the frames do not fit the cube's views, or these stand at several elevations.
+
+    Notes
+    -----
+    The lamp's power between the stops is that of `lightcube.lamp_at`. With a level lamp half a turn shows the
+    mirror image, so the curve has a period of 180 degrees and the last stop's neighbour is the mirrored first
+    one, unless two stops are half a turn apart.
+    """
+    if steps < 1:
+        raise InputError(f"a curve needs at least 1 step from one frame to the next, not {steps}")
+    check_same_views(cube, frames)
+    if len(np.unique(cube.views.elevations)) > 1:
+        raise InputError("this cube was made with lamps at several elevations: there is nothing between its stops")
+    period = _period(cube.views)
+    places = cube.views.angles % period
+    reach = _reach(places, period)
+    samples = [(view, offset) for view in range(len(frames)) for offset in _offsets(reach[:, view], steps)]
+    found = np.empty((0, 4))
+    while samples:
+        found = np.concatenate([found, _compared(cube, frames, *np.array(samples).T)])
+        ends = [(view, side, *_end(found, view, side)) for view in range(len(frames)) for side in (-1, 1)]
+        samples = [
+            (view, side * (inside + outside) / 2)
+            for view, side, _, inside, outside in ends
+            if outside - inside > _RESOLUTION
+        ]
+    lobes = np.zeros(len(frames))
+    for view, _, width, _, _ in ends:
+        lobes[view] += width
+    nearest = found[:, 0].astype(np.intp)
+    order = np.lexsort((found[:, 1], places[nearest]))
+    nearest, (offsets, quality, likeness) = nearest[order], found[order, 1:].T
+    return Curve(places[nearest] + offsets, nearest, offsets, quality, likeness, lobes, period)
+
+
+def _period(views: Views) -> float:
+    """Degrees after which the shadows repeat or are mirrored, by the same rule as the lamp in `lamp_at`."""
+    level = bool(np.all(views.elevations == 0))
+    return 180.0 if level and len(np.unique(np.round(views.angles % 180, 9))) == len(views) else 360.0
+
+
+def _reach(places: Floats, period: float) -> Floats:
+    """``(2, views)``: degrees from each stop to halfway to the one before it and to the one after it."""
+    order = np.argsort(places, kind="stable")
+    gaps = np.diff(places[order], append=places[order[0]] + period)
+    reach = np.empty((2, len(places)))
+    reach[:, order] = np.roll(gaps, 1) / 2, gaps / 2
+    return reach
+
+
+def _offsets(reach: Floats, steps: int) -> Floats:
+    """Where a stop's cell is sampled, degrees from the stop: evenly, and by doubling distances near the stop."""
+    sides = []
+    for half in reach:
+        even = np.append(np.arange(1, (steps + 1) // 2) * (2 * half / steps), half)
+        doubling = _RESOLUTION * 2.0 ** np.arange(20)
+        sides.append(np.append(doubling[doubling < even[0]], even))
+    return np.concatenate([-sides[0], [0.0], sides[1]])
+
+
+def _compared(cube: Cube, frames: Frames, view: Floats, offset: Floats) -> Floats:
+    """``(samples, 4)``: view, offset in degrees, PSNR and SSIM of what is cast there against that view's frame."""
+    index = view.astype(np.intp)
+    views = turned(cube.views.take(index), offset)
+    rows = np.empty((len(index), 4))
+    wanted = encode(frames.pictures, frames.transfer)
+    for row, place, degrees, picture in zip(
+        rows, index, offset, cast(cube, views, lamp_at(cube, views.angles)), strict=True
+    ):
+        pair = encode(picture, frames.transfer), wanted[place], frames.weight[place]
+        row[:] = place, degrees, psnr(*pair), ssim(*pair)
+    return rows
+
+
+def _end(found: Floats, view: int, side: int) -> tuple[float, float, float]:
+    """Width of one side of a view's lobe, and the two distances from the stop that enclose its end (degrees)."""
+    rows = found[(found[:, 0] == view) & (found[:, 1] * side >= 0)]
+    distance, quality = rows[np.argsort(np.abs(rows[:, 1]))][:, 1:3].T
+    distance = np.abs(distance)
+    below = np.flatnonzero(quality < LOBE_DB)
+    if not below.size or below[0] == 0:
+        end = 0.0 if below.size else float(distance[-1])
+        return end, end, end
+    inside, outside = below[0] - 1, below[0]
+    part = (quality[inside] - LOBE_DB) / (quality[inside] - quality[outside])
+    width = distance[inside] + part * (distance[outside] - distance[inside])
+    return float(width), float(distance[inside]), float(distance[outside])
+
+
+def turned(views: Views, degrees: ArrayLike) -> Views:
+    """Views of the cube turned on by so many degrees, one number for all or one per view."""
+    angle = np.radians(np.broadcast_to(np.asarray(degrees, dtype=np.float64), len(views)))
+    cos, sin = np.cos(angle), np.sin(angle)
+
+    def turn(vectors: Floats) -> Floats:
+        x, y = vectors[:, 0], vectors[:, 1]
+        return np.concatenate([np.stack([cos * x + sin * y, cos * y - sin * x], axis=1), vectors[:, 2:]], axis=1)
+
+    return Views(
+        turn(views.lamps), turn(views.origins), turn(views.column_steps), turn(views.row_steps), views.picture_shape
+    )
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """How a real set-up differs from the one that a cube was made for.
+
+    Parameters
+    ----------
+    turn_deg
+        Degrees by which the cube stands turned at every stop.
+    right_voxels, up_voxels
+        Voxels by which it stands off the axis, to the right and up as seen from the lamp.
+    lamp
+        Fraction by which the lamp is too strong.
+    levels
+        Highest of the whole numbers that extinction is rounded to, per colour, the largest extinction being
+        that number; 0 = not rounded.
+    black
+        Light on the screen where it should be black, as a fraction of white, added in linear light.
+    """
+
+    turn_deg: float = 0.0
+    right_voxels: float = 0.0
+    up_voxels: float = 0.0
+    lamp: float = 0.0
+    levels: int = 0
+    black: float = 0.0
+
+    def __post_init__(self) -> None:
+        numbers = self.turn_deg, self.right_voxels, self.up_voxels, self.lamp, self.black
+        if not np.all(np.isfinite(numbers)) or self.lamp <= -1 or self.black < 0 or self.levels < 0:
+            raise InputError(
+                f"no set-up is off by {self!r}: give finite numbers, lamp above -1, levels and black of at least 0"
+            )
+
+    def __str__(self) -> str:
+        said = {
+            f"turned {self.turn_deg:g}°": self.turn_deg,
+            f"{self.right_voxels:g} voxel to the right": self.right_voxels,
+            f"{self.up_voxels:g} voxel up": self.up_voxels,
+            f"lamp {100 * self.lamp:+.3g} %": self.lamp,
+            f"extinction in {self.levels + 1} levels": self.levels,
+            f"black at {100 * self.black:.3g} % of white": self.black,
+        }
+        return ", ".join(words for words, number in said.items() if number) or "as made"
+
+
+#: What `robust` tries, by name.
+DISTURBANCES = {
+    "undisturbed": Disturbance(),
+    "turned": Disturbance(turn_deg=0.2),
+    "sideways": Disturbance(right_voxels=0.5),
+    "up": Disturbance(up_voxels=0.5),
+    "lamp": Disturbance(lamp=0.02),
+    "extinction": Disturbance(levels=255),
+    "black": Disturbance(black=0.01),
+    "all": Disturbance(0.2, 0.5, 0.5, 0.02, 255, 0.01),
+}
+
+
+def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float32]]:
+    """Yield what the screen shows at each stop of a disturbed set-up, ``(row, column, channel)``, linear light."""
+    views = turned(cube.views, disturbance.turn_deg)
+    # In the cube's own frame it is the screen that moves, the other way; its columns and rows are one voxel apart.
+    shift = disturbance.up_voxels * views.row_steps - disturbance.right_voxels * views.column_steps
+    views = replace(views, origins=views.origins + shift)
+    if disturbance.levels:
+        cube = replace(cube, extinction=_rounded(cube.extinction, disturbance.levels))
+    for picture in cast(cube, views, cube.powers * (1 + disturbance.lamp)):
+        yield picture + np.float32(disturbance.black)
+
+
+def _rounded(extinction: NDArray[np.float32], levels: int) -> NDArray[np.float32]:
+    step = extinction.max(axis=(1, 2, 3), keepdims=True) / np.float32(levels)
+    step[step == 0] = 1  # a colour that nothing absorbs stays 0
+    return np.rint(extinction / step) * step
+
+
+def robust(cube: Cube, frames: Frames) -> dict[str, Any]:
+    """What is left of the frames in a set-up that is a little off: ``psnr_mean`` and ``psnr_min`` by disturbance.
+
+    The `DISTURBANCES` are: none, the cube turned by 0.2 degrees, half a voxel to the right, half a voxel up, every
+    lamp power 2 % too high, extinction in 8 bits, a screen's black of 1 % of white, and all of these at once.
+
+    Raises
+    ------
+    InputError
+        Where the frames do not fit the cube's views.
+    """
+    check_same_views(cube, frames)
+    wanted = encode(frames.pictures, frames.transfer)
+    figures = {}
+    for name, disturbance in DISTURBANCES.items():
+        shown = (encode(picture, frames.transfer) for picture in disturbed(cube, disturbance))
+        each = [psnr(*triple) for triple in zip(shown, wanted, frames.weight, strict=True)]
+        figures[name] = {"psnr_mean": float(np.mean(each)), "psnr_min": float(np.min(each))}
+    return figures
