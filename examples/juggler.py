@@ -18,7 +18,7 @@ def main(out: str) -> None:
     angles = lc.spread_angles(32, elevation=35)
     views = lc.turntable(grid, angles, elevation=35, picture_shape=(48, 48))
     frames = lc.scene_frames(lc.read_scene("juggler"), views, grid)
-    cube = lc.solve(frames, grid, lamp_power=2.0).cube
+    cube = lc.solve(frames, grid).cube
     chosen = list(STOPS)
     shadows = lc.play(cube, angles[chosen], whole_screen=True)
     lower = np.concatenate(list(shadows), axis=1)

@@ -37,6 +37,7 @@ def small(code: str) -> str:
     return code.replace("iterations=60", "iterations=2").replace("--frames 16", "--frames 3")
 
 
+@pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
 def test_python_blocks_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

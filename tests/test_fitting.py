@@ -247,7 +247,7 @@ class TestRefused:
             fit(pictures(*[(12, 16)] * count), GRID)
 
     def test_frames_wider_than_the_screen(self) -> None:
-        with pytest.raises(InputError, match="wider than the cube's screen"):
+        with pytest.raises(InputError, match="wider than its screen"):
             fit(pictures((12, 16), (12, 16)), GRID, frame_width=2)
 
     @pytest.mark.parametrize("frame_width", [0, -1, math.nan, math.inf])
@@ -266,14 +266,22 @@ class TestRefused:
         ([(12, 16)] * 3, "crop", "3 pictures of 16 x 12, not resampled"),
         ([(24, 32)] * 3, "crop", "3 pictures, scaled from 32 x 24 to 16 x 12"),
         ([(24, 32), (48, 64)], "pad", "2 pictures, scaled from 32 x 24 and 1 other size to 16 x 12"),
-        ([(24, 32), (30, 32), (9, 9)], "crop", "3 pictures, cropped from 32 x 24 and 2 other sizes to 16 x 12"),
-        ([(24, 32), (30, 32)], "pad", "2 pictures, padded from 32 x 24 and 1 other size to 16 x 12"),
-        ([(24, 32), (30, 32)], "stretch", "2 pictures, stretched from 32 x 24 and 1 other size to 16 x 12"),
+        (
+            [(24, 32), (30, 32), (9, 9)],
+            "crop",
+            "3 pictures, cropped from 32 x 24 and 2 other sizes to 16 x 12, the aspect of {}",
+        ),
+        ([(24, 32), (30, 32)], "pad", "2 pictures, padded from 32 x 24 and 1 other size to 16 x 12, the aspect of {}"),
+        (
+            [(24, 32), (30, 32)],
+            "stretch",
+            "2 pictures, stretched from 32 x 24 and 1 other size to 16 x 12, the aspect of {}",
+        ),
     ],
 )
 def test_the_report_says_what_was_done(sizes: list[tuple[int, int]], mode: Fit, line: str) -> None:
     read = pictures(*sizes)
-    assert fit_report(read, fit(read, GRID, fit=mode), mode) == line
+    assert fit_report(read, fit(read, GRID, fit=mode), mode) == line.format(read.names[0])
 
 
 class TestTargets:
@@ -296,9 +304,11 @@ class TestTargets:
         assert made[0, 1, 1, 3] == 1
         np.testing.assert_allclose(made[..., 3] / 255 * 4, frames.weight, atol=4 / 255)
 
-    def test_no_weight_at_all_stays_none(self) -> None:
-        frames = replace(self.frames(), weights=np.zeros((2, 3, 5), np.float32))
-        assert not np.any(targets(frames)[..., 3])
+    def test_a_picture_of_no_weight_is_refused(self) -> None:
+        weights = self.frames().weight.copy()
+        weights[1] = 0
+        with pytest.raises(InputError, match="picture 'b' has no pixel"):
+            replace(self.frames(), weights=weights)
 
     @settings(max_examples=30, deadline=None)
     @given(seed=st.integers(0, 2**32 - 1), transfer=st.sampled_from(["srgb", "linear"]))
@@ -306,7 +316,7 @@ class TestTargets:
         grid = Grid((3, 5, 7))
         views = turntable(grid, [1, 2], picture_shape=(3, 5))
         levels = np.random.default_rng(seed).integers(0, 256, (2, 3, 5, 4), dtype=np.uint8)
-        levels[0, 0, 0, 3] = 255
+        levels[:, 0, 0, 3] = 255
         cube = Cube(
             np.zeros((3, 3, 5, 7), np.float32),
             grid,

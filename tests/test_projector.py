@@ -196,7 +196,9 @@ def test_the_tie_rule_starts_at_a_billionth_of_a_voxel() -> None:
     volume = np.zeros((1, 1, 2, 4))
     volume[:, :, 0] = 1
     for offset, expected in ((0.0, 2.0), (0.5e-9, 2.0), (-0.5e-9, 2.0), (1e-6, 0.0), (-1e-6, 4.0)):
-        moved = Views(views.lamps, views.origins + [0, offset, 0], views.column_steps, views.row_steps, (1, 1))
+        moved = Views(
+            views.lamps, views.origins + np.array([0, offset, 0]), views.column_steps, views.row_steps, (1, 1)
+        )
         assert project(Projector(grid, moved), volume)[0, 0, 0, 0] == pytest.approx(expected, abs=1e-6)
         assert plain.absorbance_pictures(grid, moved, volume)[0, 0, 0, 0] == pytest.approx(expected, abs=1e-6)
 
@@ -206,7 +208,7 @@ def test_the_tie_rule_starts_at_a_billionth_of_a_voxel() -> None:
 def test_screens_moved_up_and_lamps_just_above_the_horizon_agree_with_plain_boxes(up: float, elevation: float) -> None:
     grid = Grid((3, 4, 5))
     views = turntable(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 4))
-    moved = Views(views.lamps, views.origins + [0, 0, up], views.column_steps, views.row_steps, (3, 4))
+    moved = Views(views.lamps, views.origins + np.array([0, 0, up]), views.column_steps, views.row_steps, (3, 4))
     volume = np.random.default_rng(11).random((2, 3, 4, 5))
     fast = project(Projector(grid, moved), volume)
     assert np.allclose(fast, plain.absorbance_pictures(grid, moved, volume), rtol=1e-9, atol=1e-9)

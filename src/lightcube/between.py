@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.forward import cast, lamp_at
+from lightcube.forward import cast, lamp_at, turn_period
 from lightcube.frames import Frames
 from lightcube.geometry import Views
 from lightcube.metrics import check_same_views, psnr, ssim
@@ -83,7 +83,7 @@ def curve(cube: Cube, frames: Frames, steps: int = 8) -> Curve:
     check_same_views(cube, frames)
     if len(np.unique(cube.views.elevations)) > 1:
         raise InputError("this cube was made with lamps at several elevations: there is nothing between its stops")
-    period = _period(cube.views)
+    period = turn_period(cube.views)
     places = cube.views.angles % period
     reach = _reach(places, period)
     samples = [(view, offset) for view in range(len(frames)) for offset in _offsets(reach[:, view], steps)]
@@ -103,12 +103,6 @@ def curve(cube: Cube, frames: Frames, steps: int = 8) -> Curve:
     order = np.lexsort((found[:, 1], places[nearest]))
     nearest, (offsets, quality, likeness) = nearest[order], found[order, 1:].T
     return Curve(places[nearest] + offsets, nearest, offsets, quality, likeness, lobes, period)
-
-
-def _period(views: Views) -> float:
-    """Degrees after which the shadows repeat or are mirrored, by the same rule as the lamp in `lamp_at`."""
-    level = bool(np.all(views.elevations == 0))
-    return 180.0 if level and len(np.unique(np.round(views.angles % 180, 9))) == len(views) else 360.0
 
 
 def _reach(places: Floats, period: float) -> Floats:

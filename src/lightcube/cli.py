@@ -18,7 +18,7 @@ from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import Fit, check_fit, fit, fit_report, fit_to_views, frames_from_targets
 from lightcube.frames import Frames, Pictures
-from lightcube.geometry import Grid, check_angles
+from lightcube.geometry import Grid, Views, check_angles
 from lightcube.scene.tracer import scene_frames, scene_views
 from lightcube.sheet import beside_targets, contact_sheet
 from lightcube.transfer import Transfer
@@ -35,6 +35,7 @@ app = typer.Typer(
 OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
 OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
 JSON = typer.Option("--json", help="Print JSON for machines.")
+_FIT = "Pictures of another aspect than the first: cut their edges, leave the rest of the frame free, or distort."
 _LAMP = "One power per picture and colour, one per colour, or fixed.  [default: per-view]"
 FPS = typer.Option("--fps", help="Pictures per second of a movie.")
 
@@ -55,7 +56,7 @@ def trace(
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Ray-trace a moving scene to frames: a folder of PNGs with views.toml, or a movie by suffix."""
+    """Ray-trace a moving scene: a folder of PNGs, or a movie by suffix."""
     described = io.read_scene(scene)
     io.check_pictures_target(output, overwrite=overwrite)
     shape = None
@@ -79,18 +80,26 @@ def solve(
     shape: Annotated[str | None, typer.Option(help="Voxels along each axis, NZ,NY,NX, instead of --n.")] = None,
     size_mm: Annotated[float, typer.Option(help="Longest side of the cube in mm.")] = 100.0,
     frame_width: Annotated[float, typer.Option(help="Width of the pictures as a fraction of the cube's.")] = 1.0,
-    fit_mode: Annotated[Fit, typer.Option("--fit", help="What happens to other aspects and mixed sizes.")] = "crop",
+    fit_mode: Annotated[Fit, typer.Option("--fit", help=_FIT)] = "crop",
     angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C, one per picture.")] = None,
-    span: Annotated[float | None, typer.Option(help="Degrees to spread the views over, evenly.")] = None,
-    elevation: Annotated[float | None, typer.Option(help="Elevation of the lamp in degrees.")] = None,
+    span: Annotated[
+        float | None, typer.Option(help="Degrees to spread the views over, evenly.  [default: 180, raised 360]")
+    ] = None,
+    elevation: Annotated[
+        float | None, typer.Option(help="Elevation of the lamp in degrees; 0 is level, 35 holds most.  [default: 0]")
+    ] = None,
     method: Annotated[str, typer.Option(help=f"One of {', '.join(backward.METHODS)}.")] = "display",
-    iterations: Annotated[int | None, typer.Option(help="At most so many; default the method's own.")] = None,
+    iterations: Annotated[
+        int | None, typer.Option(help="At most so many passes; default the method's own (display: 200).")
+    ] = None,
     lamp: Annotated[backward.Lamp | None, typer.Option(help=_LAMP)] = None,
     lamp_power: Annotated[float | None, typer.Option(help="Power of a fixed lamp, linear light; 1 is white.")] = None,
     lamp_max: Annotated[
         float | None, typer.Option(help="Largest power of the lamp, at least 1.  [default: 16]")
     ] = None,
-    max_extinction: Annotated[float | None, typer.Option(help="Largest extinction of the material, 1/mm.")] = None,
+    max_extinction: Annotated[
+        float | None, typer.Option(help="Largest extinction of the material, 1/mm; default none.")
+    ] = None,
     transfer: Annotated[Transfer, typer.Option(help="How picture values become linear light.")] = "srgb",
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
@@ -183,16 +192,18 @@ def play(
     end: Annotated[float | None, typer.Option("--to", help="Where the turn ends, in degrees.  [default: 360]")] = None,
     count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120]")] = None,
     stops: Annotated[bool, typer.Option("--stops", help="Play just the views that the cube was made for.")] = False,
-    scale: Annotated[int, typer.Option(help="Enlarge each pixel to a square of so many.")] = 1,
+    scale: Annotated[
+        int | None, typer.Option(help="Enlarge each pixel to a square of so many.  [default: movies about 256 high]")
+    ] = None,
     target: Annotated[
-        bool, typer.Option("--target", help="Put the wanted picture of the nearest stop beside.")
+        bool, typer.Option("--target", help="Put the wanted picture of the nearest stop to the right.")
     ] = False,
     no_mask: Annotated[bool, typer.Option("--no-mask", help="Show the whole screen, not the picture window.")] = False,
     fps: Annotated[float, FPS] = 25.0,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Cast the cube's shadows: a movie, a folder of PNGs, or .npy (linear light, by suffix)."""
+    """Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix."""
     io.check_pictures_target(output, overwrite=overwrite)
     if target and no_mask:
         raise InputError("--target shows the picture window: leave out --no-mask")
@@ -210,7 +221,7 @@ def play(
             count=len(views),
             transfer=loaded.transfer,
             fps=fps,
-            scale=scale,
+            scale=_movie_scale(output, views) if scale is None else scale,
             views=None if target else views,
             names=loaded.names if stops else None,
             overwrite=overwrite,
@@ -224,7 +235,9 @@ def score(
     frames: Annotated[
         Path | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
-    sheet: Annotated[Path | None, typer.Option(help="Write a contact sheet: wanted, shown, difference (PNG).")] = None,
+    sheet: Annotated[
+        Path | None, typer.Option(help="Draw a contact sheet: wanted, shown, difference (PNG, WebP or JPEG).")
+    ] = None,
     between_frames: Annotated[
         bool, typer.Option("--between", help="Add PSNR and SSIM between the frames, and how far each one stands.")
     ] = False,
@@ -233,7 +246,7 @@ def score(
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Compare what a cube really casts with what was wanted: PSNR, SSIM and CIEDE2000 of every view."""
+    """Compare what a cube really casts with what was wanted."""
     if sheet is not None:
         io.check_sheet_target(sheet, overwrite=overwrite)
     if plot is not None:
@@ -287,7 +300,7 @@ def info(
         json_document(facts)
         return
     for name, value in facts.items():
-        out.print(f"{name:>18}  {value}")
+        out.print(f"{name:>26}  {_short(value)}")
 
 
 @app.command()
@@ -295,7 +308,7 @@ def publish(
     partial: Annotated[Path, typer.Argument(help="The unfinished cube, NAME.zarr.partial.")],
     overwrite: Annotated[bool, OVERWRITE] = False,
 ) -> None:
-    """Turn the unfinished cube of an interrupted solve into a cube file, marked as interrupted."""
+    """Turn the unfinished cube of an interrupted solve into a cube file."""
     out.print(f"{io.publish(partial, overwrite=overwrite)}")
 
 
@@ -304,7 +317,7 @@ def demo_command(
     output: Annotated[Path, typer.Option("-o", "--out", help="Folder for what the demo makes.")] = Path("out"),
     paper: Annotated[bool, typer.Option("--paper", help="Redo the paper: a 3x3x3 cube, there and back.")] = False,
 ) -> None:
-    """Solve, play and score a cube of photographs and one of a traced scene, into a folder."""
+    """Make a cube of photographs and one of a traced scene, into a folder."""
     if paper:
         demo.paper(output)
     else:
@@ -343,6 +356,13 @@ def _done(as_json: bool, sentence: str, **fields: object) -> None:
         json_line("result", **fields)
     else:
         out.print(sentence)
+
+
+def _short(value: object) -> str:
+    """Numbers with six digits, nothing as a dash."""
+    if isinstance(value, list):
+        return ", ".join(_short(item) for item in value)
+    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _numbers(text: str, option: str) -> list[float]:
@@ -433,6 +453,11 @@ def _play_angles(
     if not (np.isfinite([first, last]).all() and first != last):
         raise InputError(f"--from {first} --to {last}: give two different finite numbers of degrees")
     return forward.turn(cube, pictures, first, last)
+
+
+def _movie_scale(output: Path, views: Views) -> int:
+    """An even scale that makes a movie at least 256 pixels high; single pictures and numbers stay as they are."""
+    return 1 if output.suffix in ("", ".npy") else 2 * -(-128 // views.picture_shape[0])
 
 
 def _counted(

@@ -22,16 +22,24 @@ from lightcube.sheet import contact_sheet
 from lightcube.solvers import METHODS
 from lightcube.transfer import decode
 
-#: scikit-image's own photographs, in an order that puts no two dark ones side by side.
+#: Pictures that come with scikit-image.
 _PHOTOGRAPHS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "astronaut": skimage.data.astronaut,
+    "moon": skimage.data.moon,
     "coffee": skimage.data.coffee,
+    "brick": skimage.data.brick,
     "cat": skimage.data.chelsea,
     "rocket": skimage.data.rocket,
+    "clock": skimage.data.clock,
     "retina": skimage.data.retina,
     "tissue": skimage.data.immunohistochemistry,
     "camera": skimage.data.camera,
+    "coins": skimage.data.coins,
     "stars": skimage.data.hubble_deep_field,
+    "grass": skimage.data.grass,
+    "colours": skimage.data.colorwheel,
+    "gravel": skimage.data.gravel,
+    "cell": skimage.data.cell,
 }
 _SIDE = 64
 
@@ -55,7 +63,7 @@ def run(folder: Path) -> None:
     out.print(f"Two cubes of {_SIDE} x {_SIDE} x {_SIDE} voxels, 100 mm wide.")
     rows = [
         _one("photographs", fit(photographs(), grid, elevation=35.0, frame_width=0.5), grid, folder),
-        _one("juggler", _juggler(grid), grid, folder, lamp_power=2.0),
+        _one("juggler", _juggler(grid), grid, folder),
     ]
     io.write_json(folder / "metrics.json", {row["name"]: row for row in rows}, overwrite=True)
     out.print()
@@ -77,13 +85,11 @@ def _juggler(grid: Grid) -> Frames:
         return scene_frames(io.read_scene("juggler"), views, grid, callback=advance)
 
 
-def _one(name: str, frames: Frames, grid: Grid, folder: Path, lamp_power: float = 1.0) -> dict[str, Any]:
+def _one(name: str, frames: Frames, grid: Grid, folder: Path) -> dict[str, Any]:
     """Solve, save, play and score one cube; returns a row of the table."""
     began = time.monotonic()
     with progress(f"solving {name}", as_json=False) as advance:
-        solution = backward.solve(
-            frames, grid, lamp_power=lamp_power, callback=lambda step: advance(step.iteration, step.iterations)
-        )
+        solution = backward.solve(frames, grid, callback=lambda step: advance(step.iteration, step.iterations))
     seconds = time.monotonic() - began
     cube = solution.cube
     scores = metrics.score(cube, frames)

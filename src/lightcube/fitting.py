@@ -127,7 +127,8 @@ def fit_report(pictures: Pictures, frames: Frames, fit: Fit = "crop") -> str:
     done = {"crop": "cropped", "pad": "padded", "stretch": "stretched"}[check_fit(fit)] if other_aspect else "scaled"
     others = len(sizes) - 1
     more = f" and {others} other size{'s' if others > 1 else ''}" if others else ""
-    return f"{count}, {done} from {_size(first)}{more} to {_size(target)}"
+    rule = f", the aspect of {pictures.names[0]}" if other_aspect else ""
+    return f"{count}, {done} from {_size(first)}{more} to {_size(target)}{rule}"
 
 
 def targets(frames: Frames) -> NDArray[np.uint8]:
@@ -136,8 +137,7 @@ def targets(frames: Frames) -> NDArray[np.uint8]:
     Weights are scaled so that the largest is 255; none that is above 0 becomes 0.
     """
     weight = frames.weight
-    most = float(weight.max())
-    scaled = np.rint(weight * (255 / most)) if most > 0 else weight
+    scaled = np.rint(weight * (255 / float(weight.max())))
     levels = np.where(weight > 0, np.maximum(scaled, 1), 0).astype(np.uint8)
     return np.concatenate([to_uint8(frames.pictures, frames.transfer), levels[..., None]], axis=3)
 

@@ -51,6 +51,12 @@ def turn(cube: Cube, count: int, start: float = 0.0, end: float = 360.0) -> NDAr
     return angles
 
 
+def turn_period(views: Views) -> float:
+    """Degrees after which the lamp repeats: 360, or 180 where half a turn shows the mirror image."""
+    level = bool(np.all(views.elevations == 0))
+    return 180.0 if level and len(np.unique(np.round(views.angles % 180, 9))) == len(views) else 360.0
+
+
 def lamp_at(cube: Cube, angles: ArrayLike) -> NDArray[np.float64]:
     """Lamp power at other turntable angles (degrees), ``(angles, channels)``: linear in ln P between the stops.
 
@@ -59,9 +65,7 @@ def lamp_at(cube: Cube, angles: ArrayLike) -> NDArray[np.float64]:
     """
     stops = cube.views.angles
     wanted = check_angles(angles)
-    period = 360.0
-    if np.all(cube.views.elevations == 0) and len(np.unique(np.round(stops % 180, 9))) == len(stops):
-        period = 180.0
+    period = turn_period(cube.views)
     logs = np.log(cube.powers)
     return np.exp(np.stack([np.interp(wanted, stops, column, period=period) for column in logs.T], axis=1))
 

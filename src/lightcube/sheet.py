@@ -40,16 +40,17 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
     cell_height, cell_width = rows * scale * 3 + 2 * _LINE + 2 * _GAP, max(columns * scale, 96) + _GAP
     per_line = max(1, min(len(chosen), 1800 // cell_width))
     lines = -(-len(chosen) // per_line)
+    per_line = -(-len(chosen) // lines)
     sheet = Image.new("RGB", (per_line * cell_width + _GAP, lines * cell_height + _GAP + _LINE), _PAPER)
     draw = ImageDraw.Draw(sheet)
     font = ImageFont.load_default(11)
-    draw.text((_GAP, 3), "from top to bottom: wanted, shown, difference (around grey)", _INK, font)
+    draw.text((_GAP, 3), "from top to bottom: wanted, shown, difference (around grey; flat grey is free)", _INK, font)
     for place, view in enumerate(chosen):
         left = _GAP + place % per_line * cell_width
         top = _GAP + _LINE + place // per_line * cell_height
         label = f"{frames.names[view]}"[:16]
         draw.text((left, top), label, _INK, font)
-        draw.text((left, top + _LINE - 3), f"{frames.views.angles[view]:.4g}°  {psnr[view]:.1f} dB", _INK, font)
+        draw.text((left, top + _LINE - 3), f"{frames.views.angles[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
         for index, picture in enumerate(_triple(shown[view], frames, int(view))):
             tile = Image.fromarray(picture).resize((columns * scale, rows * scale), Image.Resampling.NEAREST)
             sheet.paste(tile, (left, top + 2 * _LINE + index * (rows * scale + 2)))

@@ -125,7 +125,8 @@ def write_pictures(
             ) from error
     if clipped.values:
         warnings.warn(
-            f"{clipped.values} of {clipped.total} values in {path} were clipped to black or white: "
+            f"{clipped.values} of {clipped.total} values in {path} ({clipped.values / clipped.total:.1%}) "
+            "were clipped to black or white: "
             "write .npy to keep them",
             ClippedPictures,
             stacklevel=2,

@@ -1,0 +1,31 @@
+"""Solve the same pictures by every iterative method: the table of docs/method.md.
+
+python examples/methods.py
+"""
+
+import lightcube as lc
+from lightcube import demo
+
+
+def main() -> None:
+    grid = lc.Grid((64, 64, 64), voxel_mm=1.5)
+    raised = lc.turntable(grid, lc.spread_angles(32, elevation=35), elevation=35, picture_shape=(48, 48))
+    level = lc.turntable(grid, lc.spread_angles(64), picture_shape=(64, 64))
+    pictures = {
+        "photographs 32 x 32, 35 degrees": lc.fit(demo.photographs(), grid, elevation=35, frame_width=0.5),
+        "photographs 64 x 64, 0 degrees": lc.fit(demo.photographs(), grid),
+        "juggler 48 x 48, 35 degrees": lc.scene_frames(lc.read_scene("juggler"), raised, grid),
+        "gems 64 x 64, 0 degrees": lc.scene_frames(lc.read_scene("gems"), level, grid),
+    }
+    for name, frames in pictures.items():
+        for method, power in (("display", None), *((m, 1.0) for m in ("display", "sirt", "cgls", "gauss-seidel"))):
+            sweeps = 100 if method == "gauss-seidel" else 200
+            solution = lc.solve(frames, grid, method=method, lamp_power=power, iterations=sweeps)
+            scores = lc.score(solution.cube, frames)
+            figures = f"{scores['psnr_mean']:.1f} / {scores['psnr_min']:.1f} dB"
+            thrown = len(solution.rejected) / frames.pictures.size
+            print(f"{name}: {method}, lamp {power or 'per view'}: {figures}, {thrown:.0%} thrown out", flush=True)
+
+
+if __name__ == "__main__":
+    main()
