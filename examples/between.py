@@ -37,16 +37,18 @@ def gems(grid: lc.Grid, count: int) -> lc.Frames:
     return lc.scene_frames(lc.read_scene("gems"), views, grid)
 
 
-#: Name, voxels a side, frames, and whether to draw it.
-CASES: list[tuple[str, int, Callable[[lc.Grid], lc.Frames], bool]] = [
-    ("16 photographs, n = 32", 32, photographs, False),
-    ("16 photographs", 64, photographs, True),
-    ("juggler, 8 frames", 64, lambda grid: juggler(grid, 8), True),
-    ("juggler, 16 frames", 64, lambda grid: juggler(grid, 16), False),
-    ("juggler, 32 frames", 64, lambda grid: juggler(grid, 32), False),
-    ("juggler, 64 frames", 64, lambda grid: juggler(grid, 64), True),
-    ("gems, 16 frames", 64, lambda grid: gems(grid, 16), False),
-    ("gems, 64 frames", 64, lambda grid: gems(grid, 64), True),
+#: Name, voxels a side, frames, hold in degrees, and whether to draw it.
+CASES: list[tuple[str, int, Callable[[lc.Grid], lc.Frames], float, bool]] = [
+    ("16 photographs, n = 32", 32, photographs, 0.0, False),
+    ("16 photographs", 64, photographs, 0.0, True),
+    ("16 photographs, held 1.5°", 64, photographs, 1.5, True),
+    ("juggler, 8 frames, held 6°", 64, lambda grid: juggler(grid, 8), 6.0, False),
+    ("juggler, 8 frames", 64, lambda grid: juggler(grid, 8), 0.0, True),
+    ("juggler, 16 frames", 64, lambda grid: juggler(grid, 16), 0.0, False),
+    ("juggler, 32 frames", 64, lambda grid: juggler(grid, 32), 0.0, False),
+    ("juggler, 64 frames", 64, lambda grid: juggler(grid, 64), 0.0, True),
+    ("gems, 16 frames", 64, lambda grid: gems(grid, 16), 0.0, False),
+    ("gems, 64 frames", 64, lambda grid: gems(grid, 64), 0.0, True),
 ]
 
 
@@ -81,10 +83,10 @@ def main(folder: Path) -> None:
     curves, strips, left, moved = {}, [], {}, []
     print("| pictures | spacing | at the stops | lobe | of the turn | over the turn | halfway | SSIM there |")
     print("|---|---|---|---|---|---|---|---|")
-    for name, n, make, drawn in CASES:
+    for name, n, make, hold, drawn in CASES:
         grid = block(n)
         frames = make(grid)
-        cube = lc.solve(frames, grid).cube
+        cube = lc.solve(frames, grid, hold=hold).cube
         found = curve(cube, frames)
         print(f"| {name} | {over_the_turn(found)} |", flush=True)
         if drawn:

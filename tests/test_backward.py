@@ -9,7 +9,7 @@ import pytest
 from lightcube.backward import BLACK, Step, memory_needed, solve
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.forward import play
+from lightcube.forward import lamp_at, play
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, spread_angles, turntable
 from lightcube.metrics import score
@@ -193,3 +193,44 @@ def test_lamp_powers_are_found_per_view_or_for_all_views(elevation: float) -> No
     fixed = solve(frames, cube.grid, lamp_power=2.0, iterations=100).cube
     assert np.all(fixed.powers == 2.0)
     assert score(free, frames)["psnr_mean"] > score(shared, frames)["psnr_mean"] > score(fixed, frames)["psnr_mean"]
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_a_held_picture_stands_around_its_stop(elevation: float) -> None:
+    """With hold the picture is asked for, and cast, over the whole range; without it falls apart there."""
+    grid = Grid((6, 8, 8))
+    views = turntable(grid, spread_angles(3, elevation=elevation), elevation=elevation, picture_shape=(4, 2))
+    pictures = np.random.default_rng(8).uniform(0.2, 1, (3, 4, 2, 3)).astype(np.float32)
+    frames = Frames(pictures, views)
+    around = np.concatenate([views.angles + offset for offset in (-8, -5, -2, 2, 5, 8)])
+    wanted = np.tile(pictures, (6, 1, 1, 1))
+    errors = {}
+    for hold in (0.0, 8.0):
+        seen: list[np.ndarray] = []
+
+        def look(step: Step, seen: list[np.ndarray] = seen) -> None:
+            seen.append(step.shown())
+
+        cube = solve(frames, grid, hold=hold, iterations=200, callback=look).cube
+        assert cube.hold_deg == hold
+        assert cube.powers.shape == (3, 3)
+        assert np.allclose(seen[-1], play(cube), rtol=1e-3, atol=1e-4)
+        errors[hold] = np.sqrt(np.mean((play(cube, around) - wanted) ** 2))
+    assert errors[8.0] < 0.5 * errors[0.0]
+
+
+def test_the_lamp_does_not_change_while_a_picture_is_held() -> None:
+    cube = known_cube(3, 35.0, power=1.0)
+    powers = np.array([[1.0] * 3, [4.0] * 3, [2.0] * 3])
+    held_cube = Cube(cube.extinction, cube.grid, cube.views, lamp_powers=powers, hold_deg=10.0)
+    stop = cube.views.angles[1]
+    assert lamp_at(held_cube, [stop - 10, stop - 3, stop, stop + 10])[:, 0] == pytest.approx([4] * 4)
+    halfway = (cube.views.angles[0] + stop) / 2
+    assert lamp_at(held_cube, [halfway])[0, 0] == pytest.approx(2)
+
+
+@pytest.mark.parametrize("hold", [-1.0, 31.0, float("nan"), float("inf")])
+def test_a_hold_wider_than_half_the_spacing_is_refused(hold: float) -> None:
+    cube = known_cube(3, 0.0, power=1.0)
+    with pytest.raises(InputError, match="hold"):
+        solve(Frames(play(cube), cube.views), cube.grid, hold=hold)

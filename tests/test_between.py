@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from lightcube import io, plots
-from lightcube.between import DISTURBANCES, Disturbance, curve, disturbed, robust, turned
+from lightcube.between import DISTURBANCES, Disturbance, curve, disturbed, robust
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import targets
 from lightcube.forward import lamp_at, play
 from lightcube.frames import Frames
-from lightcube.geometry import Grid, Views, turntable
+from lightcube.geometry import Grid, Views, turned, turntable
 from lightcube.metrics import psnr, score, ssim
 from lightcube.transfer import encode
 from tests.test_cli import run

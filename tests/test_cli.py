@@ -217,6 +217,8 @@ BAD = [
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--frame-width", "1e308"),
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "1e-300"),
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "nan"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "30"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "nan"),
     ("solve", "{frames}"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--stops", "--angles", "5"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles", "5", "--count", "3"),

@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 
 from lightcube.absorption import absorbance, extinction, transmittance, transparency
 from lightcube.errors import InputError
-from lightcube.geometry import Grid, Views, picture_shape, raster_shape, spread_angles, turntable
+from lightcube.geometry import Grid, Views, held, picture_shape, raster_shape, spread_angles, turned, turntable
 from lightcube.layout import (
     columns_from_pictures,
     columns_from_volume,
@@ -154,3 +154,22 @@ def test_the_papers_transparency_is_that_of_a_voxels_diagonal(k: float, side: fl
     assert transparency(sigma, side)[0] == pytest.approx(k)
     assert transmittance(sigma * math.sqrt(2) * side)[0] == pytest.approx(k)
     assert absorbance(transmittance(sigma))[0] == pytest.approx(sigma[0], abs=1e-12)
+
+
+@given(st.floats(0.01, 20), st.integers(4, 200), st.sampled_from([0.0, 35.0]))
+def test_held_views_are_dense_enough_and_keep_the_stop_in_the_middle(hold: float, n: int, elevation: float) -> None:
+    grid = Grid((4, n, 4))
+    views = turntable(grid, [20.0, 70.0, 150.0], elevation=elevation, picture_shape=(2, 2))
+    angles = held(views, hold, grid).angles.reshape(3, -1)
+    assert np.allclose(angles[:, angles.shape[1] // 2], views.angles)
+    assert np.allclose(angles[:, -1] - angles[:, 0], 2 * hold)
+    assert np.max(np.diff(angles, axis=1)) <= 0.75 * 64 / n + 1e-6
+    assert angles.shape[1] == 1 + 2 * np.ceil(hold / (0.75 * 64 / n) - 1e-9)
+
+
+def test_turned_views_are_the_views_of_other_angles() -> None:
+    grid = Grid((3, 5, 7), 2.0)
+    views = turntable(grid, [10.0, 80.0], elevation=20.0)
+    for field in ("lamps", "origins", "column_steps", "row_steps"):
+        expected = getattr(turntable(grid, [30.0, 70.0], elevation=20.0), field)
+        assert np.allclose(getattr(turned(views, [20.0, -10.0]), field), expected)

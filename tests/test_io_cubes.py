@@ -105,6 +105,7 @@ def cubes(draw: st.DrawFn) -> Cube:
         draw(st.dictionaries(st.text(max_size=5), plain_json, max_size=3)),
         draw(st.dictionaries(st.text(max_size=5), plain_json, max_size=3)),
         "complete",
+        draw(st.floats(0, 180)),
     )
 
 

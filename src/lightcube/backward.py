@@ -14,7 +14,7 @@ from lightcube.cube import Cube, Status
 from lightcube.errors import InputError
 from lightcube.fitting import targets
 from lightcube.frames import Frames
-from lightcube.geometry import Grid, Views, raster_shape
+from lightcube.geometry import Grid, Views, held, raster_shape
 from lightcube.layout import columns_from_pictures, pictures_from_columns, volume_from_columns
 from lightcube.projector import Projector
 from lightcube.solvers import METHODS
@@ -82,6 +82,7 @@ def solve(
     lamp: Lamp | None = None,
     lamp_power: float | None = None,
     lamp_max: float | None = None,
+    hold: float = 0.0,
     max_extinction: float = np.inf,
     iterations: int | None = None,
     dtype: type[np.floating[Any]] = np.float32,
@@ -106,6 +107,9 @@ def solve(
         Power of a fixed lamp, linear light; 1 (the default) shows white where a beam meets nothing.
     lamp_max
         Largest power of a lamp that is not fixed, linear light, at least 1; default 16.
+    hold
+        Degrees on either side of its stop over which each picture shall stand, at most half the way to the next one:
+        it is asked for at several angles (`lightcube.geometry.held`), under one lamp power.
     max_extinction
         Upper bound of the extinction, 1/mm.
     iterations
@@ -125,10 +129,13 @@ def solve(
     solver = find_method(method)
     kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations)
     check_frames(frames, grid)
-    matrix = Projector(grid, frames.views)
+    views = held(frames.views, hold, grid)
+    angles = len(views) // len(frames)
+    matrix = Projector(grid, views)
     wanted = np.maximum(frames.pictures, decode(np.array([BLACK], np.float32), frames.transfer)).astype(dtype)
     channels = wanted.shape[-1]
     weights = np.repeat(frames.weight[..., None], channels, axis=-1).astype(dtype)
+    stop_of_row = matrix.view_of_row // angles
     lamps = (1 if kind == "global" else len(frames), channels)
     strongest = np.full(lamps, lamp_power or 1.0) if kind == "fixed" else np.full(lamps, lamp_max or LAMP_MAX)
     weakest = strongest if kind == "fixed" else np.full(lamps, LAMP_MIN)
@@ -140,6 +147,7 @@ def solve(
         names=frames.names,
         transfer=frames.transfer,
         status="interrupted",
+        hold_deg=float(hold),
     )
 
     def cube_of(x: NDArray[Any], powers: NDArray[Any]) -> Cube:
@@ -147,36 +155,37 @@ def solve(
         extinction = volume_from_columns(columns, grid.shape, channels)
         return replace(draft, extinction=extinction, lamp_powers=_per_view(powers, len(frames)))
 
-    watch = _watch(cube_of, frames.views, callback, store)
+    watch = _watch(cube_of, frames.views, angles, callback, store)
     options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
     result = solver(
         matrix,
-        columns_from_pictures(wanted).reshape(matrix.shape[0], -1),
-        weights=columns_from_pictures(weights).reshape(matrix.shape[0], -1),
-        view_of_row=matrix.view_of_row if kind != "global" else np.zeros_like(matrix.view_of_row),
+        columns_from_pictures(np.repeat(wanted, angles, axis=0)).reshape(matrix.shape[0], -1),
+        weights=columns_from_pictures(np.repeat(weights, angles, axis=0)).reshape(matrix.shape[0], -1),
+        view_of_row=stop_of_row if kind != "global" else np.zeros_like(stop_of_row),
         lamp_bounds=(weakest, strongest),
         bounds=(0.0, max_extinction),
         callback=watch,
         **options,
     )
+    rejected = _pixels(result.rejected, result.x.shape[1], frames, angles)
     provenance = {
         "lightcube": version("lightcube"),
         "method": method,
         "lamp": kind,
         "lamp_power" if kind == "fixed" else "lamp_max": float(strongest[0, 0]),
         "max_extinction": None if np.isinf(max_extinction) else float(max_extinction),
+        "hold": float(hold),
+        "angles_per_view": angles,
         "iterations": len(result.residuals),
         "stop_reason": result.stop_reason,
-        "rejected": len(result.rejected),
+        "rejected": len(rejected),
     }
     status: Status = "interrupted" if result.stop_reason == "callback" else "complete"
     cube = replace(cube_of(result.x, result.lamp_powers), provenance=provenance, status=status)
     if store is not None and status == "interrupted":
         store.keep(cube)
     undetermined = 0 if result.undetermined is None else int(np.sum(result.undetermined))
-    return Solution(
-        cube, result.residuals, _pixels(result.rejected, result.x.shape[1], frames), undetermined, result.stop_reason
-    )
+    return Solution(cube, result.residuals, rejected, undetermined, result.stop_reason)
 
 
 def find_method(name: str) -> Solver:
@@ -257,6 +266,7 @@ def check_options(
 def _watch(
     cube_of: Callable[[NDArray[Any], NDArray[Any]], Cube],
     views: Views,
+    angles: int,
     callback: Callable[[Step], bool | None] | None,
     store: Store | None,
 ) -> Callable[[Progress], bool | None]:
@@ -273,7 +283,9 @@ def _watch(
 
         def shown() -> NDArray[np.float32]:
             powers = _per_view(progress.lamp_powers, len(views))
-            light = np.exp(-progress.absorbance).reshape(len(views) * views.picture_shape[1], -1)
+            columns = views.picture_shape[1]
+            at_stops = progress.absorbance.reshape(len(views), angles, columns, -1)[:, angles // 2]
+            light = np.exp(-at_stops).reshape(len(views) * columns, -1)
             pictures = pictures_from_columns(light, views.picture_shape, powers.shape[1])
             return (pictures * powers[:, None, None, :]).astype(np.float32)
 
@@ -282,9 +294,11 @@ def _watch(
     return watch
 
 
-def _pixels(rejected: NDArray[np.int64], block_columns: int, frames: Frames) -> NDArray[np.int64]:
-    """(view, row, column, channel) of rejected (equation, column) pairs of a block with so many columns."""
+def _pixels(rejected: NDArray[np.int64], block_columns: int, frames: Frames, angles: int) -> NDArray[np.int64]:
+    """(view, row, column, channel) of rejected (equation, column) pairs of a block with so many columns, each once."""
     rows, columns = frames.views.picture_shape
     flat = rejected[:, 0] * block_columns + rejected[:, 1]
-    view, column, lifted, channel = np.unravel_index(flat, (len(frames), columns, rows, frames.pictures.shape[-1]))
-    return np.stack([view, rows - 1 - lifted, column, channel], axis=1).astype(np.int64)
+    shape = (len(frames) * angles, columns, rows, frames.pictures.shape[-1])
+    view, column, lifted, channel = np.unravel_index(flat, shape)
+    pixels = np.stack([view // angles, rows - 1 - lifted, column, channel], axis=1).astype(np.int64)
+    return np.unique(pixels, axis=0)

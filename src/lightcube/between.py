@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.forward import cast, lamp_at, turn_period
+from lightcube.forward import cast, lamp_at
 from lightcube.frames import Frames
-from lightcube.geometry import Views
+from lightcube.geometry import turn_period, turned
 from lightcube.metrics import check_same_views, psnr, ssim
 from lightcube.transfer import encode
 
@@ -151,20 +151,6 @@ def _end(found: Floats, view: int, side: int) -> tuple[float, float, float]:
     part = (quality[inside] - LOBE_DB) / (quality[inside] - quality[outside])
     width = distance[inside] + part * (distance[outside] - distance[inside])
     return float(width), float(distance[inside]), float(distance[outside])
-
-
-def turned(views: Views, degrees: ArrayLike) -> Views:
-    """Views of the cube turned on by so many degrees, one number for all or one per view."""
-    angle = np.radians(np.broadcast_to(np.asarray(degrees, dtype=np.float64), len(views)))
-    cos, sin = np.cos(angle), np.sin(angle)
-
-    def turn(vectors: Floats) -> Floats:
-        x, y = vectors[:, 0], vectors[:, 1]
-        return np.concatenate([np.stack([cos * x + sin * y, cos * y - sin * x], axis=1), vectors[:, 2:]], axis=1)
-
-    return Views(
-        turn(views.lamps), turn(views.origins), turn(views.column_steps), turn(views.row_steps), views.picture_shape
-    )
 
 
 @dataclass(frozen=True)

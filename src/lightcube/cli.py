@@ -18,7 +18,7 @@ from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import Fit, check_fit, fit, fit_report, fit_to_views, frames_from_targets
 from lightcube.frames import Frames, Pictures
-from lightcube.geometry import Grid, Views, check_angles
+from lightcube.geometry import Grid, Views, check_angles, held
 from lightcube.scene.tracer import scene_frames, scene_views
 from lightcube.sheet import beside_targets, contact_sheet
 from lightcube.transfer import Transfer
@@ -97,6 +97,7 @@ def solve(
     lamp_max: Annotated[
         float | None, typer.Option(help="Largest power of the lamp, at least 1.  [default: 16]")
     ] = None,
+    hold: Annotated[float, typer.Option(help="Degrees around its stop over which each picture shall stand.")] = 0.0,
     max_extinction: Annotated[
         float | None, typer.Option(help="Largest extinction of the material, 1/mm; default none.")
     ] = None,
@@ -115,7 +116,12 @@ def solve(
     turned = None if angles is None else _numbers(angles, "--angles")
     fitted = fit(pictures, grid, angles=turned, span=span, elevation=elevation, frame_width=frame_width, fit=fit_mode)
     raised = float(fitted.views.elevations[0])
-    _check_memory(backward.memory_needed(method, grid, fitted.views.picture_shape, len(fitted), raised))
+    views = len(held(fitted.views, hold, grid))
+    _check_memory(backward.memory_needed(method, grid, fitted.views.picture_shape, views, raised))
+    if hold and not as_json:
+        err.print(
+            f"held {hold:g} degrees either way: {views // len(fitted)} angles a picture, and as many times the work"
+        )
     _say_before(pictures, fitted, fit_mode, as_json=as_json)
     began = time.monotonic()
     with ctrl_c() as stopped, progress("solving", as_json=as_json) as advance:
@@ -137,6 +143,7 @@ def solve(
             lamp=lamp,
             lamp_power=lamp_power,
             lamp_max=lamp_max,
+            hold=hold,
             max_extinction=most,
             iterations=iterations,
             callback=step,

@@ -39,6 +39,8 @@ class Cube:
         Figures of the fit, by name (see `lightcube.metrics`).
     provenance
         How the cube was made: method, options, version of this package.
+    hold_deg
+        Degrees on either side of its stop over which a picture was asked to stand; the lamp does not change there.
     status
         ``"complete"``, or ``"interrupted"`` where the solver was stopped early.
 
@@ -58,6 +60,7 @@ class Cube:
     scores: Mapping[str, Any] = field(default_factory=dict)
     provenance: Mapping[str, Any] = field(default_factory=dict)
     status: Status = "complete"
+    hold_deg: float = 0.0
 
     def __post_init__(self) -> None:
         extinction = np.ascontiguousarray(self.extinction, dtype=np.float32)
@@ -82,6 +85,8 @@ class Cube:
             raise InputError(f"{len(self.views)} views have {len(names)} names: give one name per view")
         if self.status not in get_args(Status):
             raise InputError(f"a cube's status is one of {', '.join(get_args(Status))}, not {self.status!r}")
+        if not 0 <= self.hold_deg <= 180:
+            raise InputError(f"a cube's hold lies between 0 and 180 degrees, not {self.hold_deg}")
         object.__setattr__(self, "extinction", extinction)
         object.__setattr__(self, "lamp_powers", powers)
         object.__setattr__(self, "names", tuple(names))

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.geometry import Views, check_angles, turntable
+from lightcube.geometry import Views, check_angles, turn_period, turntable
 from lightcube.layout import columns_from_volume, pictures_from_columns
 from lightcube.projector import Projector
 
@@ -51,22 +51,18 @@ def turn(cube: Cube, count: int, start: float = 0.0, end: float = 360.0) -> NDAr
     return angles
 
 
-def turn_period(views: Views) -> float:
-    """Degrees after which the lamp repeats: 360, or 180 where half a turn shows the mirror image."""
-    level = bool(np.all(views.elevations == 0))
-    return 180.0 if level and len(np.unique(np.round(views.angles % 180, 9))) == len(views) else 360.0
-
-
 def lamp_at(cube: Cube, angles: ArrayLike) -> NDArray[np.float64]:
     """Lamp power at other turntable angles (degrees), ``(angles, channels)``: linear in ln P between the stops.
 
-    The powers repeat after a whole turn; at elevation 0, where half a turn shows the mirror image, after half a
-    turn, unless stops half a turn apart have powers of their own.
+    It is constant where a stop's picture is held. The powers repeat after a whole turn; at elevation 0, where half a
+    turn shows the mirror image, after half a turn, unless stops half a turn apart have powers of their own.
     """
     stops = cube.views.angles
     wanted = check_angles(angles)
     period = turn_period(cube.views)
     logs = np.log(cube.powers)
+    if cube.hold_deg:
+        stops, logs = np.concatenate([stops - cube.hold_deg, stops + cube.hold_deg]), np.concatenate([logs, logs])
     return np.exp(np.stack([np.interp(wanted, stops, column, period=period) for column in logs.T], axis=1))
 
 

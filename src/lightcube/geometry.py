@@ -269,3 +269,48 @@ def turntable(
         row_steps=_turned(turned, (0.0, 0.0, -grid.voxel_mm)),
         picture_shape=shape,
     )
+
+
+def turned(views: Views, degrees: ArrayLike) -> Views:
+    """Views of the cube turned on by so many degrees, one number for all or one per view."""
+    angles = np.broadcast_to(np.asarray(degrees, dtype=np.float64), len(views))
+    cos, sin = _cos_sin(angles)
+
+    def turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+        x, y = vectors[:, 0], vectors[:, 1]
+        return np.concatenate([np.stack([cos * x + sin * y, cos * y - sin * x], axis=1), vectors[:, 2:]], axis=1)
+
+    return Views(
+        turn(views.lamps), turn(views.origins), turn(views.column_steps), turn(views.row_steps), views.picture_shape
+    )
+
+
+def turn_period(views: Views) -> float:
+    """Degrees after which the lamp repeats: 360, or 180 where half a turn shows the mirror image."""
+    level = bool(np.all(views.elevations == 0))
+    return 180.0 if level and len(np.unique(np.round(views.angles % 180, 9))) == len(views) else 360.0
+
+
+def held(views: Views, hold_deg: float, grid: Grid) -> Views:
+    """Every view at several angles within `hold_deg` degrees of it, itself in the middle, one stop after the other.
+
+    The angles are near enough to each other for the picture to stand in between: at most 0.75 degrees for 64 voxels
+    across, and in inverse proportion to their number (measured).
+
+    Raises
+    ------
+    InputError
+        Where `hold_deg` is negative, or wider than half the way to the nearest other stop.
+    """
+    if not hold_deg >= 0:
+        raise InputError(f"a hold must be a number of degrees of at least 0, not {hold_deg:g}")
+    period = turn_period(views)
+    stops = np.sort(views.angles % period)
+    most = float(np.min(np.diff(stops, append=stops[0] + period))) / 2
+    if hold_deg > most + 1e-9:
+        raise InputError(
+            f"a hold of {hold_deg:g} degrees is wider than half the way to the next stop: use at most {most:.4g}"
+        )
+    aside = math.ceil(hold_deg / (0.75 * 64 / max(grid.shape[1:])) - 1e-9)
+    offsets = np.linspace(-hold_deg, hold_deg, 2 * aside + 1)
+    return turned(views.take(np.repeat(np.arange(len(views)), len(offsets))), np.tile(offsets, len(views)))

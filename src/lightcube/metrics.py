@@ -135,6 +135,7 @@ def facts(cube: Cube) -> dict[str, Any]:
         "lamp_power": [float(cube.powers.min()), float(cube.powers.max())],
         "extinction_mean": float(cube.extinction.mean()),
         "extinction_max": float(cube.extinction.max()),
+        "hold": cube.hold_deg,
         "transfer": cube.transfer,
         "names": list(cube.names),
         **{name: value for name, value in cube.scores.items() if name != "views"},

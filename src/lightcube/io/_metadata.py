@@ -48,6 +48,7 @@ class _CubeJson(BaseModel):
     names: list[str]
     transfer: Transfer
     status: Status
+    hold_deg: Annotated[_Number, Field(ge=0, le=180)] = 0.0
     scores: dict[str, Any]
     provenance: dict[str, Any]
 
@@ -68,6 +69,7 @@ def to_json(cube: Cube) -> dict[str, Any]:
         "names": list(cube.names),
         "transfer": cube.transfer,
         "status": cube.status,
+        "hold_deg": float(cube.hold_deg),
         "scores": _plain(cube.scores),
         "provenance": _plain(cube.provenance),
     }
@@ -112,6 +114,7 @@ def from_json(path: Path, document: object, extinction: NDArray[np.float32], tar
             said.scores,
             said.provenance,
             said.status,
+            said.hold_deg,
         )
     except ValueError as error:  # InputError among them
         raise damaged(path, str(error)) from error
