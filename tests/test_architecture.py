@@ -20,7 +20,7 @@ STOREYS = [
     ["backward", "forward", "scene"],
     ["metrics", "between", "consistency", "plots", "sheet"],
     ["io"],
-    ["console", "demo", "cli", ""],
+    ["arguments", "console", "demo", "cli", ""],
 ]
 ALLOWED_IN_KERNELS = {"numpy", "numba", "math", "typing"}
 FILE_AND_SCREEN = {"pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "zarr", "matplotlib", "trimesh"}

@@ -165,6 +165,7 @@ def solve(
         lamp_bounds=(weakest, strongest),
         bounds=(0.0, max_extinction),
         callback=watch,
+        transfer=frames.transfer,
         **options,
     )
     rejected = _pixels(result.rejected, result.x.shape[1], frames, angles)

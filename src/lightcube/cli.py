@@ -12,13 +12,13 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from lightcube import backward, between, consistency, demo, forward, io, metrics, plots
+from lightcube import arguments, backward, between, consistency, demo, forward, io, metrics, plots
 from lightcube.console import ctrl_c, err, json_document, json_line, out, plain_warnings, prepare, progress
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import Fit, check_fit, fit, fit_report, fit_to_views, frames_from_targets
 from lightcube.frames import Frames, Pictures
-from lightcube.geometry import Grid, Views, check_angles, held
+from lightcube.geometry import held
 from lightcube.scene.tracer import scene_frames, scene_views
 from lightcube.sheet import beside_targets, contact_sheet
 from lightcube.transfer import Transfer
@@ -61,7 +61,7 @@ def trace(
     io.check_pictures_target(output, overwrite=overwrite)
     shape = None
     if size is not None:
-        width, height = _whole_numbers(size, "x", "--size", 2)
+        width, height = arguments.whole_numbers(size, "x", "--size", 2)
         shape = (width, height)
     grid, views = scene_views(described, frames, shape, span, elevation)
     _check_memory(24 * len(views) * views.picture_shape[0] * views.picture_shape[1])
@@ -110,10 +110,10 @@ def solve(
     _check_partial(output, overwrite=overwrite)
     most = np.inf if max_extinction is None else max_extinction
     backward.check_options(method, lamp, lamp_power, lamp_max, most, iterations)
-    grid = _grid(n, shape, size_mm)
+    grid = arguments.grid(n, shape, size_mm)
     _check_memory(backward.memory_needed(method, grid, (1, 1), 1))
     pictures = io.read_pictures(frames, transfer=transfer)
-    turned = None if angles is None else _numbers(angles, "--angles")
+    turned = None if angles is None else arguments.numbers(angles, "--angles")
     fitted = fit(pictures, grid, angles=turned, span=span, elevation=elevation, frame_width=frame_width, fit=fit_mode)
     raised = float(fitted.views.elevations[0])
     views = len(held(fitted.views, hold, grid))
@@ -215,7 +215,7 @@ def play(
     if target and no_mask:
         raise InputError("--target shows the picture window: leave out --no-mask")
     loaded = io.load(cube)
-    turned = _play_angles(loaded, angles, start, end, count, stops=stops)
+    turned = arguments.play_angles(loaded, angles, start, end, count, stops=stops)
     views = forward.views_at(loaded, turned, whole_screen=no_mask) if not stops or no_mask else loaded.views
     powers = loaded.powers if stops else forward.lamp_at(loaded, turned)
     with progress("playing", as_json=as_json) as advance:
@@ -228,7 +228,7 @@ def play(
             count=len(views),
             transfer=loaded.transfer,
             fps=fps,
-            scale=_movie_scale(output, views) if scale is None else scale,
+            scale=arguments.movie_scale(output, views) if scale is None else scale,
             views=None if target else views,
             names=loaded.names if stops else None,
             overwrite=overwrite,
@@ -307,7 +307,7 @@ def info(
         json_document(facts)
         return
     for name, value in facts.items():
-        out.print(f"{name:>26}  {_short(value)}")
+        out.print(f"{name:>26}  {arguments.short(value)}")
 
 
 @app.command()
@@ -365,44 +365,6 @@ def _done(as_json: bool, sentence: str, **fields: object) -> None:
         out.print(sentence)
 
 
-def _short(value: object) -> str:
-    """Numbers with six digits, nothing as a dash."""
-    if isinstance(value, list):
-        return ", ".join(_short(item) for item in value)
-    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-def _numbers(text: str, option: str) -> list[float]:
-    """Numbers separated by commas."""
-    try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        raise InputError(f"{option} {text}: give numbers separated by commas, such as 0,12.5,90") from None
-
-
-def _whole_numbers(text: str, separator: str, option: str, count: int) -> list[int]:
-    """As many whole numbers of at least 1 as `count` says."""
-    parts = text.split(separator)
-    if len(parts) != count or not all(
-        part.strip().isascii() and part.strip().isdigit() and int(part) for part in parts
-    ):
-        example = separator.join(["64", "48", "32"][:count])
-        raise InputError(f"{option} {text}: give {count} whole numbers of at least 1, such as {example}")
-    return [int(part) for part in parts]
-
-
-def _grid(n: int | None, shape: str | None, size_mm: float) -> Grid:
-    if n is not None and shape is not None:
-        raise InputError("--n and --shape both say how many voxels: leave one of them out")
-    side = 128 if n is None else n
-    nz, ny, nx = (side,) * 3 if shape is None else _whole_numbers(shape, ",", "--shape", 3)
-    if min(nz, ny, nx) < 1:
-        raise InputError(f"--n {n}: a cube needs at least 1 voxel a side")
-    if not (np.isfinite(size_mm) and size_mm > 0):
-        raise InputError(f"--size-mm {size_mm}: give a positive number of millimetres")
-    return Grid((nz, ny, nx), size_mm / max(nz, ny, nx))
-
-
 def _check_partial(output: Path, *, overwrite: bool) -> None:
     """Refuse to run over an interrupted solve unless it is to be replaced; never touch what is none."""
     partial = io.partial_path(output)
@@ -441,30 +403,6 @@ def _by_view(rejected: NDArray[np.int64], cube: Cube) -> str:
     """The views with most rejected pixels, by name."""
     most = Counter(cube.names[view] for view in rejected[:, 0]).most_common(5)
     return ", ".join(f"{count} in {name}" for name, count in most)
-
-
-def _play_angles(
-    cube: Cube, angles: str | None, start: float | None, end: float | None, count: int | None, *, stops: bool
-) -> NDArray[np.float64]:
-    """Stops, given angles, or a turn in which each stop is met exactly."""
-    turn = [start, end, count] != [None] * 3
-    if stops + (angles is not None) + turn > 1:
-        raise InputError("--stops, --angles, and --from, --to and --count are three ways to say the same: use one")
-    if stops:
-        return cube.views.angles
-    if angles is not None:
-        return check_angles(_numbers(angles, "--angles"))
-    first, last, pictures = start or 0.0, 360.0 if end is None else end, 120 if count is None else count
-    if pictures < 1:
-        raise InputError(f"--count {pictures}: give at least 1 picture")
-    if not (np.isfinite([first, last]).all() and first != last):
-        raise InputError(f"--from {first} --to {last}: give two different finite numbers of degrees")
-    return forward.turn(cube, pictures, first, last)
-
-
-def _movie_scale(output: Path, views: Views) -> int:
-    """An even scale that makes a movie at least 256 pixels high; single pictures and numbers stay as they are."""
-    return 1 if output.suffix in ("", ".npy") else 2 * -(-128 // views.picture_shape[0])
 
 
 def _counted(

@@ -16,8 +16,11 @@ _TOE, _TOE_SLOPE, _OFFSET, _GAMMA = 0.0031308, 12.92, 0.055, 2.4
 
 
 @njit(cache=True)
-def display_of_log(u: float) -> tuple[float, float, float]:
-    """Return g, g' and g'' at `u` = ln(linear light), with g the sRGB display value."""
+def display_of_log(u: float, srgb: bool) -> tuple[float, float, float]:
+    """Return g, g' and g'' at `u` = ln(linear light), with g the display value: sRGB, or linear light itself."""
+    if not srgb:
+        value = math.exp(u)
+        return value, value, value
     if u <= math.log(_TOE):
         value = _TOE_SLOPE * math.exp(u)
         return value, value, value
@@ -26,27 +29,29 @@ def display_of_log(u: float) -> tuple[float, float, float]:
 
 
 @njit(cache=True)
-def residual(u: float, wanted: float) -> tuple[float, float]:
+def residual(u: float, wanted: float, srgb: bool) -> tuple[float, float]:
     """Return the two-sided residual and its slope in `u`; both arguments are ln(linear light)."""
-    target, slope, _ = display_of_log(wanted)
+    target, slope, _ = display_of_log(wanted, srgb)
     if u > wanted:
-        value, steepness, _ = display_of_log(u)
+        value, steepness, _ = display_of_log(u, srgb)
         return value - target, steepness
     slope = max(slope, SLOPE_FLOOR)
     return slope * (u - wanted), slope
 
 
 @njit(cache=True)
-def curvature(u: float, wanted: float) -> float:
+def curvature(u: float, wanted: float, srgb: bool) -> float:
     """Return the largest second derivative of half the squared residual for any light up to `u` or the wanted one."""
-    target, slope, _ = display_of_log(wanted)
-    value, steepness, bend = display_of_log(max(u, wanted))
+    target, slope, _ = display_of_log(wanted, srgb)
+    value, steepness, bend = display_of_log(max(u, wanted), srgb)
     dark = max(slope, SLOPE_FLOOR)
     return max(steepness * steepness + (value - target) * bend, dark * dark)
 
 
 @njit(cache=True, parallel=True)
-def descend(absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, slopes: Array) -> Array:
+def descend(
+    absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, srgb: bool, slopes: Array
+) -> Array:
     """Write the derivative of the objective by the absorbance to `slopes`; return the objective of each column.
 
     ``lamp[view, channel]`` is ln P; the objective is half the weighted sum of squared residuals.
@@ -59,7 +64,7 @@ def descend(absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, w
             powers = lamp[view_of_row[row]]
             for column in range(columns):
                 u = powers[column % len(powers)] - absorbance[row, column]
-                value, slope = residual(u, wanted[row, column])
+                value, slope = residual(u, wanted[row, column], srgb)
                 weighted = weights[row, column] * value
                 slopes[row, column] = -weighted * slope
                 sums[part, column] += 0.5 * weighted * value
@@ -67,11 +72,11 @@ def descend(absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, w
 
 
 @njit(cache=True)
-def _pull(u: float, wanted: float) -> tuple[float, float]:
+def _pull(u: float, wanted: float, srgb: bool) -> tuple[float, float]:
     """Return the first and second derivative by `u` of half the squared residual."""
-    target, slope, _ = display_of_log(wanted)
+    target, slope, _ = display_of_log(wanted, srgb)
     if u > wanted:
-        value, steepness, bend = display_of_log(u)
+        value, steepness, bend = display_of_log(u, srgb)
         return (value - target) * steepness, steepness * steepness + (value - target) * bend
     slope = max(slope, SLOPE_FLOOR)
     return slope * slope * (u - wanted), slope * slope
@@ -79,7 +84,15 @@ def _pull(u: float, wanted: float) -> tuple[float, float]:
 
 @njit(cache=True, parallel=True)
 def fit_lamp(
-    absorbance: Array, rows: Array, starts: Array, wanted: Array, weights: Array, low: Array, high: Array, lamp: Array
+    absorbance: Array,
+    rows: Array,
+    starts: Array,
+    wanted: Array,
+    weights: Array,
+    srgb: bool,
+    low: Array,
+    high: Array,
+    lamp: Array,
 ) -> None:
     """Replace ``lamp[view, channel]`` = ln P, where to start, by the best one between `low` and `high`.
 
@@ -97,7 +110,7 @@ def fit_lamp(
             for k in range(starts[view], starts[view + 1]):
                 row = rows[k]
                 for column in range(channel, absorbance.shape[1], channels):
-                    first, second = _pull(u - absorbance[row, column], wanted[row, column])
+                    first, second = _pull(u - absorbance[row, column], wanted[row, column], srgb)
                     slope += weights[row, column] * first
                     bend += weights[row, column] * second
             if slope > 0:
@@ -120,7 +133,14 @@ def fit_lamp(
 
 @njit(cache=True, parallel=True)
 def curvatures(
-    absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, room: float, bounds: Array
+    absorbance: Array,
+    lamp: Array,
+    view_of_row: Array,
+    wanted: Array,
+    weights: Array,
+    srgb: bool,
+    room: float,
+    bounds: Array,
 ) -> None:
     """Write to `bounds` the weighted `curvature` that holds while ln light rises by no more than `room`."""
     rows, columns = absorbance.shape
@@ -129,4 +149,4 @@ def curvatures(
         for column in range(columns):
             brightest = powers[column % len(powers)]
             u = min(brightest - absorbance[row, column] + room, brightest)
-            bounds[row, column] = weights[row, column] * curvature(u, wanted[row, column])
+            bounds[row, column] = weights[row, column] * curvature(u, wanted[row, column], srgb)

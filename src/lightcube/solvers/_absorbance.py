@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lightcube.absorption import absorbance
 from lightcube.solvers.contract import Floats
-from lightcube.transfer import encode
+from lightcube.transfer import Transfer, encode
 
 
 def lamp_per_entry(lamp_powers: Floats, view_of_row: NDArray[np.integer[Any]] | None, shape: tuple[int, int]) -> Floats:
@@ -26,10 +26,13 @@ def absorbance_wanted(
     return absorbance(B / lamp_per_entry(lamp_powers, view_of_row, (B.shape[0], B.shape[1])).astype(B.dtype))
 
 
-def half_level(B: Floats) -> Floats:
-    """Half a display level as absorbance: ``0.5 / 255 / |dg/du|`` with ``g`` the sRGB curve of ``u = ln B``.
+def half_level(B: Floats, transfer: Transfer = "srgb") -> Floats:
+    """Half a display level as absorbance: ``0.5 / 255 / |dg/du|`` with ``g`` the display value of ``u = ln B``.
 
-    On the curve's power part ``dg/du = (g + 0.055) / 2.4``. Pixels on its straight toe, where nobody tells
-    levels apart, are given the tolerance at the toe's end (0.049), so that it does not grow without limit.
+    On the sRGB curve's power part ``dg/du = (g + 0.055) / 2.4``. Pixels on its straight toe, where nobody tells
+    levels apart, are given the tolerance at the toe's end (0.049), so that it does not grow without limit. With
+    ``"linear"`` it is ``dg/du = B``, floored at the light whose tolerance is the same.
     """
+    if transfer == "linear":
+        return (0.5 / 255 / np.maximum(B, 0.04)).astype(B.dtype)
     return 0.5 / 255 * 2.4 / (encode(np.maximum(B, 0.0031308).astype(B.dtype)) + 0.055)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from lightcube.solvers._checks import LinearProblem, check_iterations, linear_problem
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.transfer import Transfer
 
 #: A column has converged once the gradient that the bounds leave is this part of ``A.T W b``, in the 2-norm.
 _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -25,6 +26,7 @@ def cgls(
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
+    transfer: Transfer = "srgb",
 ) -> Result:
     """Minimise ``sum_i w_i (b - A x)_i^2`` within the bounds, ``b = ln P - ln B``, each column with its own steps.
 

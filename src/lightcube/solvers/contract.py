@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from lightcube.transfer import Transfer
+
 Floats = NDArray[np.floating[Any]]
 
 
@@ -101,6 +103,8 @@ class Solver(Protocol):
         At most so many.
     callback
         Called after each iteration.
+    transfer
+        How display values follow from light, for methods that reckon in display levels.
     """
 
     def __call__(  # noqa: D102
@@ -115,4 +119,5 @@ class Solver(Protocol):
         bounds: tuple[float, float] = (0.0, np.inf),
         iterations: int = 100,
         callback: Callback | None = None,
+        transfer: Transfer = "srgb",
     ) -> Result: ...

@@ -1,6 +1,6 @@
 """What the eye sees: least squares in display values, made convex.
 
-With ``u = ln P - A x`` the ln of the light on the screen, ``u*`` the wanted one and ``g`` the sRGB display value as a
+With ``u = ln P - A x`` the ln of the light on the screen, ``u*`` the wanted one and ``g`` the display value as a
 function of ``u``, the residual is ``g(u) - g(u*)`` where a beam is too bright, and its tangent ``g'(u*) (u - u*)``,
 of slope at least 0.03, where it is too dark. Display values alone would leave a beam that became much too dark
 without a gradient, a black speck for ever; logarithms alone would spend everything on darks that nobody can
@@ -26,6 +26,7 @@ from lightcube.solvers._checks import (
     check_weights,
 )
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.transfer import Transfer
 
 #: The curvatures used hold as long as no beam's ln light rises by more than this.
 _ROOM = 0.1
@@ -50,6 +51,7 @@ def display_values(
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 200,
     callback: Callback | None = None,
+    transfer: Transfer = "srgb",
 ) -> Result:
     """Minimise half the weighted sum of squared two-sided residuals over ``lower <= x <= upper`` and the lamp powers.
 
@@ -63,7 +65,7 @@ def display_values(
 
     Parameters
     ----------
-    A, B, weights, view_of_row, lamp_bounds, x0, bounds, iterations, callback
+    A, B, weights, view_of_row, lamp_bounds, x0, bounds, iterations, callback, transfer
         As in `lightcube.solvers.contract.Solver`.
 
     Returns
@@ -77,7 +79,7 @@ def display_values(
     and greedier, SIAM J. Sci. Comput. 44 (2022) A1069-A1091, for momentum and stride.
     G. Golub, V. Pereyra, Separable nonlinear least squares, Inverse Problems 19 (2003) R1-R26, for the lamp.
     """
-    screen = _Screen.of(A, B, weights, view_of_row, lamp_bounds)
+    screen = _Screen.of(A, B, weights, view_of_row, lamp_bounds, transfer)
     lower, upper = check_bounds(bounds)
     x = check_start(x0, (A.shape[1], B.shape[1]), (lower, upper), B.dtype)
     reach = A.forward(np.ones((A.shape[1], 1), B.dtype))
@@ -131,6 +133,8 @@ class _Screen:
     starts: NDArray[np.integer[Any]]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
+    #: Display values are sRGB, not linear light.
+    srgb: bool
 
     @classmethod
     def of(
@@ -140,6 +144,7 @@ class _Screen:
         weights: Floats | None,
         view_of_row: NDArray[np.integer[Any]] | None,
         lamp_bounds: tuple[Floats, Floats] | None,
+        transfer: Transfer,
     ) -> "_Screen":
         """Check what the solver was given; `InputError` names what cannot be used."""
         check_shapes(A, B)
@@ -148,23 +153,26 @@ class _Screen:
         rows = np.argsort(views, kind="stable")
         starts = np.searchsorted(views[rows], np.arange(len(low) + 1))
         wanted = -np.ascontiguousarray(absorbance(B))
-        return cls(wanted, check_weights(weights, B), views, rows, starts, np.log(low), np.log(high))
+        return cls(
+            wanted, check_weights(weights, B), views, rows, starts, np.log(low), np.log(high), transfer == "srgb"
+        )
 
     def best_lamp(self, ax: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the best ln P for absorbance `ax`, found from `start`."""
         if np.array_equal(self.low, self.high):
             return self.low
         lamp = start.copy()
-        display.fit_lamp(ax, self.rows, self.starts, self.wanted, self.weights, self.low, self.high, lamp)
+        data = (self.rows, self.starts, self.wanted, self.weights, self.srgb)
+        display.fit_lamp(ax, *data, self.low, self.high, lamp)
         return lamp
 
     def descend(self, ax: Floats, lamp: NDArray[np.float64], slopes: Floats) -> NDArray[np.float64]:
         """Write the objective's derivative by the absorbance to `slopes`; return the objective per column."""
-        return display.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, slopes)
+        return display.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.srgb, slopes)
 
     def curvatures(self, ax: Floats, lamp: NDArray[np.float64], out: Floats) -> Floats:
         """Write to `out`, and return, bounds on the curvature of each entry's term."""
-        display.curvatures(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, _ROOM, out)
+        display.curvatures(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.srgb, _ROOM, out)
         return out
 
 

@@ -11,6 +11,7 @@ from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, linear_problem
 from lightcube.solvers._momentum import run_ahead
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.transfer import Transfer
 
 #: A column has settled once a sweep changes it by at most this part of its largest number.
 _SETTLED = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -33,6 +34,7 @@ def gauss_seidel(
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
+    transfer: Transfer = "srgb",
 ) -> Result:
     """Solve ``A x = b``, ``b = ln P - ln B``, by row actions within the bounds, throwing out what is inconsistent.
 
@@ -72,7 +74,7 @@ def gauss_seidel(
     dtype, columns = B.dtype, B.shape[1]
     x = problem.x
     rows = _Rows.of(A, dtype)
-    judge = _Judge(problem, rows, half_level(B))
+    judge = _Judge(problem, rows, half_level(B, transfer))
     relaxation = np.ones(columns, dtype)
     limits = dtype.type(problem.lower), dtype.type(problem.upper)
     residuals: list[float] = []

@@ -12,6 +12,7 @@ from lightcube.errors import InputError
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, linear_problem
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.transfer import Transfer
 
 #: The largest matrix, in equations times unknowns.
 LARGEST = 250_000
@@ -37,6 +38,7 @@ def row_reduction(
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
+    transfer: Transfer = "srgb",
 ) -> Result:
     """Solve ``A x = b``, ``b = ln P - ln B``, by Gauss-Jordan elimination in float64, for small cubes.
 
@@ -86,7 +88,7 @@ def row_reduction(
     finished = np.zeros(columns, np.bool_)
     residuals: list[float] = []
     reason = "converged"
-    for some, values, free, out in _solve(A.to_sparse().toarray(), problem, half_level(B).astype(np.float64)):
+    for some, values, free, out in _solve(A.to_sparse().toarray(), problem, half_level(B, transfer).astype(np.float64)):
         x[:, some] = np.clip(np.where(free, 0, values), problem.lower, problem.upper)
         undetermined[:, some], rejected[:, some], finished[some] = free, out, True
         ax = A.forward(x)

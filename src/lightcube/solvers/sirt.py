@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from lightcube.solvers._checks import check_iterations, linear_problem
 from lightcube.solvers._momentum import run_ahead
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.transfer import Transfer
 
 #: A column has converged once a step is shorter than this part of its right-hand side (both in the method's norms).
 _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -24,6 +25,7 @@ def sirt(
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
+    transfer: Transfer = "srgb",
 ) -> Result:
     """Minimise ``sum_i w_i / r_i * (b - A x)_i^2`` within the bounds, ``b = ln P - ln B`` and ``r`` the row sums of A.
 

@@ -1,0 +1,74 @@
+"""What the texts and numbers of the command line mean."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube import forward
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.geometry import Grid, Views, check_angles
+
+
+def numbers(text: str, option: str) -> list[float]:
+    """Numbers separated by commas."""
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"{option} {text}: give numbers separated by commas, such as 0,12.5,90") from None
+
+
+def whole_numbers(text: str, separator: str, option: str, count: int) -> list[int]:
+    """As many whole numbers of at least 1 as `count` says."""
+    parts = text.split(separator)
+    if len(parts) != count or not all(
+        part.strip().isascii() and part.strip().isdigit() and int(part) for part in parts
+    ):
+        example = separator.join(["64", "48", "32"][:count])
+        raise InputError(f"{option} {text}: give {count} whole numbers of at least 1, such as {example}")
+    return [int(part) for part in parts]
+
+
+def grid(n: int | None, shape: str | None, size_mm: float) -> Grid:
+    """Make the grid that --n or --shape, and --size-mm for its longest side, describe."""
+    if n is not None and shape is not None:
+        raise InputError("--n and --shape both say how many voxels: leave one of them out")
+    side = 128 if n is None else n
+    nz, ny, nx = (side,) * 3 if shape is None else whole_numbers(shape, ",", "--shape", 3)
+    if min(nz, ny, nx) < 1:
+        raise InputError(f"--n {n}: a cube needs at least 1 voxel a side")
+    if not (np.isfinite(size_mm) and size_mm > 0):
+        raise InputError(f"--size-mm {size_mm}: give a positive number of millimetres")
+    return Grid((nz, ny, nx), size_mm / max(nz, ny, nx))
+
+
+def play_angles(
+    cube: Cube, angles: str | None, start: float | None, end: float | None, count: int | None, *, stops: bool
+) -> NDArray[np.float64]:
+    """Stops, given angles, or a turn in which each stop is met exactly."""
+    turn = [start, end, count] != [None] * 3
+    if stops + (angles is not None) + turn > 1:
+        raise InputError("--stops, --angles, and --from, --to and --count are three ways to say the same: use one")
+    if stops:
+        return cube.views.angles
+    if angles is not None:
+        return check_angles(numbers(angles, "--angles"))
+    first, last, pictures = start or 0.0, 360.0 if end is None else end, 120 if count is None else count
+    if pictures < 1:
+        raise InputError(f"--count {pictures}: give at least 1 picture")
+    if not (np.isfinite([first, last]).all() and first != last):
+        raise InputError(f"--from {first} --to {last}: give two different finite numbers of degrees")
+    return forward.turn(cube, pictures, first, last)
+
+
+def movie_scale(output: Path, views: Views) -> int:
+    """An even scale that makes a movie at least 256 pixels high; single pictures and numbers stay as they are."""
+    return 1 if output.suffix in ("", ".npy") else 2 * -(-128 // views.picture_shape[0])
+
+
+def short(value: object) -> str:
+    """Numbers with six digits, nothing as a dash."""
+    if isinstance(value, list):
+        return ", ".join(short(item) for item in value)
+    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
