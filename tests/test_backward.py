@@ -11,7 +11,7 @@ from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.forward import lamp_at, play
 from lightcube.frames import Frames
-from lightcube.geometry import Grid, spread_angles, turntable
+from lightcube.geometry import Grid, held, spread_angles, turntable
 from lightcube.metrics import score
 from lightcube.solvers import METHODS
 from lightcube.transfer import decode
@@ -227,6 +227,32 @@ def test_the_lamp_does_not_change_while_a_picture_is_held() -> None:
     assert lamp_at(held_cube, [stop - 10, stop - 3, stop, stop + 10])[:, 0] == pytest.approx([4] * 4)
     halfway = (cube.views.angles[0] + stop) / 2
     assert lamp_at(held_cube, [halfway])[0, 0] == pytest.approx(2)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("count", [2, 3, 5, 16])
+def test_a_hold_of_half_the_spacing_changes_lamps_halfway(count: int, elevation: float) -> None:
+    cube = known_cube(count, elevation, power=1.0)
+    powers = np.repeat(2.0 ** (np.arange(count) % 4)[:, None], 3, axis=1)
+    half = (360 if elevation else 180) / count / 2
+    for hold in (half, 180.0):  # a file may say anything
+        held_cube = Cube(cube.extinction, cube.grid, cube.views, lamp_powers=powers, hold_deg=hold)
+        for offset in (-0.9 * half, 0.0, 0.9 * half):
+            assert np.allclose(lamp_at(held_cube, cube.views.angles + offset), powers)
+
+
+@pytest.mark.parametrize("count", [3, 7, 11])
+def test_the_widest_hold_that_is_named_is_taken(count: int) -> None:
+    views = turntable(Grid(SHAPE), spread_angles(count))
+    with pytest.raises(InputError, match="use at most") as refused:
+        held(views, 89.0, Grid(SHAPE))
+    most = float(str(refused.value).rsplit(" ", 1)[1])
+    assert len(held(views, most, Grid(SHAPE))) > count
+
+
+def test_a_hold_that_meets_another_stops_mirror_image_is_refused() -> None:
+    with pytest.raises(InputError, match=r"use at most 0\.5"):
+        held(turntable(Grid(SHAPE), [0.0, 90.0, 180.0, 271.0]), 40.0, Grid(SHAPE))
 
 
 @pytest.mark.parametrize("hold", [-1.0, 31.0, float("nan"), float("inf")])

@@ -158,6 +158,20 @@ def test_ctrl_c_keeps_what_was_reached(run, frames: Path, tmp_path: Path, monkey
     assert "complete" in run("info", out).out
 
 
+def test_an_interrupted_cube_remembers_how_it_was_made(  # type: ignore[no-untyped-def]
+    run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Image.new("RGB", (12, 6), (200, 180, 160)).save(frames / "4.png")
+    with monkeypatch.context() as patched:
+        patched.setattr("lightcube.metrics.mean_psnr", pressed)
+        run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--fit", "pad", "--hold", 3)
+    run("publish", tmp_path / "a.npz.partial")
+    told = json.loads(run("info", tmp_path / "a.npz", "--json").out)
+    assert (told["made_with_fit"], told["hold"], told["status"]) == ("pad", 3.0, "interrupted")
+    own, fitted = (json.loads(run("score", tmp_path / "a.npz", *f, "--json").out) for f in ([], [frames]))
+    assert own["psnr_mean"] == pytest.approx(fitted["psnr_mean"], abs=0.1)
+
+
 def test_overwrite_removes_an_old_partial(run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     out = tmp_path / "a.npz"
     with monkeypatch.context() as patched:
@@ -238,6 +252,7 @@ BAD = [
     ("score", "{cube}"),
     ("score", "{cube}", "{frames}"),
     ("score", "{cube}", "--sheet", "{cube}"),
+    ("score", "{cube}", "--sheet", "{tmp}/a.png", "--plot", "{tmp}/a.png"),
     ("info", "{none}"),
     ("info", "{frames}/1.png"),
     ("publish", "{cube}"),

@@ -127,6 +127,10 @@ def test_a_turn_meets_every_stop_and_stays_even_elsewhere(elevation: float, coun
         assert np.min(np.abs(angles - stop)) < 1e-9
         assert (np.min(np.abs(angles - stop - 180)) < 1e-9) == (elevation == 0)
     assert np.sum(np.abs(angles - even) > 1e-9) <= (6 if elevation == 0 else 3)
+    laps = turn(cube, 2 * count, 0.0, 720.0)
+    assert np.allclose(laps[count:], angles + 360)
+    back = turn(cube, count, 360.0, 0.0)
+    assert all(np.min(np.abs(np.remainder(back - stop + 180, 360) - 180)) < 1e-9 for stop in cube.views.angles)
     part = turn(cube, 10, 0.0, 50.0)
     assert part.min() >= -2.5
     assert part.max() <= 50.0

@@ -224,3 +224,29 @@ def test_linear_pictures_are_fitted_in_linear_light() -> None:
         shown = 1.5 * np.exp(-matrix.forward(x))
         errors[transfer] = np.sum((shown - np.minimum(wanted, 1.5)) ** 2)
     assert errors["linear"] < 0.99 * errors["srgb"]
+
+
+def test_the_scale_of_all_weights_changes_nothing() -> None:
+    matrix, wanted, weight, powers, _ = small_problem()
+    args = {"view_of_row": matrix.view_of_row, "lamp_bounds": (powers, powers), "iterations": 60}
+    one = display_values(matrix, wanted, weights=weight, **args)  # type: ignore[arg-type]
+    small = display_values(matrix, wanted, weights=weight * 2.0**-30, **args)  # type: ignore[arg-type]
+    assert len(one.residuals) == len(small.residuals)
+    assert np.allclose(one.x, small.x, atol=1e-9)
+
+
+def test_a_lamp_that_nothing_speaks_for_stays_where_it_starts() -> None:
+    matrix, light, _ = lamp_problem()
+    weights = np.where(matrix.view_of_row == 1, 0.0, 1.0)[:, None]
+    bounds = (np.full((4, 2), 0.1), np.full((4, 2), 16.0))
+    result = display_values(
+        matrix, light, weights=weights, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=5
+    )
+    assert np.allclose(result.lamp_powers[1], 1)
+
+
+def test_fixed_lamp_powers_come_back_to_the_last_digit() -> None:
+    matrix, wanted, _, powers, _ = small_problem()
+    odd = powers * 1.1
+    args = {"view_of_row": matrix.view_of_row, "iterations": 2}
+    assert np.array_equal(display_values(matrix, wanted, lamp_bounds=(odd, odd), **args).lamp_powers, odd)  # type: ignore[arg-type]

@@ -54,7 +54,11 @@ def play_angles(
         return cube.views.angles
     if angles is not None:
         return check_angles(numbers(angles, "--angles"))
-    first, last, pictures = start or 0.0, 360.0 if end is None else end, 120 if count is None else count
+    first, last, pictures = (
+        start or 0.0,
+        360.0 if end is None else end,
+        max(120, 2 * len(cube.views)) if count is None else count,
+    )
     if pictures < 1:
         raise InputError(f"--count {pictures}: give at least 1 picture")
     if not (np.isfinite([first, last]).all() and first != last):

@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from typing import Any, Literal, Protocol, get_args
@@ -88,6 +88,7 @@ def solve(
     dtype: type[np.floating[Any]] = np.float32,
     callback: Callable[[Step], bool | None] | None = None,
     store: Store | None = None,
+    provenance: Mapping[str, Any] | None = None,
 ) -> Solution:
     """Find the cube whose shadows are the frames.
 
@@ -121,6 +122,9 @@ def solve(
     store
         Keeps an unfinished cube after 2 s, ever more seldom up to every 30 s, and when the solver was stopped.
 
+    provenance
+        What else the cube shall remember of how it was made.
+
     Raises
     ------
     InputError
@@ -148,6 +152,15 @@ def solve(
         transfer=frames.transfer,
         status="interrupted",
         hold_deg=float(hold),
+        provenance={
+            "lightcube": version("lightcube"),
+            "method": method,
+            "lamp": kind,
+            "lamp_power" if kind == "fixed" else "lamp_max": float(strongest[0, 0]),
+            "max_extinction": None if np.isinf(max_extinction) else float(max_extinction),
+            "angles_per_view": angles,
+            **(provenance or {}),
+        },
     )
 
     def cube_of(x: NDArray[Any], powers: NDArray[Any]) -> Cube:
@@ -169,20 +182,14 @@ def solve(
         **options,
     )
     rejected = _pixels(result.rejected, result.x.shape[1], frames, angles)
-    provenance = {
-        "lightcube": version("lightcube"),
-        "method": method,
-        "lamp": kind,
-        "lamp_power" if kind == "fixed" else "lamp_max": float(strongest[0, 0]),
-        "max_extinction": None if np.isinf(max_extinction) else float(max_extinction),
-        "hold": float(hold),
-        "angles_per_view": angles,
+    made = {
+        **draft.provenance,
         "iterations": len(result.residuals),
         "stop_reason": result.stop_reason,
         "rejected": len(rejected),
     }
     status: Status = "interrupted" if result.stop_reason == "callback" else "complete"
-    cube = replace(cube_of(result.x, result.lamp_powers), provenance=provenance, status=status)
+    cube = replace(cube_of(result.x, result.lamp_powers), provenance=made, status=status)
     if store is not None and status == "interrupted":
         store.keep(cube)
     undetermined = 0 if result.undetermined is None else int(np.sum(result.undetermined))
@@ -229,12 +236,12 @@ def _check_lamp(method: str, lamp: Lamp | None, lamp_power: float | None, lamp_m
         lamp = "per-view" if method == "display" and lamp_power is None else "fixed"
     if lamp not in get_args(Lamp):
         raise InputError(f"unknown lamp {lamp!r}: use one of {', '.join(get_args(Lamp))}")
+    if method != "display" and (lamp != "fixed" or lamp_max is not None):
+        raise InputError(f"method {method} cannot choose lamp powers: give one lamp power, or use method display")
     if lamp == "fixed" and lamp_max is not None:
         raise InputError("a fixed lamp has no largest power: leave that out, or use a lamp per-view or global")
     if lamp != "fixed" and lamp_power is not None:
         raise InputError(f"a lamp that is {lamp} has no given power: leave that out, or use a fixed lamp")
-    if lamp != "fixed" and method != "display":
-        raise InputError(f"method {method} cannot choose lamp powers: use a fixed lamp, or method display")
     if lamp_power is not None and not LAMP_MIN <= lamp_power <= 1e6:
         raise InputError(f"a lamp power must lie between {LAMP_MIN:g} and 1e6, not {lamp_power:g}")
     if lamp_max is not None and not 1 <= lamp_max <= 1e6:

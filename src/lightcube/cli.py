@@ -148,9 +148,8 @@ def solve(
             iterations=iterations,
             callback=step,
             store=io.PartialStore(output),
+            provenance={"fit": fit_mode},
         )
-    made = {**solution.cube.provenance, "fit": fit_mode}
-    solution = replace(solution, cube=replace(solution.cube, provenance=made))
     _finish(solution, fitted, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
 
 
@@ -197,7 +196,7 @@ def play(
     angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
     start: Annotated[float | None, typer.Option("--from", help="First angle in degrees.  [default: 0]")] = None,
     end: Annotated[float | None, typer.Option("--to", help="Where the turn ends, in degrees.  [default: 360]")] = None,
-    count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120]")] = None,
+    count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120 or more]")] = None,
     stops: Annotated[bool, typer.Option("--stops", help="Play just the views that the cube was made for.")] = False,
     scale: Annotated[
         int | None, typer.Option(help="Enlarge each pixel to a square of so many.  [default: movies about 256 high]")
@@ -249,13 +248,15 @@ def score(
         bool, typer.Option("--between", help="Add PSNR and SSIM between the frames, and how far each one stands.")
     ] = False,
     robust: Annotated[bool, typer.Option("--robust", help="Add what a set-up that is a little off costs.")] = False,
-    plot: Annotated[Path | None, typer.Option(help="Draw PSNR against the angle (PNG or SVG).")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw PSNR against the angle (PNG or SVG); --between.")] = None,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compare what a cube really casts with what was wanted."""
     if sheet is not None:
         io.check_sheet_target(sheet, overwrite=overwrite)
+    if plot is not None and plot == sheet:
+        raise InputError(f"--sheet and --plot both name {plot}: give them two names")
     if plot is not None:
         io.check_figure_target(plot, overwrite=overwrite)
     loaded = io.load(cube)

@@ -137,7 +137,7 @@ def targets(frames: Frames) -> NDArray[np.uint8]:
     Weights are scaled so that the largest is 255; none that is above 0 becomes 0.
     """
     weight = frames.weight
-    scaled = np.rint(weight * (255 / float(weight.max())))
+    scaled = np.rint(weight.astype(np.float64) / float(weight.max()) * 255)
     levels = np.where(weight > 0, np.maximum(scaled, 1), 0).astype(np.uint8)
     return np.concatenate([to_uint8(frames.pictures, frames.transfer), levels[..., None]], axis=3)
 

@@ -1,5 +1,6 @@
 """Program 3, the forward computation: what the screen shows at any turntable angle."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.geometry import Views, check_angles, turn_period, turntable
+from lightcube.geometry import Views, check_angles, smallest_gap, turn_period, turntable
 from lightcube.layout import columns_from_volume, pictures_from_columns
 from lightcube.projector import Projector
 
@@ -34,20 +35,20 @@ def turn(cube: Cube, count: int, start: float = 0.0, end: float = 360.0) -> NDAr
     """`count` angles from `start` to before `end` (degrees), each stop's nearest one moved onto the stop.
 
     A picture falls apart within a degree of its stop, so an even turn would pass between the stops and show none.
-    With level light a stop is passed twice, half a turn apart. Stops more than half a step outside are left out.
+    With level light a stop is passed twice, half a turn apart. Where stops are nearer to each other than the angles,
+    some are left out.
     """
-    even = np.linspace(start, end, count, endpoint=False)
-    step = abs(end - start) / count
     stops = cube.views.angles
     if np.all(cube.views.elevations == 0):
         stops = np.concatenate([stops, stops + 180])
-    apart = np.remainder(stops[:, None] - even + 180, 360) - 180
-    nearest = np.argmin(np.abs(apart), axis=1)
-    gaps = apart[np.arange(len(stops)), nearest]
-    angles = even.copy()
-    for stop in np.argsort(-np.abs(gaps)):  # where two stops want the same one, the nearer has it
-        if abs(gaps[stop]) <= step / 2 + 1e-9:
-            angles[nearest[stop]] = even[nearest[stop]] + gaps[stop]
+    laps = 360.0 * np.arange(math.floor(min(start, end) / 360) - 1, math.ceil(max(start, end) / 360) + 1)
+    passed = (stops[:, None] + laps).ravel()
+    angles = np.linspace(start, end, count, endpoint=False)
+    place = (passed - start) * count / (end - start)
+    nearest = np.rint(place).astype(int)
+    for stop in np.argsort(-np.abs(place - nearest)):  # where two stops want the same angle, the nearer has it
+        if 0 <= nearest[stop] < count:
+            angles[nearest[stop]] = passed[stop]
     return angles
 
 
@@ -61,8 +62,10 @@ def lamp_at(cube: Cube, angles: ArrayLike) -> NDArray[np.float64]:
     wanted = check_angles(angles)
     period = turn_period(cube.views)
     logs = np.log(cube.powers)
-    if cube.hold_deg:
-        stops, logs = np.concatenate([stops - cube.hold_deg, stops + cube.hold_deg]), np.concatenate([logs, logs])
+    # just short of the middle between two stops, so that the ends of their holds keep their order
+    hold = min(cube.hold_deg, smallest_gap(stops, period) / 2 - 1e-6)
+    if hold > 0:
+        stops, logs = np.concatenate([stops - hold, stops + hold]), np.concatenate([logs, logs])
     return np.exp(np.stack([np.interp(wanted, stops, column, period=period) for column in logs.T], axis=1))
 
 

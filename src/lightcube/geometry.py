@@ -291,6 +291,12 @@ def turn_period(views: Views) -> float:
     return 180.0 if level and len(np.unique(np.round(views.angles % 180, 9))) == len(views) else 360.0
 
 
+def smallest_gap(angles: NDArray[np.float64], period: float) -> float:
+    """Degrees between the two nearest of the `angles` that differ, which repeat after `period` degrees."""
+    stops = np.unique(np.round(angles % period, 9) % period)
+    return float(np.min(np.diff(stops, append=stops[0] + period)))
+
+
 def held(views: Views, hold_deg: float, grid: Grid) -> Views:
     """Every view at several angles within `hold_deg` degrees of it, itself in the middle, one stop after the other.
 
@@ -304,13 +310,13 @@ def held(views: Views, hold_deg: float, grid: Grid) -> Views:
     """
     if not hold_deg >= 0:
         raise InputError(f"a hold must be a number of degrees of at least 0, not {hold_deg:g}")
-    period = turn_period(views)
-    stops = np.sort(views.angles % period)
-    most = float(np.min(np.diff(stops, append=stops[0] + period))) / 2
+    # level light shows a stop again half a turn on, mirrored
+    most = smallest_gap(views.angles, 180.0 if np.all(views.elevations == 0) else 360.0) / 2
     if hold_deg > most + 1e-9:
+        most = math.floor(most * 1000) / 1000
         raise InputError(
-            f"a hold of {hold_deg:g} degrees is wider than half the way to the next stop: use at most {most:.4g}"
+            f"a hold of {hold_deg:g} degrees is wider than half the way to the next stop: use at most {most:g}"
         )
-    aside = math.ceil(hold_deg / (0.75 * 64 / max(grid.shape[1:])) - 1e-9)
+    aside = max(math.ceil(hold_deg / (0.75 * 64 / max(grid.shape[1:])) - 1e-9), int(hold_deg > 0))
     offsets = np.linspace(-hold_deg, hold_deg, 2 * aside + 1)
     return turned(views.take(np.repeat(np.arange(len(views)), len(offsets))), np.tile(offsets, len(views)))

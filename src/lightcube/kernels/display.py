@@ -113,6 +113,8 @@ def fit_lamp(
                     first, second = _pull(u - absorbance[row, column], wanted[row, column], srgb)
                     slope += weights[row, column] * first
                     bend += weights[row, column] * second
+            if slope == 0:
+                break
             if slope > 0:
                 above, tried_high = u, True
             else:
@@ -148,5 +150,6 @@ def curvatures(
         powers = lamp[view_of_row[row]]
         for column in range(columns):
             brightest = powers[column % len(powers)]
-            u = min(brightest - absorbance[row, column] + room, brightest)
+            now = brightest - absorbance[row, column]
+            u = max(now, min(now + room, brightest))
             bounds[row, column] = weights[row, column] * curvature(u, wanted[row, column], srgb)

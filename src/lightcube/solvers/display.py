@@ -91,6 +91,7 @@ def display_values(
     stride = np.full(B.shape[1], _STRIDE, B.dtype)
     objective = np.full(B.shape[1], np.inf)
     history: list[float] = []
+    enough = _PERFECT * float(np.sum(screen.weights, dtype=np.float64))
     renewal = 1
     for iteration in range(1, check_iterations(iterations) + 1):
         lamp = screen.best_lamp(ay, lamp)
@@ -113,12 +114,12 @@ def display_values(
         y, ay = new + ahead * (new - x), a_new + ahead * (a_new - ax)
         x, ax = new, a_new
         history.append(float(np.sum(objective)))
-        progress = Progress(iteration, iterations, x, ax, history[-1], np.exp(lamp))
+        progress = Progress(iteration, iterations, x, ax, history[-1], screen.powers(lamp))
         if callback is not None and callback(progress):
-            return Result(x, np.exp(lamp), np.array(history), stop_reason="callback")
-        if _has_converged(history, B.size):
-            return Result(x, np.exp(lamp), np.array(history), stop_reason="converged")
-    return Result(x, np.exp(lamp), np.array(history))
+            return Result(x, screen.powers(lamp), np.array(history), stop_reason="callback")
+        if _has_converged(history, enough):
+            return Result(x, screen.powers(lamp), np.array(history), stop_reason="converged")
+    return Result(x, screen.powers(lamp), np.array(history))
 
 
 @dataclass(frozen=True)
@@ -133,6 +134,8 @@ class _Screen:
     starts: NDArray[np.integer[Any]]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
+    #: The same as powers.
+    bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
     #: Display values are sRGB, not linear light.
     srgb: bool
 
@@ -154,8 +157,20 @@ class _Screen:
         starts = np.searchsorted(views[rows], np.arange(len(low) + 1))
         wanted = -np.ascontiguousarray(absorbance(B))
         return cls(
-            wanted, check_weights(weights, B), views, rows, starts, np.log(low), np.log(high), transfer == "srgb"
+            wanted,
+            check_weights(weights, B),
+            views,
+            rows,
+            starts,
+            np.log(low),
+            np.log(high),
+            (low, high),
+            transfer == "srgb",
         )
+
+    def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return P of ln P, within the bounds to the last digit."""
+        return np.clip(np.exp(lamp), *self.bounds)
 
     def best_lamp(self, ax: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the best ln P for absorbance `ax`, found from `start`."""
@@ -181,8 +196,8 @@ def _inverse(metric: Floats) -> Floats:
     return np.divide(1, metric, out=np.zeros_like(metric), where=metric > 0)
 
 
-def _has_converged(history: list[float], entries: int) -> bool:
-    if history[-1] <= _PERFECT * entries:
+def _has_converged(history: list[float], enough: float) -> bool:
+    if history[-1] <= enough:
         return True
     if len(history) <= _PATIENCE:
         return False
