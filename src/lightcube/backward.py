@@ -121,7 +121,6 @@ def solve(
         Called after each iteration; True stops the solver, and the cube's status becomes ``"interrupted"``.
     store
         Keeps an unfinished cube after 2 s, ever more seldom up to every 30 s, and when the solver was stopped.
-
     provenance
         What else the cube shall remember of how it was made.
 
@@ -140,28 +139,19 @@ def solve(
     channels = wanted.shape[-1]
     weights = np.repeat(frames.weight[..., None], channels, axis=-1).astype(dtype)
     stop_of_row = matrix.view_of_row // angles
-    lamps = (1 if kind == "global" else len(frames), channels)
-    strongest = np.full(lamps, lamp_power or 1.0) if kind == "fixed" else np.full(lamps, lamp_max or LAMP_MAX)
-    weakest = strongest if kind == "fixed" else np.full(lamps, LAMP_MIN)
-    draft = Cube(
-        extinction=np.zeros((channels, *grid.shape), np.float32),
-        grid=grid,
-        views=frames.views,
-        targets=targets(frames),
-        names=frames.names,
-        transfer=frames.transfer,
-        status="interrupted",
-        hold_deg=float(hold),
-        provenance={
-            "lightcube": version("lightcube"),
-            "method": method,
-            "lamp": kind,
-            "lamp_power" if kind == "fixed" else "lamp_max": float(strongest[0, 0]),
-            "max_extinction": None if np.isinf(max_extinction) else float(max_extinction),
-            "angles_per_view": angles,
-            **(provenance or {}),
-        },
-    )
+    power = lamp_power or lamp_max or (1.0 if kind == "fixed" else LAMP_MAX)
+    strongest = np.full((1 if kind == "global" else len(frames), channels), power)
+    weakest = strongest if kind == "fixed" else np.full_like(strongest, LAMP_MIN)
+    made = {
+        "lightcube": version("lightcube"),
+        "method": method,
+        "lamp": kind,
+        "lamp_power" if kind == "fixed" else "lamp_max": float(strongest[0, 0]),
+        "max_extinction": None if np.isinf(max_extinction) else float(max_extinction),
+        "angles_per_view": angles,
+        **(provenance or {}),
+    }
+    draft = _draft(frames, grid, channels, hold, made)
 
     def cube_of(x: NDArray[Any], powers: NDArray[Any]) -> Cube:
         columns = x.reshape(grid.shape[1] * grid.shape[2], -1)
@@ -182,18 +172,28 @@ def solve(
         **options,
     )
     rejected = _pixels(result.rejected, result.x.shape[1], frames, angles)
-    made = {
-        **draft.provenance,
-        "iterations": len(result.residuals),
-        "stop_reason": result.stop_reason,
-        "rejected": len(rejected),
-    }
+    made |= {"iterations": len(result.residuals), "stop_reason": result.stop_reason, "rejected": len(rejected)}
     status: Status = "interrupted" if result.stop_reason == "callback" else "complete"
     cube = replace(cube_of(result.x, result.lamp_powers), provenance=made, status=status)
     if store is not None and status == "interrupted":
         store.keep(cube)
     undetermined = 0 if result.undetermined is None else int(np.sum(result.undetermined))
     return Solution(cube, result.residuals, rejected, undetermined, result.stop_reason)
+
+
+def _draft(frames: Frames, grid: Grid, channels: int, hold: float, made: Mapping[str, Any]) -> Cube:
+    """The cube for these frames before anything is computed: transparent, and marked as unfinished."""
+    return Cube(
+        extinction=np.zeros((channels, *grid.shape), np.float32),
+        grid=grid,
+        views=frames.views,
+        targets=targets(frames),
+        names=frames.names,
+        transfer=frames.transfer,
+        status="interrupted",
+        hold_deg=float(hold),
+        provenance=made,
+    )
 
 
 def find_method(name: str) -> Solver:

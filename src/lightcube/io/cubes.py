@@ -146,6 +146,7 @@ def _read_npz(path: Path) -> Cube:
         raise
     except MemoryError as error:
         raise InputError(f"{path} does not fit into this machine's memory: open it on a larger one") from error
+    # NotImplementedError is what zipfile raises for a way of compression that it does not know
     except (ValueError, EOFError, zipfile.BadZipFile, KeyError, RecursionError, NotImplementedError) as error:
         raise _metadata.damaged(path, " ".join(str(error).split())[:100]) from error
     return _metadata.from_json(path, document, extinction, targets)
