@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import Bounds, minimize
 
 from lightcube.geometry import Grid, spread_angles, turntable
-from lightcube.kernels.display import curvature, display_of_log, residual
+from lightcube.kernels.display import conjugate, curvature, display_of_log, residual
 from lightcube.projector import Projector
 from lightcube.solvers.contract import Progress
 from lightcube.solvers.display import display_values
@@ -53,6 +53,17 @@ def test_the_bound_on_the_curvature_holds_below(u: float, wanted: float, srgb: b
         halves = [0.5 * residual(float(v), wanted, srgb)[0] ** 2 for v in (other - step, other, other + step)]
         second = (halves[0] - 2 * halves[1] + halves[2]) / step**2
         assert second <= bound + 1e-4
+
+
+@settings(deadline=None)
+@given(st.floats(-2, 2), st.floats(-9, 0), st.booleans())
+def test_the_conjugate_is_the_largest_of_all_differences(slope: float, wanted: float, srgb: bool) -> None:
+    """Convex duality: slope u - f(u) never exceeds it, and comes near it somewhere."""
+    found = conjugate(slope, wanted, srgb)
+    lines = [slope * u - 0.5 * residual(float(u), wanted, srgb)[0] ** 2 for u in np.linspace(-40, 6, 4001)]
+    assert max(lines) <= found + 1e-9 * (1 + abs(found))
+    if abs(slope) < 0.01:  # its place lies within the range looked at
+        assert max(lines) == pytest.approx(found, rel=2e-3, abs=2e-3)
 
 
 def small_problem() -> tuple[Projector, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -250,3 +261,18 @@ def test_fixed_lamp_powers_come_back_to_the_last_digit() -> None:
     odd = powers * 1.1
     args = {"view_of_row": matrix.view_of_row, "iterations": 2}
     assert np.array_equal(display_values(matrix, wanted, lamp_bounds=(odd, odd), **args).lamp_powers, odd)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("lamp", "bounds"), [(1.0, (0.0, np.inf)), (8.0, (0.0, np.inf)), (8.0, (0.02, 0.5))])
+def test_no_cube_and_no_lamp_comes_below_the_lower_bound(lamp: float, bounds: tuple[float, float]) -> None:
+    """It holds after few iterations, and after many it is nearly reached: then the optimum is known."""
+    matrix, wanted, weight, _, _ = small_problem()
+    powers = (np.full((3, 2), 0.3), np.full((3, 2), lamp))
+    args = {"weights": weight, "view_of_row": matrix.view_of_row, "lamp_bounds": powers, "bounds": bounds}
+    results = [display_values(matrix, wanted, iterations=count, **args) for count in (1, 5, 20, 2000)]  # type: ignore[arg-type]
+    best = float(results[-1].residuals[-1])
+    for result in results:
+        assert result.lower_bound is not None
+        assert 0 <= result.lower_bound <= best * (1 + 1e-6)
+    assert best > 0.01
+    assert results[-1].lower_bound == pytest.approx(best, rel=0.05)

@@ -140,7 +140,7 @@ def solve(
     weights = np.repeat(frames.weight[..., None], channels, axis=-1).astype(dtype)
     stop_of_row = matrix.view_of_row // angles
     power = lamp_power or lamp_max or (1.0 if kind == "fixed" else LAMP_MAX)
-    strongest = np.full((1 if kind == "global" else len(frames), channels), power)
+    strongest = np.full((1 if kind == "global" else len(frames), channels), float(power))
     weakest = strongest if kind == "fixed" else np.full_like(strongest, LAMP_MIN)
     made = {
         "lightcube": version("lightcube"),

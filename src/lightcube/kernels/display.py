@@ -82,6 +82,47 @@ def _pull(u: float, wanted: float, srgb: bool) -> tuple[float, float]:
     return slope * slope * (u - wanted), slope * slope
 
 
+@njit(cache=True)
+def conjugate(slope: float, wanted: float, srgb: bool) -> float:
+    """Return the largest ``slope u - f(u)`` over all `u`, with f half the squared residual (its convex conjugate)."""
+    _, least, _ = display_of_log(wanted, srgb)
+    least = max(least, SLOPE_FLOOR)
+    if slope <= 0:
+        return slope * wanted + 0.5 * slope * slope / (least * least)
+    below, above = wanted, wanted + 1.0
+    while _pull(above, wanted, srgb)[0] < slope:
+        below, above = above, 2 * above - wanted
+    u = above
+    for _ in range(60):
+        first, second = _pull(u, wanted, srgb)
+        if first < slope:
+            below = u
+        else:
+            above = u
+        following = u - (first - slope) / second
+        if not below < following < above:
+            following = 0.5 * (below + above)
+        moved = abs(following - u)
+        u = following
+        if moved < 1e-9:
+            break
+    value, _ = residual(u, wanted, srgb)
+    return slope * u - 0.5 * value * value
+
+
+@njit(cache=True, parallel=True)
+def conjugates(slopes: Array, wanted: Array, weights: Array, srgb: bool) -> Array:
+    """Sum of the weighted terms' convex conjugates at `slopes`, one number per row; slopes are 0 where weights are."""
+    rows, columns = slopes.shape
+    sums = np.zeros(rows)
+    for row in prange(rows):
+        for column in range(columns):
+            weight = weights[row, column]
+            if weight > 0:
+                sums[row] += weight * conjugate(slopes[row, column] / weight, wanted[row, column], srgb)
+    return sums
+
+
 @njit(cache=True, parallel=True)
 def fit_lamp(
     absorbance: Array,

@@ -68,6 +68,9 @@ class Result:
         does not tell.
     stop_reason
         One of ``"converged"``, ``"iterations"``, ``"callback"``.
+    lower_bound
+        What no `x` within the bounds and no lamp can bring the last figure of `residuals` below, or None where a
+        method does not tell.
     """
 
     x: Floats
@@ -76,6 +79,7 @@ class Result:
     rejected: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
     undetermined: NDArray[np.bool_] | None = None
     stop_reason: str = "iterations"
+    lower_bound: float | None = None
 
 
 class Solver(Protocol):
