@@ -16,9 +16,9 @@ STOREYS = [
     ["errors", "kernels"],
     ["transfer", "absorption", "geometry", "layout"],
     ["frames", "cube", "projector", "solvers"],
-    ["fitting"],
+    ["fitting", "coarse", "problem", "units"],
     ["backward", "forward", "scene"],
-    ["metrics", "between", "consistency", "plots", "sheet"],
+    ["metrics", "between", "consistency", "prediction", "conditioning", "planning", "plots", "sheet"],
     ["io"],
     ["arguments", "console", "demo", "cli", ""],
 ]

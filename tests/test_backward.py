@@ -6,15 +6,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lightcube.backward import BLACK, Step, memory_needed, solve
+from lightcube.backward import memory_needed, solve
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.forward import lamp_at, play
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, held, spread_angles, turntable
 from lightcube.metrics import score
+from lightcube.problem import BLACK
 from lightcube.solvers import METHODS
 from lightcube.transfer import decode
+from lightcube.units import Step
 
 SHAPE = (3, 4, 5)
 ITERATIONS: Mapping[str, dict[str, Any]] = {
@@ -96,6 +98,7 @@ def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
     seen: list[np.ndarray] = []
 
     def callback(step: Step) -> bool:
+        assert step.shown is not None
         seen.append(step.shown())
         return step.iteration == 3
 
@@ -107,7 +110,7 @@ def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
 
 
 def test_the_store_is_given_unfinished_cubes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lightcube.backward.FIRST_CHECKPOINT_S", 0.0)
+    monkeypatch.setattr("lightcube.units.FIRST_CHECKPOINT_S", 0.0)
     kept: list[Cube] = []
 
     class Shelf:
@@ -209,6 +212,7 @@ def test_a_held_picture_stands_around_its_stop(elevation: float) -> None:
         seen: list[np.ndarray] = []
 
         def look(step: Step, seen: list[np.ndarray] = seen) -> None:
+            assert step.shown is not None
             seen.append(step.shown())
 
         cube = solve(frames, grid, hold=hold, iterations=200, callback=look).cube

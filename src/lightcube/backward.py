@@ -1,52 +1,30 @@
 """Program 2, the backward computation: from pictures to the cube that casts them."""
 
 import math
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import version
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.coarse import enlarged
 from lightcube.cube import Cube, Status
 from lightcube.errors import InputError
 from lightcube.fitting import targets
 from lightcube.frames import Frames
-from lightcube.geometry import Grid, Views, held, raster_shape
-from lightcube.layout import columns_from_pictures, pictures_from_columns, volume_from_columns
-from lightcube.projector import Projector
+from lightcube.geometry import Grid, raster_shape
+from lightcube.problem import BLACK, Lamp, pose
 from lightcube.solvers import METHODS
-from lightcube.solvers.contract import Progress, Solver
-from lightcube.transfer import decode
+from lightcube.solvers.contract import Solver
+from lightcube.units import COARSE_PASSES, Step, Store, Watch, coarser, solve_levels, solve_units
 
-#: The darkest that a screen can show: half a display level.
-BLACK = 0.5 / 255
-Lamp = Literal["per-view", "global", "fixed"]
 #: Bounds of the power of a lamp that is not fixed, unless the upper one is given.
 LAMP_MIN, LAMP_MAX = 1e-4, 16.0
-#: Seconds from the start to the first checkpoint, and between checkpoints later on; the gaps double in between.
-FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
-
-
-class Store(Protocol):
-    """Where unfinished work is kept."""
-
-    def keep(self, cube: Cube) -> None:
-        """Keep `cube`, which is unfinished, in place of what was kept before."""
-
-
-@dataclass(frozen=True)
-class Step:
-    """Where a running solve stands."""
-
-    iteration: int
-    iterations: int
-    #: What the method minimises, or the norm it reports.
-    residual: float
-    #: What the screen shows now: a function that returns ``(view, row, column, channel)``, linear light.
-    shown: Callable[[], NDArray[np.float32]]
+#: Passes of method display: for a look, for use, and for the last tenth of a dB.
+Quality = Literal["draft", "normal", "best"]
+PASSES: Mapping[Quality, int] = {"draft": 30, "normal": 200, "best": 1000}
 
 
 @dataclass(frozen=True)
@@ -65,6 +43,9 @@ class Solution:
         How many voxel colours no remaining equation determines; they are transparent.
     stop_reason
         One of ``"converged"``, ``"iterations"``, ``"callback"``.
+    lower_bound
+        What no cube and no lamps (with lamp ``"coarse"``: these lamps) can bring the last residual below, or None
+        where the method does not tell.
     """
 
     cube: Cube
@@ -72,6 +53,7 @@ class Solution:
     rejected: NDArray[np.int64]
     undetermined: int
     stop_reason: str
+    lower_bound: float | None = None
 
 
 def solve(
@@ -83,6 +65,7 @@ def solve(
     lamp_power: float | None = None,
     lamp_max: float | None = None,
     hold: float = 0.0,
+    black: float = BLACK,
     max_extinction: float = np.inf,
     iterations: int | None = None,
     dtype: type[np.floating[Any]] = np.float32,
@@ -91,6 +74,9 @@ def solve(
     provenance: Mapping[str, Any] | None = None,
 ) -> Solution:
     """Find the cube whose shadows are the frames.
+
+    Method ``display`` solves a cube more than 48 voxels wide at half the size first (and that one at a quarter, and
+    so on) and starts from there: the lamps and the coarse structure come at an eighth of the price.
 
     Parameters
     ----------
@@ -102,8 +88,9 @@ def solve(
         A name in `lightcube.solvers.METHODS`.
     lamp
         ``"per-view"``: each view and colour has the lamp power that suits it best; ``"global"``: each colour has one
-        for all views; ``"fixed"``: all have `lamp_power`. Default per-view, but fixed where `lamp_power` is given or
-        the method cannot choose.
+        for all views; ``"coarse"``: as per-view, but found at half the size and then kept, so that colours (slabs of
+        slices where the lamp is level) are solved one after the other in a part of the memory; ``"fixed"``: all have
+        `lamp_power`. Default per-view, but fixed where `lamp_power` is given or the method cannot choose.
     lamp_power
         Power of a fixed lamp, linear light; 1 (the default) shows white where a beam meets nothing.
     lamp_max
@@ -111,10 +98,12 @@ def solve(
     hold
         Degrees on either side of its stop over which each picture shall stand, at most half the way to the next one:
         it is asked for at several angles (`lightcube.geometry.held`), under one lamp power.
+    black
+        Display value, in [0, 1), that the screen cannot be darker than; pixels darker than it are wanted at it.
     max_extinction
         Upper bound of the extinction, 1/mm.
     iterations
-        At most so many; None = the method's own number.
+        At most so many at full size; None = the method's own number.
     dtype
         Of the computation: float32 or float64.
     callback
@@ -129,62 +118,22 @@ def solve(
     InputError
         For an unknown method, numbers out of range, or frames that do not belong to the grid.
     """
-    solver = find_method(method)
-    kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations)
+    kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations, black)
     check_frames(frames, grid)
-    views = held(frames.views, hold, grid)
-    angles = len(views) // len(frames)
-    matrix = Projector(grid, views)
-    wanted = np.maximum(frames.pictures, decode(np.array([BLACK], np.float32), frames.transfer)).astype(dtype)
-    channels = wanted.shape[-1]
-    weights = np.repeat(frames.weight[..., None], channels, axis=-1).astype(dtype)
-    stop_of_row = matrix.view_of_row // angles
-    power = lamp_power or lamp_max or (1.0 if kind == "fixed" else LAMP_MAX)
-    strongest = np.full((1 if kind == "global" else len(frames), channels), float(power))
-    weakest = strongest if kind == "fixed" else np.full_like(strongest, LAMP_MIN)
+    problem = pose(frames, grid, hold, kind, black, dtype)
+    power = float(lamp_power or lamp_max or (1.0 if kind == "fixed" else LAMP_MAX))
     made = {
         "lightcube": version("lightcube"),
         "method": method,
         "lamp": kind,
-        "lamp_power" if kind == "fixed" else "lamp_max": float(strongest[0, 0]),
+        "lamp_power" if kind == "fixed" else "lamp_max": power,
         "max_extinction": None if np.isinf(max_extinction) else float(max_extinction),
-        "angles_per_view": angles,
+        "black": float(black),
+        "angles_per_view": problem.angles,
         **(provenance or {}),
     }
-    draft = _draft(frames, grid, channels, hold, made)
-
-    def cube_of(x: NDArray[Any], powers: NDArray[Any]) -> Cube:
-        columns = x.reshape(grid.shape[1] * grid.shape[2], -1)
-        extinction = volume_from_columns(columns, grid.shape, channels)
-        return replace(draft, extinction=extinction, lamp_powers=_per_view(powers, len(frames)))
-
-    watch = _watch(cube_of, frames.views, angles, callback, store)
-    options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
-    result = solver(
-        matrix,
-        columns_from_pictures(np.repeat(wanted, angles, axis=0)).reshape(matrix.shape[0], -1),
-        weights=columns_from_pictures(np.repeat(weights, angles, axis=0)).reshape(matrix.shape[0], -1),
-        view_of_row=stop_of_row if kind != "global" else np.zeros_like(stop_of_row),
-        lamp_bounds=(weakest, strongest),
-        bounds=(0.0, max_extinction),
-        callback=watch,
-        transfer=frames.transfer,
-        **options,
-    )
-    rejected = _pixels(result.rejected, result.x.shape[1], frames, angles)
-    made |= {"iterations": len(result.residuals), "stop_reason": result.stop_reason, "rejected": len(rejected)}
-    status: Status = "interrupted" if result.stop_reason == "callback" else "complete"
-    cube = replace(cube_of(result.x, result.lamp_powers), provenance=made, status=status)
-    if store is not None and status == "interrupted":
-        store.keep(cube)
-    undetermined = 0 if result.undetermined is None else int(np.sum(result.undetermined))
-    return Solution(cube, result.residuals, rejected, undetermined, result.stop_reason)
-
-
-def _draft(frames: Frames, grid: Grid, channels: int, hold: float, made: Mapping[str, Any]) -> Cube:
-    """The cube for these frames before anything is computed: transparent, and marked as unfinished."""
-    return Cube(
-        extinction=np.zeros((channels, *grid.shape), np.float32),
+    draft = Cube(
+        extinction=np.zeros((problem.channels, *grid.shape), np.float32),
         grid=grid,
         views=frames.views,
         targets=targets(frames),
@@ -194,6 +143,29 @@ def _draft(frames: Frames, grid: Grid, channels: int, hold: float, made: Mapping
         hold_deg=float(hold),
         provenance=made,
     )
+    powers = np.full((1 if kind == "global" else len(frames), problem.channels), power)
+    lamp_bounds = (powers if kind == "fixed" else np.full_like(powers, LAMP_MIN), powers)
+    smaller = coarser(frames, grid, at_least=int(kind == "coarse")) if method == "display" else []
+    levels = [pose(*each, hold, kind, black, dtype) for each in smaller]
+    options: dict[str, Any] = {"bounds": (0.0, max_extinction), "transfer": frames.transfer}
+    passes = iterations or (PASSES["normal"] if method == "display" else None)
+    watch = Watch(draft, callback, store, sum(COARSE_PASSES / 8**k for k in range(1, len(levels) + 1)), passes)
+    start, found, going = solve_levels(levels, lamp_bounds, watch, **options)
+    if kind == "coarse":
+        lamp_bounds = (found, found)
+    if passes is not None:
+        options["iterations"] = passes if going else 1
+    x = None if start is None else problem.unknowns(enlarged(start, grid.shape))
+    parts = problem.units() if kind == "coarse" else [slice(None)]
+    result = solve_units(find_method(method), problem, lamp_bounds, x, parts, watch, **options)
+    rejected = problem.pixels(result.rejected)
+    made |= {"iterations": len(result.residuals), "stop_reason": result.stop_reason, "rejected": len(rejected)}
+    status: Status = "interrupted" if result.stop_reason == "callback" else "complete"
+    cube = replace(watch.cube(problem, result.x, result.lamp_powers), provenance=made, status=status)
+    if store is not None and status == "interrupted":
+        store.keep(cube)
+    undetermined = 0 if result.undetermined is None else int(np.sum(result.undetermined))
+    return Solution(cube, result.residuals, rejected, undetermined, result.stop_reason, result.lower_bound)
 
 
 def find_method(name: str) -> Solver:
@@ -249,11 +221,6 @@ def _check_lamp(method: str, lamp: Lamp | None, lamp_power: float | None, lamp_m
     return lamp
 
 
-def _per_view(powers: NDArray[Any], views: int) -> NDArray[np.float64]:
-    """Lamp powers ``(views, channels)`` from those, or from one lamp for all views."""
-    return np.array(np.broadcast_to(powers, (views, powers.shape[1])), dtype=np.float64)
-
-
 def check_options(
     method: str,
     lamp: Lamp | None = None,
@@ -261,52 +228,14 @@ def check_options(
     lamp_max: float | None = None,
     max_extinction: float = np.inf,
     iterations: int | None = None,
+    black: float = BLACK,
 ) -> Lamp:
     """Return the kind of lamp that is meant, or raise `InputError` where `solve` would refuse its options."""
     find_method(method)
     if not max_extinction > 0:
         raise InputError(f"the largest extinction must be a positive number (1/mm), not {max_extinction}")
+    if not BLACK <= black < 1:
+        raise InputError(f"black must be a display value from {BLACK:.4f}, half a level, to below 1, not {black:g}")
     if iterations is not None and iterations < 1:
         raise InputError(f"a solver needs at least 1 iteration, not {iterations}")
     return _check_lamp(method, lamp, lamp_power, lamp_max)
-
-
-def _watch(
-    cube_of: Callable[[NDArray[Any], NDArray[Any]], Cube],
-    views: Views,
-    angles: int,
-    callback: Callable[[Step], bool | None] | None,
-    store: Store | None,
-) -> Callable[[Progress], bool | None]:
-    """What the solver calls after each iteration: checkpoints, and the caller's callback."""
-    last, gap = time.monotonic(), FIRST_CHECKPOINT_S
-
-    def watch(progress: Progress) -> bool | None:
-        nonlocal last, gap
-        if store is not None and time.monotonic() - last > gap:
-            store.keep(cube_of(progress.x, progress.lamp_powers))
-            last, gap = time.monotonic(), min(2 * gap, CHECKPOINT_S)
-        if callback is None:
-            return None
-
-        def shown() -> NDArray[np.float32]:
-            powers = _per_view(progress.lamp_powers, len(views))
-            columns = views.picture_shape[1]
-            at_stops = progress.absorbance.reshape(len(views), angles, columns, -1)[:, angles // 2]
-            light = np.exp(-at_stops).reshape(len(views) * columns, -1)
-            pictures = pictures_from_columns(light, views.picture_shape, powers.shape[1])
-            return (pictures * powers[:, None, None, :]).astype(np.float32)
-
-        return callback(Step(progress.iteration, progress.iterations, progress.residual, shown))
-
-    return watch
-
-
-def _pixels(rejected: NDArray[np.int64], block_columns: int, frames: Frames, angles: int) -> NDArray[np.int64]:
-    """(view, row, column, channel) of rejected (equation, column) pairs of a block with so many columns, each once."""
-    rows, columns = frames.views.picture_shape
-    flat = rejected[:, 0] * block_columns + rejected[:, 1]
-    shape = (len(frames) * angles, columns, rows, frames.pictures.shape[-1])
-    view, column, lifted, channel = np.unravel_index(flat, shape)
-    pixels = np.stack([view // angles, rows - 1 - lifted, column, channel], axis=1).astype(np.int64)
-    return np.unique(pixels, axis=0)

@@ -19,9 +19,11 @@ from lightcube.errors import InputError
 from lightcube.fitting import Fit, check_fit, fit, fit_report, fit_to_views, frames_from_targets
 from lightcube.frames import Frames, Pictures
 from lightcube.geometry import held
+from lightcube.problem import Lamp
 from lightcube.scene.tracer import scene_frames, scene_views
 from lightcube.sheet import beside_targets, contact_sheet
 from lightcube.transfer import Transfer
+from lightcube.units import Step
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -92,7 +94,7 @@ def solve(
     iterations: Annotated[
         int | None, typer.Option(help="At most so many passes; default the method's own (display: 200).")
     ] = None,
-    lamp: Annotated[backward.Lamp | None, typer.Option(help=_LAMP)] = None,
+    lamp: Annotated[Lamp | None, typer.Option(help=_LAMP)] = None,
     lamp_power: Annotated[float | None, typer.Option(help="Power of a fixed lamp, linear light; 1 is white.")] = None,
     lamp_max: Annotated[
         float | None, typer.Option(help="Largest power of the lamp, at least 1.  [default: 16]")
@@ -127,13 +129,13 @@ def solve(
     with ctrl_c() as stopped, progress("solving", as_json=as_json) as advance:
         looked = 0.0
 
-        def step(step: backward.Step) -> bool:
+        def step(step: Step) -> bool:
             nonlocal looked
             figures = {}
-            if time.monotonic() - looked > 1.0:  # a look costs as much as a good part of a pass
+            if step.shown is not None and time.monotonic() - looked > 1.0:  # looking costs as much as half a pass
                 figures = {"PSNR": metrics.mean_psnr(step.shown(), fitted)}
                 looked = time.monotonic()
-            advance(step.iteration, step.iterations, **figures)
+            advance(round(step.done * step.iterations), step.iterations, **figures)
             return stopped()
 
         solution = backward.solve(

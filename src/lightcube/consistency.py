@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward import BLACK, LAMP_MAX
+from lightcube.backward import LAMP_MAX
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, Views
+from lightcube.problem import BLACK
 from lightcube.transfer import decode, encode
 
 Floats = NDArray[np.float64]

@@ -110,7 +110,7 @@ def _one(name: str, frames: Frames, grid: Grid, folder: Path) -> dict[str, Any]:
     """Solve, save, play and score one cube; returns a row of the table."""
     began = time.monotonic()
     with progress(f"solving {name}", as_json=False) as advance:
-        solution = backward.solve(frames, grid, callback=lambda step: advance(step.iteration, step.iterations))
+        solution = backward.solve(frames, grid, callback=lambda step: advance(round(1000 * step.done), 1000))
     seconds = time.monotonic() - began
     cube = solution.cube
     scores = metrics.score(cube, frames)

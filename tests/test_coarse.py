@@ -1,0 +1,164 @@
+"""Half the size and back, and solving from coarse to fine and unit after unit."""
+
+import numpy as np
+import pytest
+
+from lightcube.backward import solve
+from lightcube.coarse import enlarged, halved
+from lightcube.forward import play
+from lightcube.frames import Frames
+from lightcube.geometry import Grid, spread_angles, turntable
+from lightcube.problem import pose
+from lightcube.projector import Projector
+from lightcube.solvers import METHODS
+from lightcube.units import Step, coarser
+
+
+def some_frames(shape: tuple[int, int, int], size: tuple[int, int], elevation: float, count: int = 3) -> Frames:
+    views = turntable(
+        Grid(shape, 0.7), spread_angles(count, elevation=elevation), elevation=elevation, picture_shape=size
+    )
+    random = np.random.default_rng(4)
+    weight = random.choice([0.0, 0.5, 1.0], (count, *size))
+    weight[:, 0, 0] = 1
+    return Frames(random.uniform(0.1, 1, (count, *size, 3)).astype(np.float32), views, weight.astype(np.float32))
+
+
+@pytest.mark.parametrize("size", [(3, 7), (4, 6), (3, 6), (4, 7)])
+def test_halving_keeps_weighted_light_and_the_middle(size: tuple[int, int]) -> None:
+    frames = some_frames((3, 7, 5), size, 35.0)
+    small, grid = halved(frames, Grid((3, 7, 5), 0.7))
+    assert grid == Grid((2, 4, 3), 1.4)
+    assert small.views.picture_shape == ((size[0] + 1) // 2, (size[1] + 1) // 2)
+    assert np.allclose(small.views.angles, frames.views.angles)
+
+    def total(each: Frames) -> np.ndarray:
+        pixel = np.linalg.norm(each.views.row_steps[0]) * np.linalg.norm(each.views.column_steps[0])
+        return np.asarray(np.sum(each.pictures * each.weight[..., None], axis=(1, 2)) * pixel)
+
+    assert np.allclose(total(small), total(frames), rtol=1e-5)
+    turned = Frames(frames.pictures[:, ::-1, ::-1], frames.views, frames.weight[:, ::-1, ::-1])
+    assert np.allclose(halved(turned, Grid((3, 7, 5), 0.7))[0].pictures, small.pictures[:, ::-1, ::-1], atol=1e-6)
+
+
+def test_enlarging_keeps_what_is_linear_and_the_middle() -> None:
+    """A ramp in mm stays the same ramp between the middles of the outermost coarse voxels."""
+    coarse, fine = (3, 4, 5), (6, 7, 9)
+    ramps = [0.3, -0.2, 0.5]
+
+    def ramp(shape: tuple[int, int, int], side: float) -> np.ndarray:
+        axes = [(np.arange(n) - (n - 1) / 2) * side * r for n, r in zip(shape, ramps, strict=True)]
+        return 2 + axes[0][:, None, None] + axes[1][:, None] + axes[2]
+
+    made = enlarged(ramp(coarse, 2.0)[None], fine)[0]
+    inside = (slice(1, -1),) * 3
+    assert made.shape == fine
+    assert np.allclose(made[inside], ramp(fine, 1.0)[inside])
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_a_smooth_cube_casts_nearly_the_same_at_half_the_size(elevation: float) -> None:
+    shape, grid = (6, 12, 10), Grid((6, 12, 10))
+    z, y, x = np.meshgrid(*(np.linspace(-1, 1, n) for n in shape), indexing="ij")
+    volume = np.exp(-2 * (x**2 + (y - 0.2) ** 2 + z**2))[None] * np.ones((3, 1, 1, 1))
+    views = turntable(grid, [20.0, 75.0], elevation=elevation, picture_shape=(6, 4))
+    frames = Frames(np.ones((2, 6, 4, 3), np.float32), views)
+    small, small_grid = halved(frames, grid)
+    half = volume.reshape(3, 3, 2, 6, 2, 5, 2).mean((2, 4, 6))
+    totals = []
+    for problem, extinction in ((pose(frames, grid, 0, "fixed"), volume), (pose(small, small_grid, 0, "fixed"), half)):
+        pixels = problem.matrix.shape[0] * problem.light.shape[1]
+        totals.append(float(np.sum(problem.matrix.forward(problem.unknowns(extinction)))) / pixels)
+    assert totals[1] == pytest.approx(totals[0], rel=0.06)
+
+
+def test_coarser_sizes_run_down_to_the_coarsest() -> None:
+    grid = Grid((50, 130, 100))
+    views = turntable(grid, [20.0, 75.0], elevation=35.0, picture_shape=(10, 8))
+    sizes = [level[1].shape for level in coarser(Frames(np.ones((2, 10, 8, 3), np.float32), views), grid, at_least=0)]
+    assert sizes == [(13, 33, 25), (25, 65, 50)]
+
+
+def test_the_unknowns_are_the_extinction() -> None:
+    frames = some_frames((3, 7, 5), (3, 3), 0.0)
+    problem = pose(frames, Grid((3, 7, 5), 0.7), 0, "fixed")
+    volume = np.random.default_rng(0).random((3, 3, 7, 5)).astype(np.float32)
+    assert np.array_equal(problem.extinction(problem.unknowns(volume)), volume)
+
+
+@pytest.mark.parametrize(("elevation", "size"), [(0.0, (6, 3)), (35.0, (4, 5))])
+def test_units_are_independent_once_the_lamp_is_known(elevation: float, size: tuple[int, int]) -> None:
+    """Lamp "coarse": colours, or slabs of slices, solved one by one give what they give together."""
+    grid = Grid((6, 7, 5), 0.7)
+    frames = some_frames((6, 7, 5), size, elevation)
+    apart = solve(frames, grid, lamp="coarse", lamp_max=4, iterations=400)
+    problem = pose(frames, grid, 0, "coarse")
+    parts = problem.units()
+    assert len(parts) > 1
+    assert np.concatenate([np.arange(problem.light.shape[1])[part] for part in parts]).tolist() == list(
+        range(problem.light.shape[1])
+    )
+    powers = apart.cube.powers
+    assert np.max(powers) <= 4 * (1 + 1e-6)
+    together = METHODS["display"](
+        problem.matrix,
+        problem.light,
+        weights=problem.weights,
+        view_of_row=problem.lamp_of_row,
+        lamp_bounds=(powers, powers),
+        iterations=400,
+    )
+    assert apart.residuals[-1] == pytest.approx(together.residuals[-1], rel=0.05, abs=1e-4)
+    assert apart.lower_bound is not None
+    assert apart.lower_bound <= apart.residuals[-1] * (1 + 1e-5)
+
+
+def test_the_start_at_half_the_size_saves_passes(monkeypatch: pytest.MonkeyPatch) -> None:
+    grid = Grid((8, 12, 12))
+    views = turntable(grid, spread_angles(4, elevation=35), elevation=35, picture_shape=(6, 6))
+    rows, columns = np.mgrid[:6, :6] / 6
+    pictures = np.stack([np.stack([0.2 + 0.7 * rows, 0.9 - 0.6 * columns, 0.5 + 0.3 * rows * columns], -1)] * 4)
+    frames = Frames(pictures.astype(np.float32), views)
+    cold = solve(frames, grid, iterations=5)
+    monkeypatch.setattr("lightcube.units.COARSEST", 8)
+    warm = solve(frames, grid, iterations=5)
+    assert warm.residuals[0] < 0.5 * cold.residuals[0]
+    assert warm.residuals[-1] < cold.residuals[-1]
+
+
+def test_stopped_at_a_coarse_size_it_stays_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lightcube.units.COARSEST", 4)
+    grid = Grid((6, 8, 8), 0.7)
+    frames = some_frames((6, 8, 8), (4, 4), 35.0)
+    steps: list[Step] = []
+
+    def callback(step: Step) -> bool:
+        steps.append(step)
+        return len(steps) == 3
+
+    solution = solve(frames, grid, callback=callback)
+    assert len(steps) == 3
+    assert [step.shown is None for step in steps] == [True] * 3
+    assert [step.iteration for step in steps] == [0] * 3
+    assert solution.cube.status == "interrupted"
+    assert np.all(np.isfinite(play(solution.cube)))
+
+
+@pytest.mark.parametrize("lamp", ["per-view", "coarse"])
+def test_the_work_done_grows_to_all_of_it(monkeypatch: pytest.MonkeyPatch, lamp: str) -> None:
+    monkeypatch.setattr("lightcube.units.COARSEST", 6)
+    grid = Grid((6, 8, 8), 0.7)
+    frames = some_frames((6, 8, 8), (4, 4), 35.0)
+    done: list[float] = []
+    solve(frames, grid, lamp=lamp, iterations=7, callback=lambda step: done.append(step.done))  # type: ignore[arg-type]
+    assert done == sorted(done)
+    assert done[-1] == pytest.approx(1)
+    assert 0 < done[0] < 0.1
+
+
+def test_halves_are_problems_of_their_own() -> None:
+    """A coarse pixel stands for the same beams: with all weights, the same column heights of the screen."""
+    frames = some_frames((5, 7, 6), (5, 7), 0.0)
+    small, grid = halved(frames, Grid((5, 7, 6), 0.7))
+    matrix = Projector(grid, small.views)
+    assert matrix.shape == (3 * 4, 4 * 3)
