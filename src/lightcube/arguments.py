@@ -8,7 +8,10 @@ from numpy.typing import NDArray
 from lightcube import forward
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.geometry import Grid, Views, check_angles
+from lightcube.geometry import Views, check_angles
+
+#: Voxels along the longest side of a cube, unless something else is said.
+DEFAULT_N = 128
 
 
 def numbers(text: str, option: str) -> list[float]:
@@ -30,17 +33,17 @@ def whole_numbers(text: str, separator: str, option: str, count: int) -> list[in
     return [int(part) for part in parts]
 
 
-def grid(n: int | None, shape: str | None, size_mm: float) -> Grid:
-    """Make the grid that --n or --shape, and --size-mm for its longest side, describe."""
+def voxels(n: int | None, shape: str | None, size_mm: float) -> tuple[int, int, int]:
+    """``(nz, ny, nx)`` that --n or --shape describe; refuses a --size-mm that is none."""
     if n is not None and shape is not None:
         raise InputError("--n and --shape both say how many voxels: leave one of them out")
-    side = 128 if n is None else n
+    side = DEFAULT_N if n is None else n
     nz, ny, nx = (side,) * 3 if shape is None else whole_numbers(shape, ",", "--shape", 3)
     if min(nz, ny, nx) < 1:
         raise InputError(f"--n {n}: a cube needs at least 1 voxel a side")
     if not (np.isfinite(size_mm) and size_mm > 0):
         raise InputError(f"--size-mm {size_mm}: give a positive number of millimetres")
-    return Grid((nz, ny, nx), size_mm / max(nz, ny, nx))
+    return nz, ny, nx
 
 
 def play_angles(

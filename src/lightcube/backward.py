@@ -55,6 +55,15 @@ class Solution:
     stop_reason: str
     lower_bound: float | None = None
 
+    @property
+    def optimality(self) -> dict[str, float] | None:
+        """The objective, what it cannot be below, and how many dB at most are left to gain on average, if known."""
+        if self.lower_bound is None:
+            return None
+        reached = float(self.residuals[-1])
+        most = 10 * math.log10(reached / self.lower_bound) if 0 < self.lower_bound < reached else None
+        return {"objective": reached, "lower_bound": self.lower_bound} | ({} if most is None else {"left_db": most})
+
 
 def solve(
     frames: Frames,

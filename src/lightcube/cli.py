@@ -2,7 +2,6 @@
 
 import sys
 import time
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -12,17 +11,31 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from lightcube import arguments, backward, between, consistency, demo, forward, io, metrics, plots
+from lightcube import arguments, backward, between, demo, forward, io, metrics, plots, solving
+from lightcube.cli_options import (
+    ANGLES,
+    ELEVATION,
+    FIT,
+    FRAME_WIDTH,
+    FRAMES,
+    HOLD,
+    LAMP,
+    LAMP_MAX,
+    LAMP_POWER,
+    ORDER,
+    PAPER,
+    SHAPE,
+    SPAN,
+    TRANSFER,
+    N,
+)
 from lightcube.console import ctrl_c, err, json_document, json_line, out, plain_warnings, prepare, progress
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.fitting import Fit, check_fit, fit, fit_report, fit_to_views, frames_from_targets
-from lightcube.frames import Frames, Pictures
-from lightcube.geometry import held
-from lightcube.problem import Lamp
+from lightcube.fitting import check_fit, fit_to_views, frames_from_targets
+from lightcube.frames import Frames
 from lightcube.scene.tracer import scene_frames, scene_views
 from lightcube.sheet import beside_targets, contact_sheet
-from lightcube.transfer import Transfer
 from lightcube.units import Step
 
 app = typer.Typer(
@@ -37,8 +50,6 @@ app = typer.Typer(
 OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
 OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
 JSON = typer.Option("--json", help="Print JSON for machines.")
-_FIT = "Pictures of another aspect than the first: cut their edges, leave the rest of the frame free, or distort."
-_LAMP = "One power per picture and colour, one per colour, or fixed.  [default: per-view]"
 FPS = typer.Option("--fps", help="Pictures per second of a movie.")
 
 
@@ -66,7 +77,7 @@ def trace(
         width, height = arguments.whole_numbers(size, "x", "--size", 2)
         shape = (width, height)
     grid, views = scene_views(described, frames, shape, span, elevation)
-    _check_memory(24 * len(views) * views.picture_shape[0] * views.picture_shape[1])
+    solving.check_memory(24 * len(views) * views.picture_shape[0] * views.picture_shape[1])
     with progress("tracing", as_json=as_json) as advance:
         made = scene_frames(described, views, grid, callback=advance)
     io.write_pictures(output, made.pictures, fps=fps, views=views, overwrite=overwrite)
@@ -75,56 +86,114 @@ def trace(
 
 
 @app.command()
+def check(
+    frames: FRAMES,
+    n: N = None,
+    shape: SHAPE = None,
+    frame_width: FRAME_WIDTH = None,
+    fit_mode: FIT = "crop",
+    angles: ANGLES = None,
+    span: SPAN = None,
+    elevation: ELEVATION = None,
+    paper: PAPER = False,
+    order: ORDER = "given",
+    lamp: LAMP = None,
+    lamp_power: LAMP_POWER = None,
+    lamp_max: LAMP_MAX = None,
+    hold: HOLD = None,
+    transfer: TRANSFER = "srgb",
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Say before solving what can be known: what contradicts itself, how full the cube is, how good it will be."""
+    options = solving.Options(
+        n=n,
+        shape=shape,
+        frame_width=frame_width,
+        fit=fit_mode,
+        angles=angles,
+        span=span,
+        elevation=elevation,
+        paper=paper,
+        order=order,
+        lamp=lamp,
+        lamp_power=lamp_power,
+        lamp_max=lamp_max,
+        hold=hold,
+        transfer=transfer,
+    )
+    prepared = solving.prepare(frames, options)
+    advice = solving.what_to_change(prepared, options)
+    facts = solving.facts(prepared, options)
+    if as_json:
+        json_document({**facts, "advice": advice})
+        return
+    for line in [*solving.in_short(prepared, options), "", *solving.table(facts), "", *advice]:
+        out.print(line)
+
+
+@app.command()
 def solve(
-    frames: Annotated[Path, typer.Argument(help="A folder of pictures, an animated image or a video.")],
+    frames: FRAMES,
     output: Annotated[Path, OUT],
-    n: Annotated[int | None, typer.Option("--n", help="Side of the cube in voxels.  [default: 128]")] = None,
-    shape: Annotated[str | None, typer.Option(help="Voxels along each axis, NZ,NY,NX, instead of --n.")] = None,
+    n: N = None,
+    shape: SHAPE = None,
     size_mm: Annotated[float, typer.Option(help="Longest side of the cube in mm.")] = 100.0,
-    frame_width: Annotated[float, typer.Option(help="Width of the pictures as a fraction of the cube's.")] = 1.0,
-    fit_mode: Annotated[Fit, typer.Option("--fit", help=_FIT)] = "crop",
-    angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C, one per picture.")] = None,
-    span: Annotated[
-        float | None, typer.Option(help="Degrees to spread the views over, evenly.  [default: 180, raised 360]")
-    ] = None,
-    elevation: Annotated[
-        float | None, typer.Option(help="Elevation of the lamp in degrees; 0 is level, 35 holds most.  [default: 0]")
+    frame_width: FRAME_WIDTH = None,
+    fit_mode: FIT = "crop",
+    angles: ANGLES = None,
+    span: SPAN = None,
+    elevation: ELEVATION = None,
+    paper: PAPER = False,
+    order: ORDER = "given",
+    quality: Annotated[
+        backward.Quality | None, typer.Option(help="How many passes: 30, 200 or 1000.  [default: normal]")
     ] = None,
     method: Annotated[str, typer.Option(help=f"One of {', '.join(backward.METHODS)}.")] = "display",
-    iterations: Annotated[
-        int | None, typer.Option(help="At most so many passes; default the method's own (display: 200).")
+    iterations: Annotated[int | None, typer.Option(help="At most so many passes, instead of --quality.")] = None,
+    lamp: LAMP = None,
+    lamp_power: LAMP_POWER = None,
+    lamp_max: LAMP_MAX = None,
+    hold: HOLD = None,
+    black: Annotated[
+        float | None, typer.Option(help="Display value, 0 to 1, that the screen cannot be darker than.")
     ] = None,
-    lamp: Annotated[Lamp | None, typer.Option(help=_LAMP)] = None,
-    lamp_power: Annotated[float | None, typer.Option(help="Power of a fixed lamp, linear light; 1 is white.")] = None,
-    lamp_max: Annotated[
-        float | None, typer.Option(help="Largest power of the lamp, at least 1.  [default: 16]")
-    ] = None,
-    hold: Annotated[float, typer.Option(help="Degrees around its stop over which each picture shall stand.")] = 0.0,
     max_extinction: Annotated[
         float | None, typer.Option(help="Largest extinction of the material, 1/mm; default none.")
     ] = None,
-    transfer: Annotated[Transfer, typer.Option(help="How picture values become linear light.")] = "srgb",
+    transfer: TRANSFER = "srgb",
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compute the cube whose shadows are the frames."""
+    if quality is not None and iterations is not None:
+        raise InputError("--quality and --iterations both say how many passes: leave one of them out")
     io.check_cube_target(output, overwrite=overwrite)
     _check_partial(output, overwrite=overwrite)
-    most = np.inf if max_extinction is None else max_extinction
-    backward.check_options(method, lamp, lamp_power, lamp_max, most, iterations)
-    grid = arguments.grid(n, shape, size_mm)
-    _check_memory(backward.memory_needed(method, grid, (1, 1), 1))
-    pictures = io.read_pictures(frames, transfer=transfer)
-    turned = None if angles is None else arguments.numbers(angles, "--angles")
-    fitted = fit(pictures, grid, angles=turned, span=span, elevation=elevation, frame_width=frame_width, fit=fit_mode)
-    raised = float(fitted.views.elevations[0])
-    views = len(held(fitted.views, hold, grid))
-    _check_memory(backward.memory_needed(method, grid, fitted.views.picture_shape, views, raised))
-    if hold and not as_json:
-        err.print(
-            f"held {hold:g} degrees either way: {views // len(fitted)} angles a picture, and as many times the work"
-        )
-    _say_before(pictures, fitted, fit_mode, as_json=as_json)
+    options = solving.Options(
+        n=n,
+        shape=shape,
+        size_mm=size_mm,
+        frame_width=frame_width,
+        fit=fit_mode,
+        angles=angles,
+        span=span,
+        elevation=elevation,
+        paper=paper,
+        order=order,
+        method=method,
+        lamp=lamp,
+        lamp_power=lamp_power,
+        lamp_max=lamp_max,
+        hold=hold,
+        black=black,
+        max_extinction=max_extinction,
+        iterations=iterations if quality is None else backward.PASSES[quality],
+        transfer=transfer,
+    )
+    prepared = solving.prepare(frames, options)
+    solving.check_room(prepared, options)
+    for line in [*solving.in_short(prepared, options), *solving.what_to_change(prepared, options)] * (not as_json):
+        err.print(line)
     began = time.monotonic()
     with ctrl_c() as stopped, progress("solving", as_json=as_json) as advance:
         looked = 0.0
@@ -133,30 +202,23 @@ def solve(
             nonlocal looked
             figures = {}
             if step.shown is not None and time.monotonic() - looked > 1.0:  # looking costs as much as half a pass
-                figures = {"PSNR": metrics.mean_psnr(step.shown(), fitted)}
+                figures = {"PSNR": metrics.mean_psnr(step.shown(), prepared.frames)}
                 looked = time.monotonic()
             advance(round(step.done * step.iterations), step.iterations, **figures)
             return stopped()
 
-        solution = backward.solve(
-            fitted,
-            grid,
-            method=method,
-            lamp=lamp,
-            lamp_power=lamp_power,
-            lamp_max=lamp_max,
-            hold=hold,
-            max_extinction=most,
-            iterations=iterations,
-            callback=step,
-            store=io.PartialStore(output),
-            provenance={"fit": fit_mode},
-        )
-    _finish(solution, fitted, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
+        solution = solving.solve(prepared, options, callback=step, store=io.PartialStore(output))
+    _finish(solution, prepared, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
 
 
 def _finish(
-    solution: backward.Solution, frames: Frames, output: Path, seconds: float, *, overwrite: bool, as_json: bool
+    solution: backward.Solution,
+    prepared: solving.Prepared,
+    output: Path,
+    seconds: float,
+    *,
+    overwrite: bool,
+    as_json: bool,
 ) -> None:
     """Score, write and report what `solve` found."""
     cube = solution.cube
@@ -165,7 +227,7 @@ def _finish(
         err.print(f"interrupted: {partial} holds what was reached; publish it with")
         err.print(f"  lightcube publish {partial}")
         raise typer.Exit(130)
-    scores = metrics.score(cube, frames)
+    scores = metrics.score(cube, prepared.frames)
     io.publish(io.write_partial(output, replace(cube, scores=scores)), overwrite=overwrite)
     if as_json:
         json_line(
@@ -174,14 +236,17 @@ def _finish(
             seconds=seconds,
             iterations=len(solution.residuals),
             residual=float(solution.residuals[-1]),
+            optimality=solution.optimality,
             stop_reason=solution.stop_reason,
             rejected=solution.rejected.tolist(),
             undetermined=solution.undetermined,
+            predicted=solving.said(prepared.plan.prediction),
             **scores,
         )
         return
     if len(solution.rejected):
-        out.print(f"{len(solution.rejected)} inconsistent pixel values thrown out: {_by_view(solution.rejected, cube)}")
+        thrown_out = solving.by_view(solution.rejected, cube.names)
+        out.print(f"{len(solution.rejected)} inconsistent pixel values thrown out: {thrown_out}")
     if solution.undetermined:
         out.print(f"{solution.undetermined} voxel values that nothing determines are transparent")
     out.print(
@@ -379,35 +444,6 @@ def _check_partial(output: Path, *, overwrite: bool) -> None:
         raise InputError(f"{partial} holds an interrupted solve: publish it, or use --overwrite to start anew")
 
 
-def _check_memory(needed: int) -> None:
-    free = io.free_memory()
-    if needed > free:
-        raise InputError(
-            f"this needs {needed / 1e9:.3g} GB of memory and {free / 1e9:.3g} GB are free: "
-            "use a smaller cube, or fewer or smaller pictures"
-        )
-
-
-def _say_before(pictures: Pictures, frames: Frames, fit_mode: Fit, *, as_json: bool) -> None:
-    """Print what was done to the pictures, and what no cube can do."""
-    if not as_json:
-        err.print(fit_report(pictures, frames, fit_mode))
-    conflicts = consistency.mirror_conflicts(frames)
-    if conflicts:
-        first, second = (frames.names[view] for view in conflicts[0])
-        more = f" (and {len(conflicts) - 1} more such pairs)" if len(conflicts) > 1 else ""
-        err.print(
-            f"note: {first} and {second} are half a turn apart, where a level lamp shows mirror images, but they are "
-            f"different pictures{more}: use other angles or raise the lamp (--elevation)",
-        )
-
-
-def _by_view(rejected: NDArray[np.int64], cube: Cube) -> str:
-    """The views with most rejected pixels, by name."""
-    most = Counter(cube.names[view] for view in rejected[:, 0]).most_common(5)
-    return ", ".join(f"{count} in {name}" for name, count in most)
-
-
 def _counted(
     pictures: Iterable[NDArray[np.float32]], count: int, advance: Callable[..., None]
 ) -> Iterator[NDArray[np.float32]]:
@@ -417,8 +453,12 @@ def _counted(
 
 
 def _refitted(cube: Cube, frames: Path) -> Frames:
-    """Pictures as `solve` fitted them to the cube."""
+    """Pictures as `solve` fitted them to the cube, in its order."""
     pictures = io.read_pictures(frames, transfer=cube.transfer)
+    order = cube.provenance.get("order", range(len(pictures)))
+    if len(order) == len(pictures):
+        images, names = (tuple(each[picture] for picture in order) for each in (pictures.images, pictures.names))
+        pictures = replace(pictures, images=images, names=names)
     if pictures.angles is not None and len(pictures) == len(cube.views):
         apart = np.abs(np.remainder(pictures.angles - cube.views.angles + 180, 360) - 180)
         if np.max(apart) > 1e-6:

@@ -17,6 +17,8 @@ from lightcube.transfer import from_uint8, to_uint8
 Fit = Literal["crop", "pad", "stretch"]
 Picture = NDArray[np.float32]
 
+#: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
+RAISED = 35.0
 #: Angles closer than this, in degrees and whole turns apart, are the same view.
 _SAME_ANGLE = 1e-9
 
@@ -65,7 +67,7 @@ def fit(
     span
         Degrees over which angles are spread evenly, instead of those that came with the pictures.
     elevation
-        Of the lamp, in degrees; default the one that came with the pictures, else 0.
+        Of the lamp, in degrees; default the one that came with the pictures, else 35.
     frame_width
         Width of the frames as a fraction of the cube's width.
     fit
@@ -91,7 +93,7 @@ def fit(
             f"{len(pictures)} picture{'s' if not pictures.images else ''} cannot fill a cube: give at least two"
         )
     lamp = elevation if elevation is not None else pictures.elevation
-    lamp = check_elevation(0.0 if lamp is None else lamp)
+    lamp = check_elevation(RAISED if lamp is None else lamp)
     turned = _angles(pictures, angles, span, lamp)
     rows, columns = pictures.images[0].shape[:2]
     shape = picture_shape(grid, frame_width, columns / rows, lamp)

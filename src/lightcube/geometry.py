@@ -297,11 +297,20 @@ def smallest_gap(angles: NDArray[np.float64], period: float) -> float:
     return float(np.min(np.diff(stops, append=stops[0] + period)))
 
 
+def widest_hold(views: Views) -> float:
+    """Half the way, in degrees, between the two nearest stops; level light shows each again half a turn on."""
+    return smallest_gap(views.angles, 180.0 if np.all(views.elevations == 0) else 360.0) / 2
+
+
+def dense_step(grid: Grid) -> float:
+    """Degrees between two angles for a picture to stand in between: 0.75 for 64 voxels across, as 1/n (measured)."""
+    return 0.75 * 64 / max(grid.shape[1:])
+
+
 def held(views: Views, hold_deg: float, grid: Grid) -> Views:
     """Every view at several angles within `hold_deg` degrees of it, itself in the middle, one stop after the other.
 
-    The angles are near enough to each other for the picture to stand in between: at most 0.75 degrees for 64 voxels
-    across, and in inverse proportion to their number (measured).
+    The angles are near enough to each other for the picture to stand in between (`dense_step`).
 
     Raises
     ------
@@ -310,13 +319,12 @@ def held(views: Views, hold_deg: float, grid: Grid) -> Views:
     """
     if not hold_deg >= 0:
         raise InputError(f"a hold must be a number of degrees of at least 0, not {hold_deg:g}")
-    # level light shows a stop again half a turn on, mirrored
-    most = smallest_gap(views.angles, 180.0 if np.all(views.elevations == 0) else 360.0) / 2
+    most = widest_hold(views)
     if hold_deg > most + 1e-9:
         most = math.floor(most * 1000) / 1000
         raise InputError(
             f"a hold of {hold_deg:g} degrees is wider than half the way to the next stop: use at most {most:g}"
         )
-    aside = max(math.ceil(hold_deg / (0.75 * 64 / max(grid.shape[1:])) - 1e-9), int(hold_deg > 0))
+    aside = max(math.ceil(hold_deg / dense_step(grid) - 1e-9), int(hold_deg > 0))
     offsets = np.linspace(-hold_deg, hold_deg, 2 * aside + 1)
     return turned(views.take(np.repeat(np.arange(len(views)), len(offsets))), np.tile(offsets, len(views)))

@@ -1,0 +1,310 @@
+"""What `check` and `solve` share: from the options of the command line to a plan, and what is said of it."""
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube import arguments, backward, io
+from lightcube.conditioning import Order, best_order
+from lightcube.consistency import advice, check
+from lightcube.errors import InputError
+from lightcube.fitting import Fit, fit, fit_report
+from lightcube.frames import Frames, Pictures
+from lightcube.geometry import Grid, held
+from lightcube.planning import Plan, plan
+from lightcube.prediction import Prediction, predict
+from lightcube.problem import BLACK, Lamp
+from lightcube.transfer import Transfer
+from lightcube.units import Step, Store
+
+Arrangement = Literal["given", "best"]
+#: A picture below this PSNR, dB, is hardly recognised.
+POOR_DB = 25.0
+#: Orders of more pictures than this are looked for only when asked for: it takes too long.
+_QUICK = 40
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the command line says of the cube, None where it says nothing."""
+
+    n: int | None = None
+    shape: str | None = None
+    size_mm: float = 100.0
+    frame_width: float | None = None
+    fit: Fit = "crop"
+    angles: str | None = None
+    span: float | None = None
+    elevation: float | None = None
+    paper: bool = False
+    order: Arrangement = "given"
+    method: str = "display"
+    lamp: Lamp | None = None
+    lamp_power: float | None = None
+    lamp_max: float | None = None
+    hold: float | None = None
+    black: float | None = None
+    max_extinction: float | None = None
+    iterations: int | None = None
+    transfer: Transfer = "srgb"
+
+    @property
+    def lamps(self) -> dict[str, Any]:
+        """As `lightcube.backward.solve` and `lightcube.planning.plan` take them."""
+        most = np.inf if self.max_extinction is None else self.max_extinction
+        return {
+            "lamp": self.lamp,
+            "lamp_power": self.lamp_power,
+            "lamp_max": self.lamp_max,
+            "max_extinction": most,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """Pictures, what is planned for them, and in which order they shall stand."""
+
+    pictures: Pictures
+    plan: Plan
+    order: Order | None
+
+    @property
+    def frames(self) -> Frames:
+        """As they are to be solved."""
+        return self.plan.frames
+
+
+def as_in_the_paper(options: Options) -> Options:
+    """Options with the paper's own set-up, or `InputError` where others contradict it."""
+    said = {
+        "--frame-width": options.frame_width,
+        "--angles": options.angles,
+        "--span": options.span,
+        "--elevation": options.elevation,
+        "--lamp": options.lamp,
+        "--lamp-power": options.lamp_power,
+        "--lamp-max": options.lamp_max,
+        "--hold": options.hold,
+    }
+    contradiction = [name for name, value in said.items() if value is not None]
+    if contradiction:
+        raise InputError(
+            f"--paper says what {contradiction[0]} says too (lamp level and of power 1, half a turn, pictures as wide "
+            "as the cube, no hold): leave out one of the two"
+        )
+    voxels = options.shape or ",".join([str(options.n or arguments.DEFAULT_N)] * 3)
+    white: dict[str, Any] = {"elevation": 0.0, "span": 180.0, "frame_width": 1.0, "lamp_power": 1.0, "hold": 0.0}
+    return replace(options, **white, shape=voxels, n=None)
+
+
+def prepare(path: Path, options: Options) -> Prepared:
+    """Read the pictures and plan the cube; `InputError` for all that cannot be."""
+    if options.paper:
+        options = as_in_the_paper(options)
+    kind = backward.check_options(
+        options.method, **options.lamps, iterations=options.iterations, black=options.black or BLACK
+    )
+    shape = arguments.voxels(options.n, options.shape, options.size_mm)
+    check_memory(backward.memory_needed(options.method, Grid(shape), (1, 1), 1))
+    pictures = io.read_pictures(path, transfer=options.transfer)
+    turned = None if options.angles is None else arguments.numbers(options.angles, "--angles")
+    lamps = options.lamps
+    if kind == "fixed":
+        lamps |= {"lamp": "fixed"}
+    planned = plan(
+        pictures,
+        max(shape),
+        size_mm=options.size_mm,
+        shape=None if options.shape is None else shape,
+        frame_width=options.frame_width,
+        angles=turned,
+        span=options.span,
+        elevation=options.elevation,
+        fit_mode=options.fit,
+        hold=options.hold if options.method == "display" else options.hold or 0.0,
+        **lamps,
+    )
+    order = None
+    if options.order == "best" or len(pictures) <= _QUICK:
+        order = best_order(planned.frames, planned.grid, lamp_max=options.lamp_max or backward.LAMP_MAX)
+    if options.order == "best" and order is not None:
+        frames = order(planned.frames)
+        planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
+    return Prepared(pictures, planned, order)
+
+
+def check_room(prepared: Prepared, options: Options) -> None:
+    """Raise `InputError` where there is not enough memory to solve what was prepared."""
+    planned = prepared.plan
+    views = planned.frames.views
+    angles = len(held(views, planned.hold, planned.grid))
+    raised = float(views.elevations[0])
+    check_memory(backward.memory_needed(options.method, planned.grid, views.picture_shape, angles, raised))
+
+
+def solve(
+    prepared: Prepared, options: Options, *, callback: Callable[[Step], bool | None], store: Store
+) -> backward.Solution:
+    """Solve what was prepared."""
+    planned = prepared.plan
+    provenance: dict[str, Any] = {"fit": options.fit, "predicted": said(planned.prediction)}
+    if options.order == "best" and prepared.order is not None:
+        provenance["order"] = [int(picture) for picture in prepared.order.pictures]
+    lamps = as_in_the_paper(options).lamps if options.paper else options.lamps
+    return backward.solve(
+        planned.frames,
+        planned.grid,
+        method=options.method,
+        hold=planned.hold,
+        black=options.black or BLACK,
+        iterations=options.iterations,
+        callback=callback,
+        store=store,
+        provenance=provenance,
+        **lamps,
+    )
+
+
+def table(facts: dict[str, Any]) -> list[str]:
+    """Facts as aligned lines: how full the cube is, and what contradicts itself."""
+    totals = facts["moments"]
+    off = f"{totals['across']:.1%} of the width" + f", {totals['down']:.1%} of the height" * (facts["elevation"] != 0)
+    conflicts = len({(each["row"]) for each in facts["row_conflicts"]})
+    rows = {
+        "load": f"{facts['load']:.1f}, well up to {facts['load_limit']:g}",
+        "mirrored pairs": len(facts["mirrored"]) or "none",
+        "same pictures": len(facts["duplicates"]) or "none",
+        "white rows": sum(len(runs) for runs in facts["white_rows"].values()) or "none",
+        "row conflicts": f"in {conflicts} of {facts['rows']} rows" if conflicts else "none",
+        "totals differ": f"{totals['total']:.0%} (a solid's shadows: 5% at most); margin and lamp take it up",
+        "centroids": f"off by {off}",
+    }
+    return [f"{name:<16}{value}" for name, value in rows.items()]
+
+
+def facts(prepared: Prepared, options: Options) -> dict[str, Any]:
+    """What can be known before solving, for JSON."""
+    planned = prepared.plan
+    power = options.lamp_power or options.lamp_max or (1.0 if options.paper else backward.LAMP_MAX)
+    found = check(planned.frames, planned.grid, power)
+    return {
+        "names": list(planned.frames.names),
+        "angles": [float(angle) for angle in planned.frames.views.angles],
+        "voxels": list(planned.grid.shape),
+        "frame_width": planned.frames.views.picture_shape[1] / planned.grid.shape[1],
+        "hold": planned.hold,
+        **found,
+        "predicted": said(planned.prediction),
+        "order": None
+        if prepared.order is None
+        else {
+            "best": [int(picture) for picture in prepared.order.pictures],
+            "gain_db": prepared.order.best_db - prepared.order.given_db,
+        },
+    }
+
+
+def said(prediction: Prediction) -> dict[str, Any]:
+    """A prediction for JSON."""
+    each = [round(float(value), 2) for value in prediction.psnr]
+    return {"psnr_mean": prediction.psnr_mean, "psnr_min": prediction.psnr_min, "views": each}
+
+
+def in_short(prepared: Prepared, options: Options) -> list[str]:
+    """Lines that `solve` says before it starts."""
+    planned = prepared.plan
+    nz, ny, nx = planned.grid.shape
+    lines = [
+        fit_report(prepared.pictures, planned.frames, options.fit),
+        f"cube of {nx} x {ny} x {nz} voxels, {expected(planned)}",
+    ]
+    if planned.hold:
+        angles = len(held(planned.frames.views, planned.hold, planned.grid)) // len(planned.frames)
+        lines.append(f"held {planned.hold:g} degrees either way: {angles} angles a picture, and as many times the work")
+    lines += gain(prepared, options)
+    return lines
+
+
+def expected(planned: Plan) -> str:
+    """What is predicted, in words."""
+    prediction = planned.prediction
+    more = " or more" if prediction.psnr_mean >= 50 else ""
+    return f"PSNR of {prediction.psnr_mean:.0f} dB{more} expected (worst {prediction.psnr_min:.0f})"
+
+
+def gain(prepared: Prepared, options: Options) -> list[str]:
+    """What another order would gain, or which one is used."""
+    order = prepared.order
+    if order is None:
+        return []
+    better = order.best_db - order.given_db
+    if options.order == "best":
+        return [f"order (worth {better:.1f} dB in a draft): {', '.join(prepared.frames.names)}"]
+    return [f"another order would gain about {better:.1f} dB: --order best"] if better >= 1 else []
+
+
+def what_to_change(prepared: Prepared, options: Options) -> list[str]:
+    """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much."""
+    planned = prepared.plan
+    found = advice(check(planned.frames, planned.grid, options.lamp_power or options.lamp_max or backward.LAMP_MAX))
+    if planned.prediction.psnr_mean >= POOR_DB:
+        return [sentence for sentence in found if not sentence.startswith("The load")]
+    return [*found, *_remedies(prepared, options)]
+
+
+def _remedies(prepared: Prepared, options: Options) -> list[str]:
+    """What three changes would bring, predicted."""
+    planned, lamps = prepared.plan, options.lamps
+    now = planned.frames.views.picture_shape[1] / planned.grid.shape[1]
+    tried: list[str] = []
+
+    def tell(change: str, prediction: Prediction) -> None:
+        tried.append(f"{change}: {prediction.psnr_mean:.0f} dB")
+
+    every_second = np.arange(0, len(planned.frames), 2)
+    if len(every_second) > 1:
+        fewer = planned.frames.take(every_second)
+        tell(f"{len(fewer)} of the pictures", predict(fewer, planned.grid, hold=planned.hold, **lamps))
+    if not options.paper:
+        smaller = narrower(prepared, options, 0.7 * now)
+        tell(f"--frame-width {0.7 * now:.2g}", predict(smaller, planned.grid, hold=planned.hold, **lamps))
+        if options.lamp_power is None and options.method == "display":
+            most = 16 * (options.lamp_max or backward.LAMP_MAX)
+            stronger = predict(planned.frames, planned.grid, hold=planned.hold, **(lamps | {"lamp_max": most}))
+            tell(f"--lamp-max {most:g}", stronger)
+    return [f"Hardly recognisable pictures are expected; what would come of {'; of '.join(tried)}."] if tried else []
+
+
+def narrower(prepared: Prepared, options: Options, width: float) -> Frames:
+    """The frames as they would be at another width, at the same stops."""
+    views = prepared.frames.views
+    elevation = float(views.elevations[0])
+    return fit(
+        prepared.pictures,
+        prepared.plan.grid,
+        angles=views.angles,
+        elevation=elevation,
+        frame_width=width,
+        fit=options.fit,
+    )
+
+
+def check_memory(needed: int) -> None:
+    """Raise `InputError` where so many bytes are not free."""
+    free = io.free_memory()
+    if needed > free:
+        raise InputError(
+            f"this needs {needed / 1e9:.3g} GB of memory and {free / 1e9:.3g} GB are free: "
+            "use a smaller cube, or fewer or smaller pictures"
+        )
+
+
+def by_view(rejected: NDArray[np.int64], names: tuple[str, ...]) -> str:
+    """The views with most rejected pixels, by name."""
+    most = Counter(names[view] for view in rejected[:, 0]).most_common(5)
+    return ", ".join(f"{count} in {name}" for name, count in most)
