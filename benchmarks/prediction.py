@@ -1,0 +1,297 @@
+"""Measure how well cubes show their pictures, fit the law of `lightcube.prediction` to it, and say how far off it is.
+
+    python benchmarks/prediction.py
+
+Solves a few hundred random problems (photographs with random crops, saturated and grey ones, traced scenes; level and
+raised lamps, 4 to 64 pictures of many shapes, cubes that are wider or higher, every kind of lamp, masks, holds; 48 to
+128 voxels wide), 150 passes each, and rehearses them. Even cases are what the law is fitted on. Odd ones have
+photographs of other originals, and tell its error: the median, what 90 % keep below, and the largest, in dB, means and
+worst pictures above 50 counting as 50. About 20 minutes with one thread, which `NUMBA_NUM_THREADS=1` gives. What was
+measured is kept in out/prediction/, and is not measured again.
+"""
+
+import json
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import skimage.data
+from numpy.typing import NDArray
+
+from lightcube import io
+from lightcube.backward import solve
+from lightcube.fitting import fit_to_views
+from lightcube.forward import cast
+from lightcube.frames import Frames, Pictures
+from lightcube.geometry import Grid, raster_shape, spread_angles, turntable
+from lightcube.metrics import psnr
+from lightcube.prediction import BIAS, GROWTH, MOST_DB, PASSES, law, rehearse
+from lightcube.problem import Lamp
+from lightcube.scene.tracer import scene_frames
+from lightcube.transfer import decode, encode
+
+OUT = Path("out/prediction")
+#: Photographs of even and of odd cases.
+ORIGINALS: tuple[tuple[Callable[[], Any], ...], ...] = (
+    (
+        skimage.data.astronaut,
+        skimage.data.coffee,
+        skimage.data.brick,
+        skimage.data.rocket,
+        skimage.data.immunohistochemistry,
+        skimage.data.coins,
+        skimage.data.hubble_deep_field,
+        skimage.data.gravel,
+        skimage.data.text,
+        lambda: skimage.data.stereo_motorcycle()[0],
+    ),
+    (
+        skimage.data.chelsea,
+        skimage.data.moon,
+        skimage.data.clock,
+        skimage.data.retina,
+        skimage.data.camera,
+        skimage.data.grass,
+        skimage.data.colorwheel,
+        skimage.data.cell,
+        skimage.data.page,
+        skimage.data.microaneurysms,
+    ),
+)
+SCENES = ("juggler", "carousel", "bloom", "gems")
+Rng = np.random.Generator
+
+
+class Case(NamedTuple):
+    """One problem; lengths in voxels, angles in degrees."""
+
+    seed: int
+    shape: tuple[int, int, int]
+    views: int
+    elevation: float
+    picture: tuple[int, int]
+    #: ``photo``, ``saturated``, ``gray``, or the name of a scene.
+    style: str
+    lamp: Lamp
+    lamp_max: float
+    #: Only a disc in the middle of the pictures counts.
+    disc: bool
+    #: Photographs are put next to similar ones.
+    tour: bool
+    hold: float
+
+    @property
+    def lamps(self) -> dict[str, Any]:
+        """What `solve` is told of the lamp."""
+        if self.lamp == "fixed":
+            return {"lamp": "fixed", "lamp_power": 1.0}
+        return {"lamp": self.lamp, "lamp_max": self.lamp_max}
+
+
+def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
+    """A random problem; its load is spread evenly over what is between trivial and hopeless."""
+    rng = np.random.default_rng([seed, 77])
+    n = int(rng.choice(sizes)) if len(sizes) > 1 else sizes[0]
+    level = bool(rng.random() < 0.35)
+    elevation = 0.0 if level else float(rng.choice([20, 25, 30, 35, 35, 40, 45]))
+    views = int(rng.choice([8, 8, 12, 16] if held else [4, 6, 8, 11, 16, 16, 24, 32, 48, 64]))
+    aspect = math.exp(rng.uniform(math.log(0.5), math.log(1.6)))
+    nz = round(n * float(rng.choice([1, 1, 1, 0.6, 1.3])))
+    ny, nx = n, round(n * float(rng.choice([1, 1, 1, 0.8])))
+    if rng.random() < 0.5:
+        ny, nx = nx, ny
+    style = str(rng.choice(["photo", "photo", "photo", "saturated", "gray"]))
+    lamp_max = float(rng.choice([1, 4, 16, 16, 16, 64]))
+    other: tuple[Lamp, ...] = ("global", "fixed")
+    kind = int(rng.integers(8))
+    lamp: Lamp = "per-view" if kind < 6 else other[kind - 6]
+    load = math.exp(rng.uniform(math.log(1.5 if held else 2.5), math.log(6 if held else 14)))
+    disc, tour = bool(rng.random() < 0.16), bool(rng.random() < 0.2)
+    width = load * math.sqrt(nx * ny) / views if level else math.sqrt(load * nx * ny * nz / n / views * aspect)
+    width = min(max(width, 0.12 * ny), 1.25 * ny)
+    high = nz if level and rng.random() < 0.6 else width / aspect
+    most = raster_shape(Grid((nz, ny, nx)), elevation)
+    picture = even_with(high, nz, most[0] if elevation else nz), even_with(width, ny, most[1])
+    hold = float(min(rng.choice([1.5, 3, 6]), (180 if level else 360) / views / 2)) if held else 0.0
+    if not held and rng.random() < 0.22:
+        style, tour = str(rng.choice(SCENES)), False
+    return Case(seed, (nz, ny, nx), views, elevation, picture, style, lamp, lamp_max, disc, tour, hold)
+
+
+def even_with(value: float, parity: int, most: int) -> int:
+    """Whole number nearest to `value` that is even or odd like `parity`, from 1 to `most`."""
+    odd = parity % 2
+    return min(max(2 * round((value - odd) / 2) + odd, 2 - odd), most)
+
+
+def frames_of(problem: Case) -> tuple[Frames, Grid]:
+    """The pictures of a case, and its cube."""
+    grid = Grid(problem.shape)
+    rows, columns = problem.picture
+    angles = spread_angles(problem.views, elevation=problem.elevation)
+    views = turntable(grid, angles, elevation=problem.elevation, picture_shape=problem.picture)
+    if problem.style in SCENES:
+        pictures = scene_frames(io.read_scene(problem.style), views, grid).pictures
+    else:
+        crops = photographs(problem, np.random.default_rng([problem.seed, 78]))
+        names = tuple(str(index) for index in range(len(crops)))
+        pictures = fit_to_views(Pictures(tuple(tour(crops) if problem.tour else crops), names), views).pictures
+    weights = np.ones(pictures.shape[:3], np.float32)
+    if problem.disc:
+        y, x = (np.linspace(-1 + 1 / count, 1 - 1 / count, count) for count in (rows, columns))
+        weights[:, y[:, None] ** 2 + x**2 > 1] = 0
+    return Frames(pictures, views, weights), grid
+
+
+def photographs(problem: Case, rng: Rng) -> list[NDArray[np.float32]]:
+    """Random parts of photographs, in linear light."""
+    originals = ORIGINALS[problem.seed % 2]
+    aspect = problem.picture[1] / problem.picture[0]
+    rounds = math.ceil(problem.views / len(originals))
+    crops = []
+    for chosen in np.concatenate([rng.permutation(len(originals)) for _ in range(rounds)])[: problem.views]:
+        original = np.atleast_3d(originals[chosen]())[..., :3].astype(np.float32) / 255
+        high, wide = original.shape[:2]
+        side = min(high, wide / aspect) * rng.uniform(0.35, 1.0)
+        rows, columns = min(max(int(side), 16), high), min(max(int(side * aspect), 16), wide)
+        top, left = rng.integers(0, high - rows + 1), rng.integers(0, wide - columns + 1)
+        part = np.repeat(original, 3 // original.shape[2], axis=2)[top : top + rows, left : left + columns]
+        crops.append(decode(styled(part[:, :: int(rng.choice([-1, 1]))], problem.style, rng)))
+    return crops
+
+
+def styled(picture: NDArray[Any], style: str, rng: Rng) -> NDArray[np.float32]:
+    """A photograph in display values as it is, grey, or with strong colours; grey ones are tinted."""
+    grey = picture.mean(axis=2, keepdims=True)
+    if style == "gray":
+        picture = np.repeat(grey, 3, axis=2)
+    elif style == "saturated" and np.ptp(picture - grey) < 0.05:
+        picture = picture * 2 * rng.dirichlet([0.6, 0.6, 0.6])
+    elif style == "saturated":
+        picture = grey + 2.5 * (picture - grey)
+    if style == "saturated":
+        picture = np.clip(1.4 * (picture - 0.5) + 0.45, 0, 1)
+    return np.ascontiguousarray(picture, np.float32)
+
+
+def tour(pictures: list[NDArray[np.float32]]) -> list[NDArray[np.float32]]:
+    """The pictures one after the other, each followed by the most similar of those that are left, at 4 x 4 pixels."""
+    views = turntable(Grid((4, 4, 4)), np.arange(len(pictures)), picture_shape=(4, 4))
+    names = tuple("" for _ in pictures)
+    small = encode(fit_to_views(Pictures(tuple(pictures), names), views, "stretch").pictures)
+    path, left = [0], set(range(1, len(pictures)))
+    while left:
+        path.append(min(left, key=lambda other: float(np.sum((small[other] - small[path[-1]]) ** 2))))
+        left.remove(path[-1])
+    return [pictures[index] for index in path]
+
+
+def kept(problems: list[Case]) -> list[list[float]]:
+    """What `measured` says of each problem: from out/prediction/ where an earlier run has kept it there."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    file = OUT / "measured.jsonl"
+    lines = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+    known: dict[str, list[float]] = {json.dumps(line["case"]): line["psnr"] for line in lines}
+    with file.open("a") as stream:
+        for problem in problems:
+            key = json.dumps(problem)
+            if key not in known:
+                began = time.monotonic()
+                known[key] = measured(problem)
+                stream.write(json.dumps({"case": problem, "psnr": known[key]}) + "\n")
+                stream.flush()
+                print(f"{problem}: {np.mean(known[key]):.1f} dB, {time.monotonic() - began:.0f} s", flush=True)
+    return [known[json.dumps(problem)] for problem in problems]
+
+
+def measured(problem: Case) -> list[float]:
+    """PSNR of each picture of a case that is solved for real."""
+    frames, grid = frames_of(problem)
+    cube = solve(frames, grid, hold=problem.hold, iterations=PASSES, **problem.lamps).cube
+    shown = cast(cube, cube.views, cube.powers)
+    pairs = zip(shown, frames.pictures, frames.weight, strict=True)
+    return [round(psnr(encode(picture), encode(wanted), weight), 3) for picture, wanted, weight in pairs]
+
+
+class Rehearsed(NamedTuple):
+    """A case and its rehearsal: PSNR of its pictures in the real cube and in the `ratio` times narrower one."""
+
+    case: Case
+    wanted: NDArray[np.float64]
+    reached: NDArray[np.float64]
+    ratio: float
+
+
+def rehearsed(problem: Case, wanted: list[float]) -> Rehearsed:
+    """Rehearse a case that was measured."""
+    frames, grid = frames_of(problem)
+    reached, width = rehearse(frames, grid, problem.hold, **problem.lamps)
+    return Rehearsed(problem, np.array(wanted), reached, max(grid.shape[1:]) / width)
+
+
+def fitted(cases: list[Rehearsed]) -> NDArray[np.float64]:
+    """BIAS and GROWTH of least absolute errors of means and worst pictures, by reweighted least squares."""
+    equations, values = [], []
+    for one in cases:
+        for part in (np.mean, np.min):
+            wanted, reached = float(part(one.wanted)), float(part(one.reached))
+            if max(wanted, reached) < MOST_DB:
+                share = 1 - 1 / one.ratio
+                equations.append([share, share * (reached - 30)])
+                values.append(wanted - reached)
+    a, b = np.array(equations), np.array(values)
+    found = np.zeros(2)
+    for _ in range(50):
+        weight = 1 / np.sqrt(np.maximum(np.abs(b - a @ found), 0.5))
+        found = np.asarray(np.linalg.lstsq(a * weight[:, None], b * weight, rcond=None)[0], np.float64)
+    return found
+
+
+def report(title: str, cases: list[Rehearsed]) -> None:
+    """Print how far the law is off for means and worst pictures; what is above 50 dB in both does not count."""
+    for name, part in (("mean", np.mean), ("worst", np.min)):
+        wanted = np.array([min(float(part(one.wanted)), MOST_DB) for one in cases])
+        told = np.array([min(float(part(law(one.reached, one.ratio))), MOST_DB) for one in cases])
+        error = (told - wanted)[np.minimum(told, wanted) < MOST_DB]
+        if len(error):
+            size = np.abs(error)
+            print(
+                f"{title:>28} {name:>6} {len(error):>5} {np.mean(error):>+7.2f} {np.median(size):>7.2f} "
+                f"{np.quantile(size, 0.9):>6.2f} {np.max(size):>6.2f} {np.mean(size <= 3):>6.0%}"
+            )
+
+
+def main() -> None:
+    problems = cases()
+    results = [rehearsed(*each) for each in zip(problems, kept(problems), strict=True)]
+    bias, growth = fitted([one for one in results if one.case.seed % 2 == 0])
+    print(f"\nfitted on even cases: BIAS {bias:.2f}, GROWTH {growth:.3f}; in use: {BIAS}, {GROWTH}\n")
+    print(f"{'PSNR, dB':>28} {'':>6} {'cases':>5} {'bias':>7} {'median':>7} {'90 %':>6} {'max':>6} {'<= 3':>6}")
+    for parity, name in enumerate(("fitted on", "other pictures")):
+        chosen = [one for one in results if one.case.seed % 2 == parity]
+        for group in ("48, 64", "96, 128", "held"):
+            report(f"{name}, {group}", [one for one in chosen if group_of(one.case) == group])
+        report(f"{name}, all", chosen)
+
+
+def group_of(problem: Case) -> str:
+    if problem.hold:
+        return "held"
+    return "96, 128" if max(problem.shape[1:]) > 64 else "48, 64"
+
+
+def cases() -> list[Case]:
+    """All problems: larger ones, some with a hold, and many small ones."""
+    return [
+        *(case(seed, (96,)) for seed in range(200, 212)),
+        *(case(seed, (48, 64), held=True) for seed in range(400, 420)),
+        *(case(seed, (128,)) for seed in range(300, 306)),
+        *(case(seed, (48, 64)) for seed in range(80)),
+    ]
+
+
+if __name__ == "__main__":
+    main()
