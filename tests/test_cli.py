@@ -105,7 +105,8 @@ def test_solve_prints_json_lines_for_machines(run, frames: Path, tmp_path: Path)
 
 
 def test_gauss_seidel_says_what_it_threw_out(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--method", "gauss-seidel", "--frame-width", 0.7)
+    literal = ["--method", "gauss-seidel", "--paper"]
+    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, *literal)
     assert done.code == 0
     assert "thrown out" in done.out
 
@@ -123,7 +124,7 @@ def test_play_writes_by_suffix(run, cube: Path, tmp_path: Path, suffix: str) -> 
 
 def test_play_shows_stops_targets_and_the_whole_screen(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     solved = tmp_path / "a.npz"
-    run("solve", frames, "-o", solved, "--n", 6, "--iterations", 2)
+    run("solve", frames, "-o", solved, "--n", 6, "--iterations", 2, "--paper")
     run("play", solved, "-o", tmp_path / "stops.npy", "--stops")
     assert np.array_equal(np.load(tmp_path / "stops.npy"), play(load(solved)))
     run("play", solved, "-o", tmp_path / "beside.npy", "--stops", "--target")
@@ -231,7 +232,7 @@ BAD = [
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--frame-width", "1e308"),
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "1e-300"),
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "nan"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "30"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "60"),
     ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "nan"),
     ("solve", "{frames}"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--stops", "--angles", "5"),
@@ -326,16 +327,17 @@ def test_score_remembers_how_pictures_were_fitted(run, frames: Path, tmp_path: P
 
 def test_warnings_are_notes(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     Image.new("RGBA", (6, 6), (255, 0, 0, 128)).save(frames / "4.png")
-    done = run("solve", frames, "-o", tmp_path / "a.zarr", "--n", 6, "--iterations", 2, "--angles", "10,50,100,190")
+    level = ["--elevation", 0, "--angles", "10,50,100,190"]
+    done = run("solve", frames, "-o", tmp_path / "a.zarr", "--n", 6, "--iterations", 2, *level)
     notes = [line for line in done.lines if line.startswith("note: ")]
-    assert len(notes) == 2
+    assert len(notes) == 1
     assert "transparent" in notes[0]
-    assert "mirror" in notes[1]
+    assert "mirror images" in done.err
 
 
 def test_help_names_every_command() -> None:
     environment = {**os.environ, "COLUMNS": "100"}
     command = [sys.executable, "-c", "from lightcube.cli import main; main()", "--help"]
     text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
-    for name in ("trace", "solve", "play", "score", "info", "publish", "demo"):
+    for name in ("trace", "solve", "play", "score", "info", "publish", "demo", "check"):
         assert name in text

@@ -1,5 +1,7 @@
 """Program 3 and the scores: what is cast, at the stops and between them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from skimage.color import deltaE_ciede2000, rgb2lab
@@ -213,3 +215,23 @@ def test_cast_is_lazy() -> None:
     cube = make_cube([10.0, 100.0])
     pictures = cast(cube, cube.views, cube.powers)
     assert np.array_equal(next(pictures), play(cube)[0])
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_a_picture_that_stands_aside_is_shown_there(elevation: float) -> None:
+    """At and around each stop the window is where the stop's picture stands; level, half a turn on, mirrored."""
+    grid = Grid((5, 8, 6))
+    views = turntable(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 2))
+    offsets = np.array([[1, -1], [-1, 0]])
+    moved = replace(
+        views, origins=views.origins + offsets[:, :1] * views.column_steps + offsets[:, 1:] * views.row_steps
+    )
+    extinction = np.random.default_rng(5).random((3, 5, 8, 6)).astype(np.float32)
+    cube = Cube(extinction, grid, moved)
+    assert np.allclose(play(cube), play(cube, [20.0, 110.0]), atol=1e-6)
+    whole = play(cube, [20.3], whole_screen=True)[0]
+    rows, columns = whole.shape[0] // 2, whole.shape[1] // 2
+    window = whole[rows - 1 - 1 : rows + 2 - 1, columns - 1 + 1 : columns + 1 + 1]
+    assert np.allclose(play(cube, [20.3])[0], window, atol=1e-6)
+    if elevation == 0:
+        assert np.allclose(play(cube, [200.0])[0], play(cube, [20.0])[0][:, ::-1], atol=1e-6)

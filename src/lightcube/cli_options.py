@@ -46,3 +46,7 @@ HOLD = Annotated[
     typer.Option(help="Degrees around its stop over which each picture shall stand; default what costs below 1 dB."),
 ]
 TRANSFER = Annotated[Transfer, typer.Option(help="How picture values become linear light.")]
+SHIFT = Annotated[
+    int,
+    typer.Option(help="Let pictures stand up to so many pixels higher, lower or aside, in turn.", min=0),
+]

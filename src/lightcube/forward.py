@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +18,7 @@ _BATCH = 16
 
 
 def views_at(cube: Cube, angles: ArrayLike, *, whole_screen: bool = False) -> Views:
-    """Views of the cube at other turntable angles (degrees), with its own elevation and picture window.
+    """Views of the cube at other turntable angles (degrees), with its own elevation and the nearest stop's window.
 
     Parameters
     ----------
@@ -27,8 +28,29 @@ def views_at(cube: Cube, angles: ArrayLike, *, whole_screen: bool = False) -> Vi
     elevations = np.unique(cube.views.elevations)
     if len(elevations) > 1:
         raise InputError("this cube was made with lamps at several elevations: play its own stops instead")
-    window = None if whole_screen else cube.views.picture_shape
-    return turntable(cube.grid, angles, elevation=float(elevations[0]), picture_shape=window)
+    if whole_screen:
+        return turntable(cube.grid, angles, elevation=float(elevations[0]))
+    views = turntable(cube.grid, angles, elevation=float(elevations[0]), picture_shape=cube.views.picture_shape)
+    columns, rows = _standing(cube, views.angles)
+    return replace(views, origins=views.origins + columns * views.column_steps + rows * views.row_steps)
+
+
+def _standing(cube: Cube, angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Pixels to the right and down, ``(angles, 1)`` each, by which the picture of the nearest stop is off the middle.
+
+    Half a turn on, level light shows it mirrored.
+    """
+    views = cube.views
+    right, down = (
+        np.sum(views.origins * steps, axis=1) / np.sum(steps**2, axis=1)
+        for steps in (views.column_steps, views.row_steps)
+    )
+    stops = views.angles
+    if turn_period(views) == 180:
+        stops, right, down = np.append(stops, stops + 180), np.append(right, -right), np.append(down, down)
+    away = np.abs(np.remainder(angles[:, None] - stops + 180, 360) - 180)
+    nearest = np.argmin(away, axis=1)
+    return right[nearest, None], down[nearest, None]
 
 
 def turn(cube: Cube, count: int, start: float = 0.0, end: float = 360.0) -> NDArray[np.float64]:

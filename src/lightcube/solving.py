@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube import arguments, backward, io
-from lightcube.conditioning import Order, best_order
+from lightcube.conditioning import Order, best_order, shifted, spread_over_screen
 from lightcube.consistency import advice, check
 from lightcube.errors import InputError
 from lightcube.fitting import Fit, fit, fit_report
@@ -43,6 +43,7 @@ class Options:
     elevation: float | None = None
     paper: bool = False
     order: Arrangement = "given"
+    shift: int = 0
     method: str = "display"
     lamp: Lamp | None = None
     lamp_power: float | None = None
@@ -129,6 +130,9 @@ def prepare(path: Path, options: Options) -> Prepared:
         hold=options.hold if options.method == "display" else options.hold or 0.0,
         **lamps,
     )
+    if options.shift:
+        frames = shifted(planned.frames, spread_over_screen(planned.frames, planned.grid, options.shift))
+        planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
     order = None
     if options.order == "best" or len(pictures) <= _QUICK:
         order = best_order(planned.frames, planned.grid, lamp_max=options.lamp_max or backward.LAMP_MAX)
@@ -153,6 +157,8 @@ def solve(
     """Solve what was prepared."""
     planned = prepared.plan
     provenance: dict[str, Any] = {"fit": options.fit, "predicted": said(planned.prediction)}
+    if options.shift:
+        provenance["shift"] = options.shift
     if options.order == "best" and prepared.order is not None:
         provenance["order"] = [int(picture) for picture in prepared.order.pictures]
     lamps = as_in_the_paper(options).lamps if options.paper else options.lamps
@@ -200,6 +206,7 @@ def facts(prepared: Prepared, options: Options) -> dict[str, Any]:
         "hold": planned.hold,
         **found,
         "predicted": said(planned.prediction),
+        "shift": options.shift,
         "order": None
         if prepared.order is None
         else {
