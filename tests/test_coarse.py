@@ -162,3 +162,17 @@ def test_halves_are_problems_of_their_own() -> None:
     small, grid = halved(frames, Grid((5, 7, 6), 0.7))
     matrix = Projector(grid, small.views)
     assert matrix.shape == (3 * 4, 4 * 3)
+
+
+@pytest.mark.parametrize("lamp", ["per-view", "coarse"])
+def test_enough_is_enough(lamp: str) -> None:
+    grid = Grid((6, 8, 8), 0.7)
+    frames = some_frames((6, 8, 8), (4, 4), 35.0, count=2)
+    most = solve(frames, grid, lamp=lamp, iterations=150)  # type: ignore[arg-type]
+    enough = solve(frames, grid, lamp=lamp, iterations=150, enough_db=30)  # type: ignore[arg-type]
+    assert most.stop_reason != "enough"
+    assert enough.stop_reason == "enough"
+    assert enough.cube.status == "complete"
+    if lamp == "per-view":  # else each unit by itself
+        assert enough.residuals[-1] <= 0.5e-3 * float(np.sum(frames.weight)) * 3 * 1.01
+    assert len(enough.residuals) < len(most.residuals)

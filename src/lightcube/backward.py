@@ -22,9 +22,10 @@ from lightcube.units import COARSE_PASSES, Step, Store, Watch, coarser, solve_le
 
 #: Bounds of the power of a lamp that is not fixed, unless the upper one is given.
 LAMP_MIN, LAMP_MAX = 1e-4, 16.0
-#: Passes of method display: for a look, for use, and for the last tenth of a dB.
+#: At most so many passes of method display, and the PSNR of all pixels, dB, that is enough: for a look, for use, and
+#: for the last tenth of a dB.
 Quality = Literal["draft", "normal", "best"]
-PASSES: Mapping[Quality, int] = {"draft": 30, "normal": 200, "best": 1000}
+QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 45.0), "normal": (200, 50.0), "best": (1000, np.inf)}
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Solution:
     undetermined
         How many voxel colours no remaining equation determines; they are transparent.
     stop_reason
-        One of ``"converged"``, ``"iterations"``, ``"callback"``.
+        One of ``"converged"``, ``"enough"``, ``"iterations"``, ``"callback"``.
     lower_bound
         What no cube and no lamps (with lamp ``"coarse"``: these lamps) can bring the last residual below, or None
         where the method does not tell.
@@ -77,6 +78,7 @@ def solve(
     black: float = BLACK,
     max_extinction: float = np.inf,
     iterations: int | None = None,
+    enough_db: float = np.inf,
     dtype: type[np.floating[Any]] = np.float32,
     callback: Callable[[Step], bool | None] | None = None,
     store: Store | None = None,
@@ -113,6 +115,9 @@ def solve(
         Upper bound of the extinction, 1/mm.
     iterations
         At most so many at full size; None = the method's own number.
+    enough_db
+        Method display stops as soon as the mean squared difference of all weighted pixels (the too dark ones
+        linearised) is as small as at this PSNR, dB.
     dtype
         Of the computation: float32 or float64.
     callback
@@ -157,8 +162,10 @@ def solve(
     smaller = coarser(frames, grid, at_least=int(kind == "coarse")) if method == "display" else []
     levels = [pose(*each, hold, kind, black, dtype) for each in smaller]
     options: dict[str, Any] = {"bounds": (0.0, max_extinction), "transfer": frames.transfer}
-    passes = iterations or (PASSES["normal"] if method == "display" else None)
-    watch = Watch(draft, callback, store, sum(COARSE_PASSES / 8**k for k in range(1, len(levels) + 1)), passes)
+    passes = iterations or (QUALITIES["normal"][0] if method == "display" else None)
+    ahead = sum(COARSE_PASSES / 8**k for k in range(1, len(levels) + 1))
+    enough = 10 ** (-enough_db / 10) if method == "display" else 0.0
+    watch = Watch(draft, callback, store, ahead, passes, enough)
     start, found, going = solve_levels(levels, lamp_bounds, watch, **options)
     if kind == "coarse":
         lamp_bounds = (found, found)

@@ -150,7 +150,8 @@ def solve(
     order: ORDER = "given",
     shift: SHIFT = 0,
     quality: Annotated[
-        backward.Quality | None, typer.Option(help="How many passes: 30, 200 or 1000.  [default: normal]")
+        backward.Quality | None,
+        typer.Option(help="At most 30, 200 or 1000 passes.  [default: normal]"),
     ] = None,
     method: Annotated[str, typer.Option(help=f"One of {', '.join(backward.METHODS)}.")] = "display",
     iterations: Annotated[int | None, typer.Option(help="At most so many passes, instead of --quality.")] = None,
@@ -169,8 +170,6 @@ def solve(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compute the cube whose shadows are the frames."""
-    if quality is not None and iterations is not None:
-        raise InputError("--quality and --iterations both say how many passes: leave one of them out")
     io.check_cube_target(output, overwrite=overwrite)
     _check_partial(output, overwrite=overwrite)
     options = solving.Options(
@@ -192,7 +191,8 @@ def solve(
         hold=hold,
         black=black,
         max_extinction=max_extinction,
-        iterations=iterations if quality is None else backward.PASSES[quality],
+        quality=quality,
+        iterations=iterations,
         transfer=transfer,
     )
     prepared = solving.prepare(frames, options)

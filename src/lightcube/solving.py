@@ -51,6 +51,7 @@ class Options:
     hold: float | None = None
     black: float | None = None
     max_extinction: float | None = None
+    quality: backward.Quality | None = None
     iterations: int | None = None
     transfer: Transfer = "srgb"
 
@@ -105,6 +106,8 @@ def as_in_the_paper(options: Options) -> Options:
 
 def prepare(path: Path, options: Options) -> Prepared:
     """Read the pictures and plan the cube; `InputError` for all that cannot be."""
+    if options.quality is not None and (options.iterations is not None or options.method != "display"):
+        raise InputError("--quality says how many passes method display takes: use either it or --iterations")
     if options.paper:
         options = as_in_the_paper(options)
     kind = backward.check_options(
@@ -162,16 +165,20 @@ def solve(
     if options.order == "best" and prepared.order is not None:
         provenance["order"] = [int(picture) for picture in prepared.order.pictures]
     lamps = as_in_the_paper(options).lamps if options.paper else options.lamps
+    passes: dict[str, Any] = {"iterations": options.iterations}
+    if options.iterations is None and options.method == "display":
+        most, enough = backward.QUALITIES[options.quality or "normal"]
+        passes = {"iterations": most, "enough_db": enough}
     return backward.solve(
         planned.frames,
         planned.grid,
         method=options.method,
         hold=planned.hold,
         black=options.black or BLACK,
-        iterations=options.iterations,
         callback=callback,
         store=store,
         provenance=provenance,
+        **passes,
         **lamps,
     )
 

@@ -55,6 +55,8 @@ class Watch:
         Work at coarser sizes, in passes of the cube itself.
     passes
         At most so many of the cube itself, or None where the method does not tell.
+    enough
+        Mean squared difference in display values at which a solver of the cube itself may stop.
     """
 
     def __init__(
@@ -64,11 +66,13 @@ class Watch:
         store: Store | None,
         ahead: float,
         passes: int | None,
+        enough: float,
     ) -> None:
         self._draft, self._callback, self._store = draft, callback, store
         self._ahead, self._done, self._passes = ahead, 0.0, passes
         self._last, self._gap = time.monotonic(), FIRST_CHECKPOINT_S
         self._stopped = False
+        self._enough = enough
 
     def cube(self, problem: Problem, x: Floats, powers: NDArray[Any]) -> Cube:
         """Make the cube of the unknowns `x`, unfinished."""
@@ -89,6 +93,7 @@ class Watch:
         self, problem: Problem, x: Floats, seen: Floats, part: slice, powers: Floats | None, number: int, parts: int
     ) -> Callback:
         """For a solver of some columns of the cube; the others are in `x`, and what is seen through them in `seen`."""
+        enough = 0.5 * self._enough * float(np.sum(problem.weights[:, part], dtype=np.float64))
 
         def watch(progress: Progress) -> bool | None:
             lamps = progress.lamp_powers if powers is None else powers
@@ -104,9 +109,14 @@ class Watch:
 
             past = (number + progress.iteration / progress.iterations) / parts
             done = (self._ahead + past * progress.iterations) / (self._ahead + progress.iterations)
-            return self._tell(Step(progress.iteration, progress.iterations, done, progress.residual, shown))
+            stop = self._tell(Step(progress.iteration, progress.iterations, done, progress.residual, shown))
+            return stop or progress.residual <= enough
 
         return watch
+
+    def reason(self, result: Result) -> str:
+        """Why the solver stopped."""
+        return "enough" if result.stop_reason == "callback" and not self._stopped else result.stop_reason
 
     def _tell(self, step: Step) -> bool:
         """Once the callback has asked to stop, nothing goes on."""
@@ -176,9 +186,10 @@ def solve_units(
             ),
             **options,
         )
-        results.append(result)
+        result = replace(result, stop_reason=watch.reason(result))
         if len(parts) == 1:
             return result
+        results.append(result)
         x[:, part] = result.x
         if result.stop_reason == "callback":
             break
@@ -189,6 +200,6 @@ def solve_units(
         x,
         lamp_bounds[1],
         np.sum(padded, axis=0),
-        stop_reason=next(reason for reason in ("callback", "iterations", "converged") if reason in reasons),
+        stop_reason=next(reason for reason in ("callback", "iterations", "enough", "converged") if reason in reasons),
         lower_bound=sum(result.lower_bound or 0.0 for result in results),
     )
