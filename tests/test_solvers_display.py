@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import Bounds, minimize
 
 from lightcube.geometry import Grid, spread_angles, turntable
+from lightcube.kernels import descent
 from lightcube.kernels.display import conjugate, curvature, display_of_log, residual
 from lightcube.projector import Projector
 from lightcube.solvers.contract import Progress
@@ -276,3 +277,18 @@ def test_no_cube_and_no_lamp_comes_below_the_lower_bound(lamp: float, bounds: tu
         assert 0 <= result.lower_bound <= best * (1 + 1e-6)
     assert best > 0.01
     assert results[-1].lower_bound == pytest.approx(best, rel=0.05)
+
+
+def test_a_step_is_what_its_formula_says() -> None:
+    """One walk through memory against one line of numpy for each quantity."""
+    random = np.random.default_rng(11)
+    x, before, slopes = (random.normal(size=(70, 3)) for _ in range(3))
+    steps = np.where(random.random((70, 3)) < 0.2, 0, random.random((70, 3)))
+    ahead, stride = np.array([0.0, 1.0, 1.0]), np.array([1.0, 1.3, 0.7])
+    y = x + ahead * (x - before)
+    moved = np.clip(y - stride * steps * slopes, -0.5, 0.8)
+    new = np.where(steps > 0, moved, x)
+    share = np.divide((y - new) * (new - x), steps, out=np.zeros_like(x), where=steps > 0)
+    uphill = descent.step(x, before, ahead, slopes, steps, stride, -0.5, 0.8)
+    assert np.allclose(before, new)
+    assert np.allclose(uphill, share.sum(axis=0))

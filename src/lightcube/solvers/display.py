@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.absorption import absorbance
-from lightcube.kernels import display
+from lightcube.kernels import descent, display
 from lightcube.solvers._checks import (
     check_bounds,
     check_iterations,
@@ -88,38 +88,40 @@ def display_values(
     screen = _Screen.of(A, B, weights, view_of_row, lamp_bounds, transfer)
     lower, upper = check_bounds(bounds)
     x = check_start(x0, (A.shape[1], B.shape[1]), (lower, upper), B.dtype)
+    before = x.copy()
     ax = A.forward(x)
-    y, ay = x, ax
+    ay = ax
     lamp = np.clip(np.zeros_like(screen.low), screen.low, screen.high)
     slopes = np.empty_like(B)
-    metric = steps = x
+    steps = x
     stride = np.full(B.shape[1], _STRIDE, B.dtype)
     ahead = np.zeros(B.shape[1], B.dtype)
     objective = np.full(B.shape[1], np.inf)
     history: list[float] = []
     enough = _PERFECT * float(np.sum(screen.weights, dtype=np.float64))
+    limits: tuple[Any, Any] = (B.dtype.type(lower), B.dtype.type(upper))
     renewal, stop_reason = 1, "iterations"
     for iteration in range(1, check_iterations(iterations) + 1):
         lamp = screen.best_lamp(ay, lamp)
         if iteration == renewal:
             expected = _expected_change(x)
-            metric = A.adjoint(screen.curvatures(ay, lamp, slopes) * A.forward(expected)) / expected
-            steps = _inverse(metric)
+            metric = A.adjoint(screen.curvatures(ay, lamp, slopes) * A.forward(expected))
+            steps = np.divide(expected, metric, out=np.zeros_like(metric), where=metric > 0)
+            del expected, metric
             renewal = int(iteration * _RENEWAL) + 1
         screen.descend(ay, lamp, slopes)
-        new = np.clip(y - stride * steps * A.adjoint(slopes), lower, upper)
-        a_new = A.forward(new)
+        uphill = descent.step(x, before, ahead, A.adjoint(slopes), steps, stride, *limits) > 0
+        x, before = before, x
+        a_new = A.forward(x)
         lamp = screen.best_lamp(a_new, lamp)
-        before, objective = objective, screen.descend(a_new, lamp, slopes)
-        rose = objective > before
-        uphill = np.einsum("ij,ij,ij->j", y - new, metric, new - x) > 0
+        last, objective = objective, screen.descend(a_new, lamp, slopes)
+        rose = objective > last
         stride[rose] = np.maximum(1, _CAUTION * stride[rose])
         if np.any(rose & (ahead == 0)):  # not for the momentum: the bounds on the curvature are out of date
             renewal = iteration + 1
         too_far = np.min(2 * a_new - ax, axis=0) < _LEAST_AHEAD
         ahead = np.where(rose | uphill | too_far, 0, 1).astype(B.dtype)
-        y, ay = new + ahead * (new - x), a_new + ahead * (a_new - ax)
-        x, ax = new, a_new
+        ax, ay = a_new, a_new + ahead * (a_new - ax)
         history.append(float(np.sum(objective)))
         progress = Progress(iteration, iterations, x, ax, history[-1], screen.powers(lamp))
         if callback is not None and callback(progress):
@@ -246,11 +248,6 @@ def _expected_change(x: Floats) -> Floats:
     """How far each unknown is expected to move, relative to the others of its column; above 0."""
     mean = np.mean(np.abs(x), axis=0, keepdims=True)
     return np.abs(x) + np.where(mean > 0, _EXPECTED * mean, 1).astype(x.dtype)
-
-
-def _inverse(metric: Floats) -> Floats:
-    """``1 / metric``, and 0 for unknowns that no weighted beam meets: they stay where they are."""
-    return np.divide(1, metric, out=np.zeros_like(metric), where=metric > 0)
 
 
 def _has_converged(history: list[float], enough: float) -> bool:

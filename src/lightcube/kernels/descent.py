@@ -1,0 +1,37 @@
+"""A projected gradient step with momentum, in one walk through memory (see `lightcube.solvers.display`)."""
+
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+
+@njit(cache=True, parallel=True)
+def step(
+    x: Array, before: Array, ahead: Array, slopes: Array, steps: Array, stride: Array, lower: float, upper: float
+) -> Array:
+    """Replace `before` by the point after `x`; return for each column how much the momentum points uphill.
+
+    With ``y = x + ahead (x - before)`` the new point is ``y - stride steps slopes``, kept between the bounds, and
+    what is returned is the sum of ``(y - new) (new - x) / steps``. Arrays are ``(unknowns, columns)``, but ``ahead``
+    and ``stride`` one number per column; unknowns with a step of 0 stay where they are.
+    """
+    rows, columns = x.shape
+    parts = 64
+    sums = np.zeros((parts, columns))
+    for part in prange(parts):
+        for row in range(part * rows // parts, (part + 1) * rows // parts):
+            for column in range(columns):
+                here = x[row, column]
+                length = steps[row, column]
+                if length == 0:
+                    before[row, column] = here
+                    continue
+                start = here + ahead[column] * (here - before[row, column])
+                new = min(max(start - stride[column] * length * slopes[row, column], lower), upper)
+                sums[part, column] += (start - new) * (new - here) / length
+                before[row, column] = new
+    return sums.sum(axis=0)
