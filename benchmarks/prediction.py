@@ -4,7 +4,7 @@
 
 Solves a few hundred random problems (photographs with random crops, saturated and grey ones, traced scenes; level and
 raised lamps, 4 to 64 pictures of many shapes, cubes that are wider or higher, every kind of lamp, masks, holds; 48 to
-128 voxels wide), 150 passes each, and rehearses them. Even cases are what the law is fitted on. Odd ones have
+128 voxels wide) as `solve` does by default, and rehearses them. Even cases are what the law is fitted on. Odd ones have
 photographs of other originals, and tell its error: the median, what 90 % keep below, and the largest, in dB, means and
 worst pictures above 50 counting as 50. About 20 minutes with one thread, which `NUMBA_NUM_THREADS=1` gives. What was
 measured is kept in out/prediction/, and is not measured again.
@@ -28,7 +28,7 @@ from lightcube.forward import cast
 from lightcube.frames import Frames, Pictures
 from lightcube.geometry import Grid, raster_shape, spread_angles, turntable
 from lightcube.metrics import psnr
-from lightcube.prediction import BIAS, GROWTH, MOST_DB, PASSES, law, rehearse
+from lightcube.prediction import BIAS, GROWTH, MOST_DB, law, rehearse
 from lightcube.problem import Lamp
 from lightcube.scene.tracer import scene_frames
 from lightcube.transfer import decode, encode
@@ -210,7 +210,7 @@ def kept(problems: list[Case]) -> list[list[float]]:
 def measured(problem: Case) -> list[float]:
     """PSNR of each picture of a case that is solved for real."""
     frames, grid = frames_of(problem)
-    cube = solve(frames, grid, hold=problem.hold, iterations=PASSES, **problem.lamps).cube
+    cube = solve(frames, grid, hold=problem.hold, **problem.lamps).cube
     shown = cast(cube, cube.views, cube.powers)
     pairs = zip(shown, frames.pictures, frames.weight, strict=True)
     return [round(psnr(encode(picture), encode(wanted), weight), 3) for picture, wanted, weight in pairs]

@@ -13,7 +13,7 @@ def main() -> None:
     level = lc.turntable(grid, lc.spread_angles(64), picture_shape=(64, 64))
     pictures = {
         "photographs 32 x 32, 35 degrees": lc.fit(demo.photographs(), grid, elevation=35, frame_width=0.5),
-        "photographs 64 x 64, 0 degrees": lc.fit(demo.photographs(), grid),
+        "photographs 64 x 64, 0 degrees": lc.fit(demo.photographs(), grid, elevation=0),
         "juggler 48 x 48, 35 degrees": lc.scene_frames(lc.read_scene("juggler"), raised, grid),
         "gems 64 x 64, 0 degrees": lc.scene_frames(lc.read_scene("gems"), level, grid),
     }

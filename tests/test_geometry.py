@@ -163,8 +163,8 @@ def test_held_views_are_dense_enough_and_keep_the_stop_in_the_middle(hold: float
     angles = held(views, hold, grid).angles.reshape(3, -1)
     assert np.allclose(angles[:, angles.shape[1] // 2], views.angles)
     assert np.allclose(angles[:, -1] - angles[:, 0], 2 * hold)
-    assert np.max(np.diff(angles, axis=1)) <= 0.75 * 64 / n + 1e-6
-    assert angles.shape[1] == 1 + 2 * np.ceil(hold / (0.75 * 64 / n) - 1e-9)
+    assert np.max(np.diff(angles, axis=1)) <= 0.5 * 64 / n + 1e-6
+    assert angles.shape[1] == 1 + 2 * np.ceil(hold / (0.5 * 64 / n) - 1e-9)
 
 
 def test_turned_views_are_the_views_of_other_angles() -> None:

@@ -1,6 +1,8 @@
 """Pictures in, a cube of coloured shadows out."""
 
 from lightcube.backward import Solution, solve
+from lightcube.conditioning import best_order
+from lightcube.consistency import check
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import fit
@@ -9,6 +11,8 @@ from lightcube.frames import Frames, Pictures
 from lightcube.geometry import Grid, Views, spread_angles, turntable
 from lightcube.io import load, publish, read_pictures, read_scene, save, write_pictures
 from lightcube.metrics import score
+from lightcube.planning import Plan, plan
+from lightcube.prediction import Prediction, predict
 from lightcube.projector import Projector, dot_test
 from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_frames, scene_views
@@ -22,17 +26,23 @@ __all__ = [
     "Grid",
     "InputError",
     "Pictures",
+    "Plan",
+    "Prediction",
     "Projector",
     "Result",
     "Scene",
     "Solution",
     "Views",
+    "best_order",
     "cast",
+    "check",
     "dot_test",
     "fit",
     "lamp_at",
     "load",
+    "plan",
     "play",
+    "predict",
     "publish",
     "read_pictures",
     "read_scene",

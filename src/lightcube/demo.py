@@ -13,10 +13,10 @@ from lightcube import backward, forward, io, metrics
 from lightcube.absorption import extinction, transmittance
 from lightcube.console import out, progress
 from lightcube.errors import InputError
-from lightcube.fitting import fit
 from lightcube.frames import Frames, Pictures
 from lightcube.geometry import Grid, raster_shape, spread_angles, turntable
 from lightcube.layout import columns_from_volume, pictures_from_columns, volume_from_columns
+from lightcube.planning import plan
 from lightcube.projector import Projector
 from lightcube.scene.tracer import scene_frames
 from lightcube.sheet import contact_sheet
@@ -82,8 +82,9 @@ def run(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     grid = Grid((_SIDE, _SIDE, _SIDE), 100 / _SIDE)
     out.print(f"Two cubes of {_SIDE} x {_SIDE} x {_SIDE} voxels, 100 mm wide.")
+    planned = plan(photographs(), _SIDE, hold=None)
     rows = [
-        _one("photographs", fit(photographs(), grid, elevation=35.0, frame_width=0.5), grid, folder),
+        _one("photographs", planned.frames, grid, folder, planned.hold),
         _one("juggler", _juggler(grid), grid, folder),
     ]
     io.write_json(folder / "metrics.json", {row["name"]: row for row in rows}, overwrite=True)
@@ -106,11 +107,11 @@ def _juggler(grid: Grid) -> Frames:
         return scene_frames(io.read_scene("juggler"), views, grid, callback=advance)
 
 
-def _one(name: str, frames: Frames, grid: Grid, folder: Path) -> dict[str, Any]:
+def _one(name: str, frames: Frames, grid: Grid, folder: Path, hold: float = 0.0) -> dict[str, Any]:
     """Solve, save, play and score one cube; returns a row of the table."""
     began = time.monotonic()
     with progress(f"solving {name}", as_json=False) as advance:
-        solution = backward.solve(frames, grid, callback=lambda step: advance(round(1000 * step.done), 1000))
+        solution = backward.solve(frames, grid, hold=hold, callback=lambda step: advance(round(1000 * step.done), 1000))
     seconds = time.monotonic() - began
     cube = solution.cube
     scores = metrics.score(cube, frames)

@@ -303,8 +303,8 @@ def widest_hold(views: Views) -> float:
 
 
 def dense_step(grid: Grid) -> float:
-    """Degrees between two angles for a picture to stand in between: 0.75 for 64 voxels across, as 1/n (measured)."""
-    return 0.75 * 64 / max(grid.shape[1:])
+    """Degrees between two angles for a picture to stand in between: 0.5 for 64 voxels across, as 1/n (measured)."""
+    return 0.5 * 64 / max(grid.shape[1:])
 
 
 def held(views: Views, hold_deg: float, grid: Grid) -> Views:

@@ -89,7 +89,8 @@ def pose(
 ) -> Problem:
     """Pose the problem of the cube `grid` whose shadows are `frames`, held for so many degrees on either side.
 
-    Pixels darker than `black`, a display value, are wanted at it.
+    Pixels darker than `black`, a display value, are wanted at it. The ends of a hold, with nothing to hold on to
+    beyond, count twice: else they are what falls apart first (measured).
     """
     views = held(frames.views, hold, grid)
     angles = len(views) // len(frames)
@@ -100,11 +101,15 @@ def pose(
     def block(pictures: Floats) -> Floats:
         return columns_from_pictures(np.repeat(pictures.astype(dtype), angles, axis=0)).reshape(matrix.shape[0], -1)
 
+    importance = np.ones(angles, dtype)
+    if angles > 1:
+        importance[[0, -1]] = 2
+    of_row = np.tile(importance, len(frames))[matrix.view_of_row]
     stop_of_row = matrix.view_of_row // angles
     return Problem(
         matrix=matrix,
         light=block(np.maximum(frames.pictures, darkest)),
-        weights=block(np.repeat(frames.weight[..., None], channels, axis=-1)),
+        weights=of_row[:, None] * block(np.repeat(frames.weight[..., None], channels, axis=-1)),
         lamp_of_row=np.zeros_like(stop_of_row) if lamp == "global" else stop_of_row,
         channels=channels,
         stops=len(frames),

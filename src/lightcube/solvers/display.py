@@ -255,4 +255,4 @@ def _has_converged(history: list[float], enough: float) -> bool:
         return True
     if len(history) <= _PATIENCE:
         return False
-    return history[-1 - _PATIENCE] - history[-1] <= _TOLERANCE * history[-1]
+    return abs(history[-1 - _PATIENCE] - history[-1]) <= _TOLERANCE * history[-1]
