@@ -20,7 +20,7 @@ STOREYS = [
     ["backward", "forward", "scene"],
     ["metrics", "between", "consistency", "prediction", "conditioning", "planning", "plots", "sheet"],
     ["io"],
-    ["arguments", "console", "demo", "solving", "cli_options", "cli", ""],
+    ["arguments", "console", "demo", "solving", "reports", "cli_options", "cli", ""],
 ]
 ALLOWED_IN_KERNELS = {"numpy", "numba", "math", "typing"}
 FILE_AND_SCREEN = {"pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "zarr", "matplotlib", "trimesh"}

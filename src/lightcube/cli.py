@@ -5,13 +5,13 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from lightcube import arguments, backward, between, demo, forward, io, metrics, plots, solving
+from lightcube import arguments, backward, between, demo, forward, io, metrics, plots, reports, solving
 from lightcube.cli_options import (
     ANGLES,
     ELEVATION,
@@ -107,7 +107,7 @@ def check(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Say before solving what can be known: what contradicts itself, how full the cube is, how good it will be."""
-    options = solving.Options(
+    said = solving.Options(
         n=n,
         shape=shape,
         frame_width=frame_width,
@@ -124,7 +124,9 @@ def check(
         hold=hold,
         transfer=transfer,
     )
-    prepared = solving.prepare(frames, options)
+    options = solving.settled(said)
+    with err.status("rehearsing"):
+        prepared = solving.prepare(frames, options)
     advice = solving.what_to_change(prepared, options)
     facts = solving.facts(prepared, options)
     if as_json:
@@ -172,7 +174,7 @@ def solve(
     """Compute the cube whose shadows are the frames."""
     io.check_cube_target(output, overwrite=overwrite)
     _check_partial(output, overwrite=overwrite)
-    options = solving.Options(
+    said = solving.Options(
         n=n,
         shape=shape,
         size_mm=size_mm,
@@ -195,7 +197,9 @@ def solve(
         iterations=iterations,
         transfer=transfer,
     )
-    prepared = solving.prepare(frames, options)
+    options = solving.settled(said)
+    with err.status("rehearsing"):
+        prepared = solving.prepare(frames, options)
     solving.check_room(prepared, options)
     for line in [*solving.in_short(prepared, options), *solving.what_to_change(prepared, options)] * (not as_json):
         err.print(line)
@@ -213,19 +217,6 @@ def solve(
             return stopped()
 
         solution = solving.solve(prepared, options, callback=step, store=io.PartialStore(output))
-    _finish(solution, prepared, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
-
-
-def _finish(
-    solution: backward.Solution,
-    prepared: solving.Prepared,
-    output: Path,
-    seconds: float,
-    *,
-    overwrite: bool,
-    as_json: bool,
-) -> None:
-    """Score, write and report what `solve` found."""
     cube = solution.cube
     if cube.status == "interrupted":
         partial = io.partial_path(output)
@@ -234,31 +225,12 @@ def _finish(
         raise typer.Exit(130)
     scores = metrics.score(cube, prepared.frames)
     io.publish(io.write_partial(output, replace(cube, scores=scores)), overwrite=overwrite)
+    seconds = time.monotonic() - began
     if as_json:
-        json_line(
-            "result",
-            out=str(output),
-            seconds=seconds,
-            iterations=len(solution.residuals),
-            residual=float(solution.residuals[-1]),
-            optimality=solution.optimality,
-            stop_reason=solution.stop_reason,
-            rejected=solution.rejected.tolist(),
-            undetermined=solution.undetermined,
-            predicted=solving.said(prepared.plan.prediction),
-            **scores,
-        )
-        return
-    if len(solution.rejected):
-        thrown_out = solving.by_view(solution.rejected, cube.names)
-        out.print(f"{len(solution.rejected)} inconsistent pixel values thrown out: {thrown_out}")
-    if solution.undetermined:
-        out.print(f"{solution.undetermined} voxel values that nothing determines are transparent")
-    out.print(
-        f"{output}: PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), "
-        f"SSIM {scores['ssim_mean']:.3f}, colour difference {scores['delta_e_mean']:.1f}; "
-        f"{len(solution.residuals)} passes in {seconds:.0f} s",
-    )
+        predicted = solving.said(prepared.plan.prediction)
+        json_line("result", out=str(output), seconds=seconds, **reports.facts(solution), predicted=predicted, **scores)
+    else:
+        reports.solved(solution, scores, output, seconds)
 
 
 @app.command()
@@ -349,24 +321,7 @@ def score(
     if as_json:
         json_document(scores)
     else:
-        _score_table(scores)
-
-
-def _score_table(scores: dict[str, Any]) -> None:
-    """Print one line per view, the means, and what was asked for besides."""
-    lobes = scores["between"]["lobe_deg"] if "between" in scores else []
-    out.print(f"{'view':>20} {'angle':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}" + " 30 dB over" * bool(lobes))
-    for number, view in enumerate(scores["views"]):
-        figures = f"{view['angle']:9.3f} {view['psnr']:7.2f} {view['ssim']:7.4f} {view['delta_e']:7.2f}"
-        lobe = f" {lobes[number]:9.2f}°" if lobes else ""
-        out.print(f"{view['name'][:20]:>20} {figures}{lobe}")
-    worst, mean = scores["psnr_min"], scores["psnr_mean"]
-    out.print(
-        f"mean PSNR {mean:.2f} dB (worst {worst:.2f}), SSIM {scores['ssim_mean']:.4f}, dE {scores['delta_e_mean']:.2f}"
-    )
-    for name, left in scores.get("robust", {}).items():
-        figures = f"{left['psnr_mean']:6.2f} dB (worst {left['psnr_min']:5.2f})"
-        out.print(f"  {figures}  {between.DISTURBANCES[name]}")
+        reports.scored(scores)
 
 
 @app.command()

@@ -1,13 +1,11 @@
 """What `check` and `solve` share: from the options of the command line to a plan, and what is said of it."""
 
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube import arguments, backward, io
 from lightcube.conditioning import Order, best_order, shifted, spread_over_screen
@@ -56,6 +54,11 @@ class Options:
     transfer: Transfer = "srgb"
 
     @property
+    def power(self) -> float:
+        """Largest power of the lamp, linear light."""
+        return self.lamp_power or self.lamp_max or (1.0 if self.lamp == "fixed" else backward.LAMP_MAX)
+
+    @property
     def lamps(self) -> dict[str, Any]:
         """As `lightcube.backward.solve` and `lightcube.planning.plan` take them."""
         most = np.inf if self.max_extinction is None else self.max_extinction
@@ -81,8 +84,19 @@ class Prepared:
         return self.plan.frames
 
 
-def as_in_the_paper(options: Options) -> Options:
-    """Options with the paper's own set-up, or `InputError` where others contradict it."""
+def settled(options: Options) -> Options:
+    """Fill in the lamp's kind and the paper's own set-up; `InputError` where others contradict them."""
+    if options.quality is not None and (options.iterations is not None or options.method != "display"):
+        raise InputError("--quality says how many passes method display takes: use either it or --iterations")
+    if options.paper:
+        options = _as_in_the_paper(options)
+    kind = backward.check_options(
+        options.method, **options.lamps, iterations=options.iterations, black=options.black or BLACK
+    )
+    return replace(options, lamp=kind)
+
+
+def _as_in_the_paper(options: Options) -> Options:
     said = {
         "--frame-width": options.frame_width,
         "--angles": options.angles,
@@ -105,21 +119,12 @@ def as_in_the_paper(options: Options) -> Options:
 
 
 def prepare(path: Path, options: Options) -> Prepared:
-    """Read the pictures and plan the cube; `InputError` for all that cannot be."""
-    if options.quality is not None and (options.iterations is not None or options.method != "display"):
-        raise InputError("--quality says how many passes method display takes: use either it or --iterations")
-    if options.paper:
-        options = as_in_the_paper(options)
-    kind = backward.check_options(
-        options.method, **options.lamps, iterations=options.iterations, black=options.black or BLACK
-    )
+    """Read the pictures and plan the cube, for options that are settled; `InputError` for all that cannot be."""
     shape = arguments.voxels(options.n, options.shape, options.size_mm)
     check_memory(backward.memory_needed(options.method, Grid(shape), (1, 1), 1))
     pictures = io.read_pictures(path, transfer=options.transfer)
     turned = None if options.angles is None else arguments.numbers(options.angles, "--angles")
     lamps = options.lamps
-    if kind == "fixed":
-        lamps |= {"lamp": "fixed"}
     planned = plan(
         pictures,
         max(shape),
@@ -138,7 +143,7 @@ def prepare(path: Path, options: Options) -> Prepared:
         planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
     order = None
     if options.order == "best" or len(pictures) <= _QUICK:
-        order = best_order(planned.frames, planned.grid, lamp_max=options.lamp_max or backward.LAMP_MAX)
+        order = best_order(planned.frames, planned.grid, lamp_max=options.power)
     if options.order == "best" and order is not None:
         frames = order(planned.frames)
         planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
@@ -164,7 +169,6 @@ def solve(
         provenance["shift"] = options.shift
     if options.order == "best" and prepared.order is not None:
         provenance["order"] = [int(picture) for picture in prepared.order.pictures]
-    lamps = as_in_the_paper(options).lamps if options.paper else options.lamps
     passes: dict[str, Any] = {"iterations": options.iterations}
     if options.iterations is None and options.method == "display":
         most, enough = backward.QUALITIES[options.quality or "normal"]
@@ -179,7 +183,7 @@ def solve(
         store=store,
         provenance=provenance,
         **passes,
-        **lamps,
+        **options.lamps,
     )
 
 
@@ -203,8 +207,7 @@ def table(facts: dict[str, Any]) -> list[str]:
 def facts(prepared: Prepared, options: Options) -> dict[str, Any]:
     """What can be known before solving, for JSON."""
     planned = prepared.plan
-    power = options.lamp_power or options.lamp_max or (1.0 if options.paper else backward.LAMP_MAX)
-    found = check(planned.frames, planned.grid, power)
+    found = check(planned.frames, planned.grid, options.power)
     return {
         "names": list(planned.frames.names),
         "angles": [float(angle) for angle in planned.frames.views.angles],
@@ -235,7 +238,8 @@ def in_short(prepared: Prepared, options: Options) -> list[str]:
     nz, ny, nx = planned.grid.shape
     lines = [
         fit_report(prepared.pictures, planned.frames, options.fit),
-        f"cube of {nx} x {ny} x {nz} voxels, {expected(planned)}",
+        f"cube of {nx} x {ny} x {nz} voxels, {expected(planned)}"
+        + " by method display" * (options.method != "display"),
     ]
     if planned.hold:
         angles = len(held(planned.frames.views, planned.hold, planned.grid)) // len(planned.frames)
@@ -265,7 +269,7 @@ def gain(prepared: Prepared, options: Options) -> list[str]:
 def what_to_change(prepared: Prepared, options: Options) -> list[str]:
     """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much."""
     planned = prepared.plan
-    found = advice(check(planned.frames, planned.grid, options.lamp_power or options.lamp_max or backward.LAMP_MAX))
+    found = advice(check(planned.frames, planned.grid, options.power))
     if planned.prediction.psnr_mean >= POOR_DB:
         return [sentence for sentence in found if not sentence.startswith("The load")]
     return [*found, *_remedies(prepared, options)]
@@ -287,8 +291,8 @@ def _remedies(prepared: Prepared, options: Options) -> list[str]:
     if not options.paper:
         smaller = narrower(prepared, options, 0.7 * now)
         tell(f"--frame-width {0.7 * now:.2g}", predict(smaller, planned.grid, hold=planned.hold, **lamps))
-        if options.lamp_power is None and options.method == "display":
-            most = 16 * (options.lamp_max or backward.LAMP_MAX)
+        if options.lamp != "fixed":
+            most = 16 * options.power
             stronger = predict(planned.frames, planned.grid, hold=planned.hold, **(lamps | {"lamp_max": most}))
             tell(f"--lamp-max {most:g}", stronger)
     return [f"Hardly recognisable pictures are expected; what would come of {'; of '.join(tried)}."] if tried else []
@@ -316,9 +320,3 @@ def check_memory(needed: int) -> None:
             f"this needs {needed / 1e9:.3g} GB of memory and {free / 1e9:.3g} GB are free: "
             "use a smaller cube, or fewer or smaller pictures"
         )
-
-
-def by_view(rejected: NDArray[np.int64], names: tuple[str, ...]) -> str:
-    """The views with most rejected pixels, by name."""
-    most = Counter(names[view] for view in rejected[:, 0]).most_common(5)
-    return ", ".join(f"{count} in {name}" for name, count in most)
