@@ -25,7 +25,7 @@ LAMP_MIN, LAMP_MAX = 1e-4, 16.0
 #: At most so many passes of method display, and the PSNR of all pixels, dB, that is enough: for a look, for use, and
 #: for the last tenth of a dB.
 Quality = Literal["draft", "normal", "best"]
-QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 45.0), "normal": (200, 50.0), "best": (1000, np.inf)}
+QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 40.0), "normal": (200, 45.0), "best": (1000, np.inf)}
 
 
 @dataclass(frozen=True)
