@@ -176,3 +176,27 @@ def test_enough_is_enough(lamp: str) -> None:
     if lamp == "per-view":  # else each unit by itself
         assert enough.residuals[-1] <= 0.5e-3 * float(np.sum(frames.weight)) * 3 * 1.01
     assert len(enough.residuals) <= len(most.residuals)
+
+
+def test_stopped_at_the_coarsest_of_several_sizes_the_cube_is_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was reached is enlarged through all sizes: it fills the cube, and does not stand small in its middle."""
+    monkeypatch.setattr("lightcube.units.COARSEST", 4)
+    grid = Grid((8, 16, 16))
+    views = turntable(grid, spread_angles(3, elevation=35), elevation=35, picture_shape=(8, 16))
+    frames = Frames(np.full((3, 8, 16, 3), 0.3, np.float32), views)
+    calls: list[Step] = []
+
+    def callback(step: Step) -> bool:
+        calls.append(step)
+        return len(calls) == 60
+
+    cube = solve(frames, grid, lamp_power=1.0, callback=callback).cube
+    middle, outside = cube.extinction[:, 2:6, 6:10, 6:10].mean(), cube.extinction[:, 2:6, 1:3, 6:10].mean()
+    assert cube.status == "interrupted"
+    assert outside > 0.2 * middle
+
+
+def test_slabs_of_one_colour_are_no_colours() -> None:
+    views = turntable(Grid((4, 6, 6)), [20.0, 80.0, 140.0], picture_shape=(4, 4))
+    frames = Frames(np.random.default_rng(0).uniform(0.2, 1, (3, 4, 4, 1)).astype(np.float32), views)
+    assert solve(frames, Grid((4, 6, 6)), lamp="coarse", iterations=5).cube.powers.shape == (3, 1)

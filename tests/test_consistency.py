@@ -296,7 +296,7 @@ def test_good_pictures_need_no_advice() -> None:
 
 def test_advice_names_pictures_rows_and_a_way_out() -> None:
     grid = Grid((24, 24, 24))
-    frames = fit(photographs(8), grid, span=360.0, frame_width=1.4)
+    frames = fit(photographs(8), grid, span=360.0, elevation=0.0, frame_width=1.4)
     light = frames.pictures.copy()
     light[3, 4:7] = 1
     light[3, 9] = 1

@@ -22,10 +22,12 @@ from lightcube.units import COARSE_PASSES, Step, Store, Watch, coarser, solve_le
 
 #: Bounds of the power of a lamp that is not fixed, unless the upper one is given.
 LAMP_MIN, LAMP_MAX = 1e-4, 16.0
+#: No lamp may be stronger.
+LAMP_MOST = 1e6
 #: At most so many passes of method display, and the PSNR of all pixels, dB, that is enough: for a look, for use, and
 #: for the last tenth of a dB.
 Quality = Literal["draft", "normal", "best"]
-QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 40.0), "normal": (200, 45.0), "best": (1000, np.inf)}
+QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 36.0), "normal": (200, 42.0), "best": (1000, np.inf)}
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ def solve(
 ) -> Solution:
     """Find the cube whose shadows are the frames.
 
-    Method ``display`` solves a cube more than 48 voxels wide at half the size first (and that one at a quarter, and
+    Method ``display`` solves a cube more than 48 voxels long at half the size first (and that one at a quarter, and
     so on) and starts from there: the lamps and the coarse structure come at an eighth of the price.
 
     Parameters
@@ -123,7 +125,7 @@ def solve(
     callback
         Called after each iteration; True stops the solver, and the cube's status becomes ``"interrupted"``.
     store
-        Keeps an unfinished cube after 2 s, ever more seldom up to every 30 s, and when the solver was stopped.
+        Keeps an unfinished cube after 2 s at full size, ever more seldom up to every 30 s, and when stopped.
     provenance
         What else the cube shall remember of how it was made.
 
@@ -230,9 +232,9 @@ def _check_lamp(method: str, lamp: Lamp | None, lamp_power: float | None, lamp_m
         raise InputError("a fixed lamp has no largest power: leave that out, or use a lamp per-view or global")
     if lamp != "fixed" and lamp_power is not None:
         raise InputError(f"a lamp that is {lamp} has no given power: leave that out, or use a fixed lamp")
-    if lamp_power is not None and not LAMP_MIN <= lamp_power <= 1e6:
+    if lamp_power is not None and not LAMP_MIN <= lamp_power <= LAMP_MOST:
         raise InputError(f"a lamp power must lie between {LAMP_MIN:g} and 1e6, not {lamp_power:g}")
-    if lamp_max is not None and not 1 <= lamp_max <= 1e6:
+    if lamp_max is not None and not 1 <= lamp_max <= LAMP_MOST:
         raise InputError(f"the largest lamp power must lie between 1 and 1e6, not {lamp_max:g}")
     return lamp
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from lightcube import arguments, backward, between, demo, forward, io, metrics, plots, reports, solving
 from lightcube.cli_options import (
     ANGLES,
+    BLACK_LEVEL,
     ELEVATION,
     FIT,
     FRAME_WIDTH,
@@ -22,6 +23,7 @@ from lightcube.cli_options import (
     LAMP,
     LAMP_MAX,
     LAMP_POWER,
+    MAX_EXTINCTION,
     ORDER,
     PAPER,
     SHAPE,
@@ -103,6 +105,8 @@ def check(
     lamp_power: LAMP_POWER = None,
     lamp_max: LAMP_MAX = None,
     hold: HOLD = None,
+    black: BLACK_LEVEL = None,
+    max_extinction: MAX_EXTINCTION = None,
     transfer: TRANSFER = "srgb",
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
@@ -122,6 +126,8 @@ def check(
         lamp_power=lamp_power,
         lamp_max=lamp_max,
         hold=hold,
+        black=black,
+        max_extinction=max_extinction,
         transfer=transfer,
     )
     options = solving.settled(said)
@@ -161,12 +167,8 @@ def solve(
     lamp_power: LAMP_POWER = None,
     lamp_max: LAMP_MAX = None,
     hold: HOLD = None,
-    black: Annotated[
-        float | None, typer.Option(help="Display value, 0 to 1, that the screen cannot be darker than.")
-    ] = None,
-    max_extinction: Annotated[
-        float | None, typer.Option(help="Largest extinction of the material, 1/mm; default none.")
-    ] = None,
+    black: BLACK_LEVEL = None,
+    max_extinction: MAX_EXTINCTION = None,
     transfer: TRANSFER = "srgb",
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
@@ -201,8 +203,9 @@ def solve(
     with err.status("rehearsing"):
         prepared = solving.prepare(frames, options)
     solving.check_room(prepared, options)
-    for line in [*solving.in_short(prepared, options), *solving.what_to_change(prepared, options)] * (not as_json):
-        err.print(line)
+    if not as_json:
+        for line in [*solving.in_short(prepared, options), *solving.what_to_change(prepared, options)]:
+            err.print(line)
     began = time.monotonic()
     with ctrl_c() as stopped, progress("solving", as_json=as_json) as advance:
         looked = 0.0
@@ -371,6 +374,8 @@ def main() -> None:
         code = 2
     except typer.Exit as stop:
         code = stop.exit_code
+        if isinstance(stop.__context__, KeyboardInterrupt):
+            err.print("interrupted: no file was finished")
     except (KeyboardInterrupt, typer.Abort):
         err.print("interrupted: no file was finished")
         code = 130

@@ -50,3 +50,7 @@ SHIFT = Annotated[
     int,
     typer.Option(help="Let pictures stand up to so many pixels higher, lower or aside, in turn.", min=0),
 ]
+BLACK_LEVEL = Annotated[
+    float | None, typer.Option("--black", help="Display value, 0.002 to 1, that the screen cannot be darker than.")
+]
+MAX_EXTINCTION = Annotated[float | None, typer.Option(help="Largest extinction of the material, 1/mm; default none.")]

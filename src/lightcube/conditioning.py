@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,15 +55,15 @@ class Order:
         )
 
 
-def best_order(frames: Frames, grid: Grid, *, lamp_max: float = backward.LAMP_MAX) -> Order:
+def best_order(frames: Frames, grid: Grid, **lamp: Any) -> Order:
     """Find which picture should stand at which stop, so that they fight each other least.
 
     Parameters
     ----------
     frames
         Pictures in any order, in the views where they or others of them shall stand.
-    lamp_max
-        Largest lamp power, linear light.
+    lamp
+        ``lamp``, ``lamp_power``, ``lamp_max``, ``max_extinction``, ``black`` as `lightcube.backward.solve` takes them.
 
     Returns
     -------
@@ -90,7 +91,7 @@ def best_order(frames: Frames, grid: Grid, *, lamp_max: float = backward.LAMP_MA
     if len(frames) > 1 and max(tiles) > 1:
         parts = _parts(draft.views, small, _features(draft, tiles)[canonical], tiles)
         candidates += [canonical[order] for order in _walks(parts, tour)]
-    scores = [_draft_db(draft, small, candidate, lamp_max) for candidate in candidates]
+    scores = [_draft_db(draft, small, candidate, **lamp) for candidate in candidates]
     best = int(np.argmax(scores))
     return Order(candidates[best].astype(np.intp), scores[0], scores[best])
 
@@ -134,12 +135,14 @@ def _draft(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
     """Return the frames and the grid at a size that solves in a moment: as they are, or 16 voxels long."""
     scale = max(1.0, max(grid.shape) / _DRAFT)
     nz, ny, nx = (max(1, round(side / scale)) for side in grid.shape)
-    rows, columns = (max(1, round(side / scale)) for side in frames.views.picture_shape)
+    small = Grid((nz, ny, nx), grid.voxel_mm * scale)
     wide = frames.views
+    most = raster_shape(small, float(np.min(np.abs(wide.elevations))))
+    rows, columns = (min(max(1, round(side / scale)), end) for side, end in zip(wide.picture_shape, most, strict=True))
     views = Views(wide.lamps, wide.origins, wide.column_steps * scale, wide.row_steps * scale, (rows, columns))
     pictures, weights = _tiled(frames.pictures, frames.weight, (rows, columns))
     smaller = replace(frames, pictures=pictures.astype(np.float32), views=views, weights=weights.astype(np.float32))
-    return smaller, Grid((nz, ny, nx), grid.voxel_mm * scale)
+    return smaller, small
 
 
 def _tiled(
@@ -212,8 +215,8 @@ def _walks(parts: NDArray[np.float32], start: NDArray[np.int64]) -> list[NDArray
     return found
 
 
-def _draft_db(draft: Frames, grid: Grid, order: NDArray[np.integer], lamp_max: float) -> float:
+def _draft_db(draft: Frames, grid: Grid, order: NDArray[np.integer], **lamp: Any) -> float:
     """Mean PSNR in dB of the draft cube with the pictures in this order."""
     frames = Order(order.astype(np.intp), 0.0, 0.0)(draft)
-    cube = backward.solve(frames, grid, lamp_max=float(lamp_max), iterations=_PASSES).cube
+    cube = backward.solve(frames, grid, iterations=_PASSES, **lamp).cube
     return mean_psnr(np.stack(list(cast(cube, cube.views, cube.powers))), frames)

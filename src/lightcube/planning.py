@@ -1,5 +1,6 @@
 """How large pictures may be, how the cube follows them, how long each can stand: chosen by prediction."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -72,7 +73,7 @@ def plan(
         As `lightcube.fitting.fit` takes them.
     hold
         Degrees; None = as much as is predicted to cost less than 1 dB (of what lies below 45 dB), at most half the way
-        to the next stop.
+        to the next stop; none where less than 40 dB are predicted without.
     lamp
         ``lamp``, ``lamp_power``, ``lamp_max``, ``max_extinction`` as `lightcube.backward.solve` takes them.
 
@@ -83,15 +84,24 @@ def plan(
     """
     if not pictures.images:
         raise InputError("there are no pictures: give at least two")
+    if n < 1 or not 0 < (1 if frame_width is None else frame_width) < math.inf:
+        raise InputError(
+            f"a cube of {n} voxels with pictures {frame_width} of its width: give at least 1 voxel, and a width above "
+            "0 and at most 1.41"
+        )
     rows, columns = pictures.images[0].shape[:2]
     height = pictures.elevation if elevation is None else elevation
     level = (RAISED if height is None else height) == 0
 
     def at(width: float) -> tuple[Frames, Grid]:
         voxels = shape or proportions(n, columns / rows, width, level=level)
-        grid = Grid(voxels, size_mm / max(voxels))
-        frames = fit(pictures, grid, angles=angles, span=span, elevation=elevation, frame_width=width, fit=fit_mode)
-        return frames, grid
+        while True:
+            grid = Grid(voxels, size_mm / max(voxels))
+            frames = fit(pictures, grid, angles=angles, span=span, elevation=elevation, frame_width=width, fit=fit_mode)
+            high = frames.views.picture_shape[0]
+            if shape is not None or not level or high == voxels[0] or max(voxels[1:]) < n:
+                return frames, grid
+            voxels = (high, *voxels[1:])  # no slices above and below the pictures
 
     def predicted(width: float) -> Plan:
         frames, grid = at(width)
@@ -127,6 +137,8 @@ def proportions(n: int, aspect: float, frame_width: float, *, level: bool) -> tu
 
 def longest_hold(without: Plan, **lamp: Any) -> Plan:
     """Find the longest hold that costs less than 1 dB of what is predicted for the plan `without`."""
+    if without.prediction.psnr_mean < GOOD_DB:  # where pictures drown in each other hold costs nothing, and is worth it
+        return without
     step, most = dense_step(without.grid), widest_hold(without.frames.views)
     enough = min(without.prediction.psnr_mean, BEST_SEEN_DB) - HOLD_COSTS_DB
     best = without

@@ -67,6 +67,7 @@ class Options:
             "lamp_power": self.lamp_power,
             "lamp_max": self.lamp_max,
             "max_extinction": most,
+            "black": BLACK if self.black is None else self.black,
         }
 
 
@@ -86,13 +87,13 @@ class Prepared:
 
 def settled(options: Options) -> Options:
     """Fill in the lamp's kind and the paper's own set-up; `InputError` where others contradict them."""
-    if options.quality is not None and (options.iterations is not None or options.method != "display"):
-        raise InputError("--quality says how many passes method display takes: use either it or --iterations")
+    if options.quality is not None and options.iterations is not None:
+        raise InputError("--quality and --iterations both say how many passes: leave one of them out")
+    if options.quality is not None and options.method != "display":
+        raise InputError(f"--quality is for method display: use --iterations with method {options.method}")
     if options.paper:
         options = _as_in_the_paper(options)
-    kind = backward.check_options(
-        options.method, **options.lamps, iterations=options.iterations, black=options.black or BLACK
-    )
+    kind = backward.check_options(options.method, **options.lamps, iterations=options.iterations)
     return replace(options, lamp=kind)
 
 
@@ -106,6 +107,7 @@ def _as_in_the_paper(options: Options) -> Options:
         "--lamp-power": options.lamp_power,
         "--lamp-max": options.lamp_max,
         "--hold": options.hold,
+        "--shift": options.shift or None,
     }
     contradiction = [name for name, value in said.items() if value is not None]
     if contradiction:
@@ -113,7 +115,7 @@ def _as_in_the_paper(options: Options) -> Options:
             f"--paper says what {contradiction[0]} says too (lamp level and of power 1, half a turn, pictures as wide "
             "as the cube, no hold): leave out one of the two"
         )
-    voxels = options.shape or ",".join([str(options.n or arguments.DEFAULT_N)] * 3)
+    voxels = ",".join(str(count) for count in arguments.voxels(options.n, options.shape, options.size_mm))
     white: dict[str, Any] = {"elevation": 0.0, "span": 180.0, "frame_width": 1.0, "lamp_power": 1.0, "hold": 0.0}
     return replace(options, **white, shape=voxels, n=None)
 
@@ -143,7 +145,7 @@ def prepare(path: Path, options: Options) -> Prepared:
         planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
     order = None
     if options.order == "best" or len(pictures) <= _QUICK:
-        order = best_order(planned.frames, planned.grid, lamp_max=options.power)
+        order = best_order(planned.frames, planned.grid, **lamps)
     if options.order == "best" and order is not None:
         frames = order(planned.frames)
         planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
@@ -178,7 +180,6 @@ def solve(
         planned.grid,
         method=options.method,
         hold=planned.hold,
-        black=options.black or BLACK,
         callback=callback,
         store=store,
         provenance=provenance,
@@ -196,7 +197,7 @@ def table(facts: dict[str, Any]) -> list[str]:
         "load": f"{facts['load']:.1f}, well up to {facts['load_limit']:g}",
         "mirrored pairs": len(facts["mirrored"]) or "none",
         "same pictures": len(facts["duplicates"]) or "none",
-        "white rows": sum(len(runs) for runs in facts["white_rows"].values()) or "none",
+        "white rows": sum(last - first + 1 for runs in facts["white_rows"].values() for first, last in runs) or "none",
         "row conflicts": f"in {conflicts} of {facts['rows']} rows" if conflicts else "none",
         "totals differ": f"{totals['total']:.0%} (a solid's shadows: 5% at most); margin and lamp take it up",
         "centroids": f"off by {off}",
@@ -269,6 +270,8 @@ def gain(prepared: Prepared, options: Options) -> list[str]:
 def what_to_change(prepared: Prepared, options: Options) -> list[str]:
     """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much."""
     planned = prepared.plan
+    if options.paper:  # all that would help contradicts it
+        return []
     found = advice(check(planned.frames, planned.grid, options.power))
     if planned.prediction.psnr_mean >= POOR_DB:
         return [sentence for sentence in found if not sentence.startswith("The load")]
@@ -288,13 +291,12 @@ def _remedies(prepared: Prepared, options: Options) -> list[str]:
     if len(every_second) > 1:
         fewer = planned.frames.take(every_second)
         tell(f"{len(fewer)} of the pictures", predict(fewer, planned.grid, hold=planned.hold, **lamps))
-    if not options.paper:
-        smaller = narrower(prepared, options, 0.7 * now)
-        tell(f"--frame-width {0.7 * now:.2g}", predict(smaller, planned.grid, hold=planned.hold, **lamps))
-        if options.lamp != "fixed":
-            most = 16 * options.power
-            stronger = predict(planned.frames, planned.grid, hold=planned.hold, **(lamps | {"lamp_max": most}))
-            tell(f"--lamp-max {most:g}", stronger)
+    smaller = narrower(prepared, options, 0.7 * now)
+    tell(f"--frame-width {0.7 * now:.2g}", predict(smaller, planned.grid, hold=planned.hold, **lamps))
+    most = min(16 * options.power, backward.LAMP_MOST)
+    if options.lamp != "fixed" and most > options.power:
+        stronger = predict(planned.frames, planned.grid, hold=planned.hold, **(lamps | {"lamp_max": most}))
+        tell(f"--lamp-max {most:g}", stronger)
     return [f"Hardly recognisable pictures are expected; what would come of {'; of '.join(tried)}."] if tried else []
 
 
@@ -302,7 +304,7 @@ def narrower(prepared: Prepared, options: Options, width: float) -> Frames:
     """The frames as they would be at another width, at the same stops."""
     views = prepared.frames.views
     elevation = float(views.elevations[0])
-    return fit(
+    frames = fit(
         prepared.pictures,
         prepared.plan.grid,
         angles=views.angles,
@@ -310,6 +312,9 @@ def narrower(prepared: Prepared, options: Options, width: float) -> Frames:
         frame_width=width,
         fit=options.fit,
     )
+    if options.shift:
+        frames = shifted(frames, spread_over_screen(frames, prepared.plan.grid, options.shift))
+    return prepared.order(frames) if options.order == "best" and prepared.order is not None else frames
 
 
 def check_memory(needed: int) -> None:

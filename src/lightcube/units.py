@@ -16,7 +16,7 @@ from lightcube.problem import Problem
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Callback, Progress, Result, Solver
 
-#: Cubes wider than this start from the solution at half the size, found in so many passes.
+#: Cubes longer than this start from the solution at half the size, found in so many passes.
 COARSEST, COARSE_PASSES = 48, 100
 #: Seconds from the start to the first checkpoint, and between checkpoints later on; the gaps double in between.
 FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
@@ -93,7 +93,8 @@ class Watch:
         self, problem: Problem, x: Floats, seen: Floats, part: slice, powers: Floats | None, number: int, parts: int
     ) -> Callback:
         """For a solver of some columns of the cube; the others are in `x`, and what is seen through them in `seen`."""
-        enough = 0.5 * self._enough * float(np.sum(problem.weights[:, part], dtype=np.float64))
+        weight = float(np.sum(problem.weights[:, part], dtype=np.float64))
+        enough = 0.5 * self._enough * weight if self._enough > 0 else -1.0  # an exact 0 is not enough by itself
 
         def watch(progress: Progress) -> bool | None:
             lamps = progress.lamp_powers if powers is None else powers
@@ -152,7 +153,9 @@ def solve_levels(
         )
         extinction, powers = problem.extinction(result.x), result.lamp_powers
         going = result.stop_reason != "callback"
-        if not going:
+        if not going:  # what there is, at the last size
+            for larger in levels[len(levels) - size + 1 :]:
+                extinction = enlarged(extinction, larger.matrix.grid.shape)
             break
     return extinction, powers, going
 
@@ -172,7 +175,7 @@ def solve_units(
     seen = np.empty_like(problem.light) if len(parts) == 1 else problem.matrix.forward(x)
     results = []
     for number, part in enumerate(parts):
-        colours = slice(None) if problem.light[:, part].shape[1] > 1 or len(parts) == 1 else part
+        colours = part if problem.light.shape[1] == problem.channels else slice(None)
         low, high = (bound[:, colours] for bound in lamp_bounds)
         result = solver(
             problem.matrix,
