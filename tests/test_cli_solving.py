@@ -118,7 +118,8 @@ def test_the_best_order_is_kept_by_name(run, unlike: Path, tmp_path: Path) -> No
     assert np.all(np.diff(cube.views.angles) > 0)
     again = json.loads(run("score", tmp_path / "a.npz", unlike, "--json").out)
     assert again["psnr_mean"] == pytest.approx(cube.scores["psnr_mean"], abs=0.01)
-    assert score(cube)["psnr_mean"] == pytest.approx(cube.scores["psnr_mean"], abs=0.5)
+    for own, float_target in zip(score(cube)["views"], cube.scores["views"], strict=True):  # 8 bits tell to 59 dB
+        assert min(own["psnr"], 45) == pytest.approx(min(float_target["psnr"], 45), abs=0.5)
 
 
 def test_shifted_pictures_are_where_they_were_put(run, unlike: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
