@@ -16,9 +16,6 @@ from lightcube.kernels.beam import max_pieces
 
 Floats = NDArray[np.floating[Any]]
 
-#: Columns that one task works on at most: more fall out of the cache, fewer trace the beams too often.
-_MAX_BLOCK = 128
-
 
 class Projector:
     """Lengths (mm) of the views' beams in the grid's voxels, as a linear operator ``B = A X``.
@@ -43,7 +40,7 @@ class Projector:
 
     Notes
     -----
-    Nothing is stored but a few numbers per view: lengths are traced anew for each block of columns
+    Nothing is stored but a few numbers per view: lengths are traced anew in every product
     (Siddon, see `lightcube.kernels.beam`). Beams along voxel faces follow the tie rule of docs/conventions.md.
     """
 
@@ -75,20 +72,8 @@ class Projector:
         """``A @ x``: `x` is ``(A.shape[1], columns)`` float32 or float64, the result has its dtype."""
         x = self._checked(x, self.shape[1])
         channels = x.shape[1]
-        rays = self.shape[0] // self._stacked
-        b = np.empty((rays, self._stacked * channels), x.dtype)
-        block = _block(b.shape[1])
-        tasks = max(1, 4 * numba.get_num_threads() * block // b.shape[1])
-        projection.forward(
-            self._beams,
-            self._width,
-            *self._plane(),
-            x.reshape(self._voxels, -1),
-            b,
-            channels,
-            block,
-            math.ceil(rays / tasks),
-        )
+        b = np.empty((self.shape[0] // self._stacked, self._stacked * channels), x.dtype)
+        projection.forward(self._beams, self._width, *self._plane(), x.reshape(self._voxels, -1), b, channels, _tasks())
         return b.reshape(self.shape[0], channels)
 
     def adjoint(self, b: Floats) -> Floats:
@@ -97,7 +82,7 @@ class Projector:
         channels = b.shape[1]
         x = np.empty((self._voxels, self.shape[1] // self._voxels * channels), b.dtype)
         stacked = b.reshape(-1, self._stacked * channels)
-        projection.adjoint(self._beams, self._width, *self._plane(), stacked, x, channels, _block(x.shape[1]))
+        projection.adjoint(self._beams, self._width, *self._plane(), stacked, x, channels, _tasks())
         return x.reshape(self.shape[1], channels)
 
     def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -105,8 +90,8 @@ class Projector:
         if not 0 <= index < self.shape[0]:
             raise InputError(f"row {index} is not in the matrix of {self.shape[0]} rows")
         ray, lift = divmod(index, self._stacked)
-        nx, ny, scale, rise = self._plane()
-        most = max_pieces(nx, ny, rise)
+        nx, ny, scale = self._plane()
+        most = max_pieces(nx, ny, self._rise) + 1
         voxels, levels, lengths = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most)
         count = projection.trace_column(self._beams, self._width, ray, nx, ny, scale, voxels, levels, lengths)
         unknowns, inside = self._unknowns(voxels[:count], levels[:count] + lift)
@@ -117,10 +102,10 @@ class Projector:
         rays = self.shape[0] // self._stacked
         offsets = np.zeros(rays + 1, np.int64)
         none = np.empty(0, np.int32)
-        projection.trace_all(self._beams, self._width, *self._plane(), offsets, none, none, np.empty(0))
+        projection.trace_all(self._beams, self._width, *self._plane(), self._rise, offsets, none, none, np.empty(0))
         voxels, levels = np.empty(offsets[-1], np.int32), np.empty(offsets[-1], np.int32)
         lengths = np.empty(offsets[-1])
-        projection.trace_all(self._beams, self._width, *self._plane(), offsets, voxels, levels, lengths)
+        projection.trace_all(self._beams, self._width, *self._plane(), self._rise, offsets, voxels, levels, lengths)
         ray = np.repeat(np.arange(rays), np.diff(offsets))
         lift = np.arange(self._stacked)[:, None]
         unknowns, inside = self._unknowns(voxels, levels + lift)
@@ -144,9 +129,9 @@ class Projector:
     def _voxels(self) -> int:
         return self.grid.shape[1] * self.grid.shape[2]
 
-    def _plane(self) -> tuple[int, int, float, int]:
-        """What the kernels want to know of the grid: nx, ny, voxel side, slices that a beam may meet."""
-        return self.grid.shape[2], self.grid.shape[1], self.grid.voxel_mm, self._rise
+    def _plane(self) -> tuple[int, int, float]:
+        """What the kernels want to know of the grid: nx, ny, voxel side."""
+        return self.grid.shape[2], self.grid.shape[1], self.grid.voxel_mm
 
     def _unknowns(
         self, voxels: NDArray[np.int32], levels: NDArray[np.integer[Any]]
@@ -179,12 +164,9 @@ def dot_test(operator: Any, columns: int = 3, dtype: type[np.floating[Any]] = np
     return float(abs(difference) / (np.linalg.norm(ax) * np.linalg.norm(b)))
 
 
-def _block(columns: int) -> int:
-    """Columns per task: a whole number of rounds for all threads, in multiples of 16 where there are so many."""
-    threads = numba.get_num_threads()
-    tasks = threads * math.ceil(columns / (threads * _MAX_BLOCK))
-    width = math.ceil(columns / tasks)
-    return min(columns, math.ceil(width / 16) * 16) if width >= 16 else width
+def _tasks() -> int:
+    """Parts that a product is divided into at least: more than threads, for they are not all equally long."""
+    return int(4 * numba.get_num_threads())
 
 
 def _check_turntable(grid: Grid, views: Views) -> None:

@@ -6,7 +6,8 @@ one picture column are copies of each other moved up by whole voxels: whoever us
 References
 ----------
 R. L. Siddon, Fast calculation of the exact radiological path for a three-dimensional CT array,
-Medical Physics 12 (1985) 252-255.
+Medical Physics 12 (1985) 252-255; F. Jacobs et al., A fast algorithm to calculate the exact radiological path
+through a pixel or voxel space, J. Computing and Information Technology 6 (1998) 89-94, for the increments.
 """
 
 import math
@@ -28,7 +29,7 @@ def max_pieces(nx: int, ny: int, rise: int) -> int:
     return 4 * (nx + ny + rise + 5)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _crossings(p: float, d: float, n: int) -> tuple[float, float]:
     """Path parameters at which ``p + t d`` enters and leaves ``[0, n]``; empty (inf, -inf) where it misses."""
     if abs(d) < PARALLEL:
@@ -41,14 +42,14 @@ def _crossings(p: float, d: float, n: int) -> tuple[float, float]:
     return last, first
 
 
-@njit(cache=True)
-def _next_face(p: float, d: float, i: int) -> float:
-    """Path parameter at which a beam inside cell `i` of one axis leaves it."""
+@njit(cache=True, inline="always")
+def _faces(p: float, d: float, i: int) -> tuple[int, float, float]:
+    """Which way a beam in cell `i` of one axis goes on, the path parameter of the next face, and from face to face."""
     if abs(d) < PARALLEL:
-        return np.inf
+        return 0, np.inf, np.inf
     if d > 0.0:
-        return (i + 1 - p) / d
-    return (i - p) / d
+        return 1, (i + 1 - p) / d, 1 / d
+    return -1, (i - p) / d, -1 / d
 
 
 @njit(cache=True)
@@ -62,12 +63,16 @@ def _trace_off_faces(
     nx: int,
     ny: int,
     scale: float,
-    voxels: NDArray[Any],
-    levels: NDArray[Any],
+    strides: tuple[int, int, int],
+    places: NDArray[Any],
+    shifts: NDArray[Any],
     weights: NDArray[Any],
     count: int,
 ) -> int:
-    """Append the pieces of a beam that runs along no face; return the new count."""
+    """Append the pieces of a beam that runs along no face; return the new count.
+
+    Free of branches that depend on the numbers: which face comes next cannot be foretold.
+    """
     x_in, x_out = _crossings(px, dx, nx)
     y_in, y_out = _crossings(py, dy, ny)
     t = max(x_in, y_in)
@@ -77,32 +82,27 @@ def _trace_off_faces(
     ix = min(max(math.floor(px + t * dx), 0), nx - 1)
     iy = min(max(math.floor(py + t * dy), 0), ny - 1)
     iz = math.floor(pz + t * dz)
-    tx, ty, tz = _next_face(px, dx, ix), _next_face(py, dy, iy), _next_face(pz, dz, iz)
+    x_way, tx, x_gap = _faces(px, dx, ix)
+    y_way, ty, y_gap = _faces(py, dy, iy)
+    z_way, tz, z_gap = _faces(pz, dz, iz)
     while t < end:
         stop = min(min(tx, ty), min(tz, end))
-        if stop > t:
-            voxels[count] = iy * nx + ix
-            levels[count] = iz
-            weights[count] = (stop - t) * scale
-            count += 1
-            t = stop
-        if tx <= t:
-            ix += 1 if dx > 0.0 else -1
-            if ix < 0 or ix >= nx:
-                break
-            tx = _next_face(px, dx, ix)
-        if ty <= t:
-            iy += 1 if dy > 0.0 else -1
-            if iy < 0 or iy >= ny:
-                break
-            ty = _next_face(py, dy, iy)
-        if tz <= t:
-            iz += 1 if dz > 0.0 else -1
-            tz = _next_face(pz, dz, iz)
+        places[count] = ix * strides[0] + iy * strides[1]
+        shifts[count] = iz * strides[2]
+        weights[count] = (stop - t) * scale
+        count += 1 if stop > t and 0 <= ix < nx and 0 <= iy < ny else 0
+        t = stop
+        at_x, at_y, at_z = tx <= stop, ty <= stop, tz <= stop
+        ix += x_way if at_x else 0
+        iy += y_way if at_y else 0
+        iz += z_way if at_z else 0
+        tx += x_gap if at_x else 0.0
+        ty += y_gap if at_y else 0.0
+        tz += z_gap if at_z else 0.0
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _on_face(p: float, d: float) -> bool:
     """Whether a beam runs along a face of this axis."""
     return abs(d) < PARALLEL and abs(p - round(p)) <= ON_FACE
@@ -119,18 +119,20 @@ def trace_beam(
     nx: int,
     ny: int,
     scale: float,
-    voxels: NDArray[Any],
-    levels: NDArray[Any],
+    strides: tuple[int, int, int],
+    places: NDArray[Any],
+    shifts: NDArray[Any],
     weights: NDArray[Any],
+    count: int,
 ) -> int:
-    """Write the pieces of the beam ``p + t d`` (`d` of length 1) and return how many there are.
+    """Append the pieces of the beam ``p + t d`` (`d` of length 1) after the first `count`; return how many there are.
 
-    Piece ``k`` lies in voxel ``voxels[k] = y * nx + x`` of slice ``levels[k]`` (any whole number) and is
-    ``weights[k]`` long, in voxel sides times `scale`. A beam along a face is split into equal beams half a
-    voxel to either side, which have the same lengths as the voxels that touch the face.
+    Piece ``k``, in voxel ``(x, y)`` of slice ``z`` (any whole number), has ``places[k] = x * strides[0] +
+    y * strides[1]``, ``shifts[k] = z * strides[2]``, and is ``weights[k]`` long, in voxel sides times `scale`. A beam
+    along a face is split into equal beams half a voxel to either side, which have the same lengths as the voxels that
+    touch the face. There must be room for one more piece than `max_pieces`.
     """
     on_x, on_y, on_z = _on_face(px, dx), _on_face(py, dy), _on_face(pz, dz)
-    count = 0
     for sx in range(2 if on_x else 1):
         for sy in range(2 if on_y else 1):
             for sz in range(2 if on_z else 1):
@@ -145,5 +147,5 @@ def trace_beam(
                 if on_z:
                     part *= 0.5
                     qz = round(pz) + sz - 0.5
-                count = _trace_off_faces(qx, qy, qz, dx, dy, dz, nx, ny, part, voxels, levels, weights, count)
+                count = _trace_off_faces(qx, qy, qz, dx, dy, dz, nx, ny, part, strides, places, shifts, weights, count)
     return count

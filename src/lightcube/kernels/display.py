@@ -51,24 +51,18 @@ def curvature(u: float, wanted: float, srgb: bool) -> float:
 @njit(cache=True, parallel=True)
 def descend(
     absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, srgb: bool, slopes: Array
-) -> Array:
-    """Write the derivative of the objective by the absorbance to `slopes`; return the objective of each column.
+) -> None:
+    """Write the derivative of the objective by the absorbance to `slopes`, which may be `absorbance` itself.
 
     ``lamp[view, channel]`` is ln P; the objective is half the weighted sum of squared residuals.
     """
     rows, columns = absorbance.shape
-    parts = 64
-    sums = np.zeros((parts, columns))
-    for part in prange(parts):
-        for row in range(part * rows // parts, (part + 1) * rows // parts):
-            powers = lamp[view_of_row[row]]
-            for column in range(columns):
-                u = powers[column % len(powers)] - absorbance[row, column]
-                value, slope = residual(u, wanted[row, column], srgb)
-                weighted = weights[row, column] * value
-                slopes[row, column] = -weighted * slope
-                sums[part, column] += 0.5 * weighted * value
-    return sums.sum(axis=0)
+    for row in prange(rows):
+        powers = lamp[view_of_row[row]]
+        for column in range(columns):
+            u = powers[column % len(powers)] - absorbance[row, column]
+            value, slope = residual(u, wanted[row, column], srgb)
+            slopes[row, column] = -weights[row, column] * value * slope
 
 
 @njit(cache=True)
@@ -183,9 +177,9 @@ def curvatures(
     weights: Array,
     srgb: bool,
     room: float,
-    bounds: Array,
+    values: Array,
 ) -> None:
-    """Write to `bounds` the weighted `curvature` that holds while ln light rises by no more than `room`."""
+    """Multiply `values` by the weighted `curvature` that holds while ln light rises by no more than `room`."""
     rows, columns = absorbance.shape
     for row in prange(rows):
         powers = lamp[view_of_row[row]]
@@ -193,4 +187,4 @@ def curvatures(
             brightest = powers[column % len(powers)]
             now = brightest - absorbance[row, column]
             u = max(now, min(now + room, brightest))
-            bounds[row, column] = weights[row, column] * curvature(u, wanted[row, column], srgb)
+            values[row, column] *= weights[row, column] * curvature(u, wanted[row, column], srgb)

@@ -5,119 +5,299 @@ starts at ``beams[view, 0] + column * beams[view, 1]`` and runs along ``beams[vi
 the lowest picture row; row ``j`` is the same beam ``j`` voxels higher. So a piece in slice ``level`` joins column
 ``i`` of ``b`` to column ``i + level * channels`` of ``x``.
 
-A task owns a block of columns of its result: no two threads write the same number, and sums do not depend on
-the number of threads.
+Both directions go tile by tile of voxels and group by group of views: a tile's columns, and those of the beams
+through it, stay in the cache while their few pieces, traced once for all columns, are used. A task owns a part of its
+result, and every number is summed in one order: no two threads write the same one, and sums do not depend on their
+number.
 """
 
+import math
 from typing import Any
 
 import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
-from lightcube.kernels.beam import max_pieces, trace_beam
+from lightcube.kernels.beam import PARALLEL, max_pieces, trace_beam
+from lightcube.kernels.rows import LANES, add_rows, prefetch
 
 Array = NDArray[Any]
 
+#: Voxels along the side of a tile, views in a group at most, and columns that are worked on at a time (measured).
+TILE, GROUP, COLUMNS = 16, 16, 256
+#: Pieces that a group may have at most: fewer views are taken where light is steep.
+_MOST_PIECES = 1 << 20
+
 
 @njit(cache=True)
-def trace_column(
+def _room(beams: Array, width: int) -> tuple[int, int]:
+    """Return how many beams of a view may meet a tile, and how many pieces one of them may have there."""
+    rays, rise = 0, 0
+    for view in range(len(beams)):
+        step, light = beams[view, 1], beams[view, 2]
+        turned = abs(step[0] * light[1] - step[1] * light[0])
+        flat = math.hypot(light[0], light[1])
+        spread = TILE * (abs(light[0]) + abs(light[1]))
+        rays = max(rays, width if spread >= turned * width else min(width, int(spread / turned) + 4))
+        rise = max(rise, int(abs(light[2]) / flat * TILE * 1.5) + 2)
+    return rays, max_pieces(TILE, TILE, rise) + 1
+
+
+@njit(cache=True)
+def _meeting(beams: Array, view: int, width: int, x: int, y: int, nx: int, ny: int) -> tuple[int, int]:
+    """Return the first beam of a view that may meet the tile at ``(x, y)``, and the one after the last."""
+    start, step, light = beams[view, 0], beams[view, 1], beams[view, 2]
+    turned = step[0] * light[1] - step[1] * light[0]
+    if abs(turned) < PARALLEL:
+        return 0, width
+    first, last = np.inf, -np.inf
+    for corner in range(4):
+        across = x - start[0] + (nx if corner & 1 else 0)
+        along = y - start[1] + (ny if corner & 2 else 0)
+        column = (across * light[1] - along * light[0]) / turned
+        first, last = min(first, column), max(last, column)
+    return int(max(0.0, math.floor(first))), int(min(float(width), math.ceil(last) + 1))
+
+
+@njit(cache=True)
+def _trace_tile(
     beams: Array,
     width: int,
-    beam: int,
+    view: int,
+    after: int,
+    x: int,
+    y: int,
     nx: int,
     ny: int,
     scale: float,
-    voxels: Array,
-    levels: Array,
+    strides: tuple[int, int, int],
+    rays: Array,
+    ends: Array,
+    places: Array,
+    shifts: Array,
     weights: Array,
 ) -> int:
-    """Trace beam number `beam`, of `width` beams a view; as `trace_beam`."""
-    view, column = beam // width, beam % width
-    start, step, direction = beams[view, 0], beams[view, 1], beams[view, 2]
-    return trace_beam(
-        start[0] + column * step[0],
-        start[1] + column * step[1],
-        start[2] + column * step[2],
-        direction[0],
-        direction[1],
-        direction[2],
-        nx,
-        ny,
-        scale,
-        voxels,
-        levels,
-        weights,
-    )
+    """Trace the beams of views from `view` to before `after` through the tile of `nx` by `ny` voxels at ``(x, y)``.
 
-
-@njit(cache=True, fastmath={"contract"})
-def _add_shifted(source: Array, target: Array, shift: int, weight: Any) -> None:
-    """``target[i] += weight * source[i + shift]`` wherever `source` has such a number."""
-    start = max(0, -shift)
-    stop = min(len(target), len(source) - shift)
-    if stop <= start:
-        return
-    part = source[start + shift : stop + shift]
-    into = target[start:stop]
-    for i in range(len(into)):
-        into[i] += weight * part[i]
+    The pieces of beam ``rays[i]``, counted from the first beam of `view`, end before ``ends[i + 1]``; returns how many
+    beams meet the tile.
+    """
+    met = 0
+    ends[0] = 0
+    for each in range(view, after):
+        start, step, light = beams[each, 0], beams[each, 1], beams[each, 2]
+        first, last = _meeting(beams, each, width, x, y, nx, ny)
+        for column in range(first, last):
+            count = trace_beam(
+                start[0] + column * step[0] - x,
+                start[1] + column * step[1] - y,
+                start[2] + column * step[2],
+                light[0],
+                light[1],
+                light[2],
+                nx,
+                ny,
+                scale,
+                strides,
+                places,
+                shifts,
+                weights,
+                ends[met],
+            )
+            if count > ends[met]:
+                rays[met] = (each - view) * width + column
+                ends[met + 1] = count
+                met += 1
+    return met
 
 
 @njit(cache=True, parallel=True)
 def forward(
-    beams: Array,
-    width: int,
-    nx: int,
-    ny: int,
-    scale: float,
-    rise: int,
-    x: Array,
-    b: Array,
-    channels: int,
-    block: int,
-    beams_per_task: int,
+    beams: Array, width: int, nx: int, ny: int, scale: float, x: Array, b: Array, channels: int, tasks: int
 ) -> None:
-    """``b = A x``; every number of `b` is written. `rise` bounds the slices that one beam meets."""
-    count, columns = b.shape
-    chunks = (count + beams_per_task - 1) // beams_per_task
-    for task in prange((columns + block - 1) // block * chunks):
-        first = (task // chunks) * block
-        start = (task % chunks) * beams_per_task
-        most = max_pieces(nx, ny, rise)
-        voxels, levels, weights = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most, x.dtype)
-        sums = np.empty(min(block, columns - first), x.dtype)
-        for beam in range(start, min(start + beams_per_task, count)):
-            sums[:] = 0
-            for k in range(trace_column(beams, width, beam, nx, ny, scale, voxels, levels, weights)):
-                _add_shifted(x[voxels[k]], sums, first + levels[k] * channels, weights[k])
-            b[beam, first : first + len(sums)] = sums
+    """``b = A x``; every number of `b` is written. At least `tasks` parts are worked on side by side, if possible."""
+    columns, slices = b.shape[1], x.shape[1]
+    source, target = x.reshape(-1), b.reshape(-1)
+    most_rays, most_pieces = _room(beams, width)
+    group = max(1, min(GROUP, len(beams) // tasks, _MOST_PIECES // (most_rays * most_pieces)))
+    groups = (len(beams) + group - 1) // group
+    parts = max(1, min((tasks + groups - 1) // groups, columns // (4 * LANES)))
+    part = (columns + parts * LANES - 1) // (parts * LANES) * LANES
+    for task in prange(groups * parts):
+        view = (task // parts) * group
+        after = min(view + group, len(beams))
+        start = (task % parts) * part
+        stop = min(start + part, columns)
+        b[view * width : after * width, start:stop] = 0
+        rays, ends = np.empty(group * most_rays, np.int64), np.empty(group * most_rays + 1, np.int64)
+        room = group * most_rays * most_pieces
+        places, shifts, weights = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
+        strides = (slices, nx * slices, channels)
+        for tile_y in range(0, ny, TILE):
+            for tile_x in range(0, nx, TILE):
+                size_x, size_y = min(TILE, nx - tile_x), min(TILE, ny - tile_y)
+                met = _trace_tile(
+                    beams,
+                    width,
+                    view,
+                    after,
+                    tile_x,
+                    tile_y,
+                    size_x,
+                    size_y,
+                    scale,
+                    strides,
+                    rays,
+                    ends,
+                    places,
+                    shifts,
+                    weights,
+                )
+                base = (tile_y * nx + tile_x) * slices
+                for column in range(start, stop, COLUMNS):
+                    last = min(column + COLUMNS, stop)
+                    for i in range(met):
+                        if i + 1 < met:
+                            for near in range(column, last, LANES):
+                                prefetch(target, (view * width + rays[i + 1]) * columns + near)
+                        at = (view * width + rays[i]) * columns
+                        add_rows(
+                            target,
+                            at,
+                            source,
+                            base,
+                            slices,
+                            places,
+                            shifts,
+                            weights,
+                            ends[i],
+                            ends[i + 1],
+                            column,
+                            last,
+                        )
 
 
 @njit(cache=True, parallel=True)
 def adjoint(
-    beams: Array,
-    width: int,
-    nx: int,
-    ny: int,
-    scale: float,
-    rise: int,
-    b: Array,
-    x: Array,
-    channels: int,
-    block: int,
+    beams: Array, width: int, nx: int, ny: int, scale: float, b: Array, x: Array, channels: int, tasks: int
 ) -> None:
-    """``x = A.T b``; every number of `x` is written. `rise` bounds the slices that one beam meets."""
-    columns = x.shape[1]
-    for task in prange((columns + block - 1) // block):
-        first = task * block
-        last = min(first + block, columns)
-        most = max_pieces(nx, ny, rise)
-        voxels, levels, weights = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most, b.dtype)
-        x[:, first:last] = 0
-        for beam in range(len(b)):
-            for k in range(trace_column(beams, width, beam, nx, ny, scale, voxels, levels, weights)):
-                _add_shifted(b[beam], x[voxels[k], first:last], first - levels[k] * channels, weights[k])
+    """``x = A.T b``; every number of `x` is written. At least `tasks` parts are worked on side by side, if possible."""
+    rows, columns = b.shape[1], x.shape[1]
+    source, target = b.reshape(-1), x.reshape(-1)
+    most_rays, most_pieces = _room(beams, width)
+    group = max(1, min(GROUP, len(beams), _MOST_PIECES // (most_rays * most_pieces)))
+    across = (nx + TILE - 1) // TILE
+    tiles = across * ((ny + TILE - 1) // TILE)
+    parts = max(1, min((tasks + tiles - 1) // tiles, columns // (4 * LANES)))
+    part = (columns + parts * LANES - 1) // (parts * LANES) * LANES
+    for task in prange(tiles * parts):
+        tile_y, tile_x = (task // parts) // across * TILE, (task // parts) % across * TILE
+        size_x, size_y = min(TILE, nx - tile_x), min(TILE, ny - tile_y)
+        start = (task % parts) * part
+        stop = min(start + part, columns)
+        for y in range(size_y):
+            first = (tile_y + y) * nx + tile_x
+            x[first : first + size_x, start:stop] = 0
+        rays, ends = np.empty(group * most_rays, np.int64), np.empty(group * most_rays + 1, np.int64)
+        room = group * most_rays * most_pieces
+        voxels, levels, lengths = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
+        places, shifts, weights = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
+        voxel_ends = np.empty(TILE * TILE + 1, np.int64)
+        strides = (1, size_x, -channels)
+        for view in range(0, len(beams), group):
+            after = min(view + group, len(beams))
+            met = _trace_tile(
+                beams,
+                width,
+                view,
+                after,
+                tile_x,
+                tile_y,
+                size_x,
+                size_y,
+                scale,
+                strides,
+                rays,
+                ends,
+                voxels,
+                levels,
+                lengths,
+            )
+            _by_voxel(rays, ends, met, rows, voxels, levels, lengths, voxel_ends, places, shifts, weights)
+            for column in range(start, stop, COLUMNS):
+                last = min(column + COLUMNS, stop)
+                for voxel in range(size_x * size_y):
+                    if voxel_ends[voxel + 1] > voxel_ends[voxel]:
+                        at = ((tile_y + voxel // size_x) * nx + tile_x + voxel % size_x) * columns
+                        add_rows(
+                            target,
+                            at,
+                            source,
+                            view * width * rows,
+                            rows,
+                            places,
+                            shifts,
+                            weights,
+                            voxel_ends[voxel],
+                            voxel_ends[voxel + 1],
+                            column,
+                            last,
+                        )
+
+
+@njit(cache=True)
+def _by_voxel(
+    rays: Array,
+    ends: Array,
+    met: int,
+    rows: int,
+    voxels: Array,
+    levels: Array,
+    lengths: Array,
+    voxel_ends: Array,
+    places: Array,
+    shifts: Array,
+    weights: Array,
+) -> None:
+    """Sort the pieces of a tile's beams by voxel: those of voxel ``v`` then end before ``voxel_ends[v + 1]``."""
+    voxel_ends[:] = 0
+    for k in range(ends[met]):
+        voxel_ends[voxels[k] + 1] += 1
+    for voxel in range(len(voxel_ends) - 1):
+        voxel_ends[voxel + 1] += voxel_ends[voxel]
+    for i in range(met):
+        for k in range(ends[i], ends[i + 1]):
+            to = voxel_ends[voxels[k]]
+            places[to], shifts[to], weights[to] = rays[i] * rows, levels[k], lengths[k]
+            voxel_ends[voxels[k]] = to + 1
+    for voxel in range(len(voxel_ends) - 1, 0, -1):
+        voxel_ends[voxel] = voxel_ends[voxel - 1]
+    voxel_ends[0] = 0
+
+
+@njit(cache=True)
+def trace_column(
+    beams: Array, width: int, beam: int, nx: int, ny: int, scale: float, voxels: Array, levels: Array, lengths: Array
+) -> int:
+    """Trace beam number `beam` through the whole grid; return how many pieces it has."""
+    start, step, light = beams[beam // width, 0], beams[beam // width, 1], beams[beam // width, 2]
+    column = beam % width
+    return trace_beam(
+        start[0] + column * step[0],
+        start[1] + column * step[1],
+        start[2] + column * step[2],
+        light[0],
+        light[1],
+        light[2],
+        nx,
+        ny,
+        scale,
+        (1, nx, 1),
+        voxels,
+        levels,
+        lengths,
+        0,
+    )
 
 
 @njit(cache=True)
@@ -131,13 +311,14 @@ def trace_all(
     offsets: Array,
     voxels: Array,
     levels: Array,
-    weights: Array,
+    lengths: Array,
 ) -> None:
     """Write the pieces of beam ``i`` to ``offsets[i]`` and on, or where there is no room only count them.
 
-    With `voxels` of length 0, ``offsets[i + 1]`` is set to the number of pieces up to and with beam ``i``.
+    With `voxels` of length 0, ``offsets[i + 1]`` is set to the number of pieces up to and with beam ``i``. `rise`
+    bounds the z faces that a beam crosses.
     """
-    most = max_pieces(nx, ny, rise)
+    most = max_pieces(nx, ny, rise) + 1
     v, z, w = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most, np.float64)
     for beam in range(len(offsets) - 1):
         count = trace_column(beams, width, beam, nx, ny, scale, v, z, w)
@@ -145,4 +326,4 @@ def trace_all(
             offsets[beam + 1] = offsets[beam] + count
         else:
             here = slice(offsets[beam], offsets[beam] + count)
-            voxels[here], levels[here], weights[here] = v[:count], z[:count], w[:count]
+            voxels[here], levels[here], lengths[here] = v[:count], z[:count], w[:count]
