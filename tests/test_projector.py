@@ -1,9 +1,7 @@
 """The laws that the matrix keeps, on unequal shapes, against a plain second implementation and an oracle."""
 
-import itertools
 import math
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -212,23 +210,6 @@ def test_screens_moved_up_and_lamps_just_above_the_horizon_agree_with_plain_boxe
     volume = np.random.default_rng(11).random((2, 3, 4, 5))
     fast = project(Projector(grid, moved), volume)
     assert np.allclose(fast, plain.absorbance_pictures(grid, moved, volume), rtol=1e-9, atol=1e-9)
-
-
-def test_results_do_not_depend_on_the_number_of_threads() -> None:
-    grid = Grid((6, 5, 7))
-    for elevation in (0.0, 35.0):
-        projector = Projector(grid, turntable(grid, ANGLES, elevation=elevation))
-        x = np.random.default_rng(6).random((projector.shape[1], 3)).astype(np.float32)
-        b = np.random.default_rng(7).random((projector.shape[0], 3)).astype(np.float32)
-        all_threads = numba.get_num_threads()
-        results = []
-        for threads in {1, all_threads}:
-            numba.set_num_threads(threads)
-            results.append((projector.forward(x), projector.adjoint(b)))
-        numba.set_num_threads(all_threads)
-        for one, other in itertools.pairwise(results):
-            assert np.array_equal(one[0], other[0])
-            assert np.array_equal(one[1], other[1])
 
 
 def test_many_columns_are_many_times_one_column() -> None:

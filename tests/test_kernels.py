@@ -1,0 +1,144 @@
+"""The fast paths of the kernels against plain ones: any tiles, vectors that are not full, any number of threads."""
+
+import hashlib
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numba import njit
+
+from lightcube.geometry import Grid, turntable
+from lightcube.kernels import exponential, rows
+from lightcube.kernels.projection import GROUP, TILE
+from lightcube.projector import Projector, dot_test
+from tests import plain
+
+#: Longer than a tile, one more than two tiles, and shorter.
+SHAPES = [(2, TILE + 1, 5), (3, 3, 2 * TILE + 1), (2, TILE, TILE + 3)]
+
+
+@njit
+def compiled_add_rows(target, at, source, base, columns, places, shifts, weights, count, start, stop):  # type: ignore[no-untyped-def]
+    rows.add_rows(target, at, source, base, columns, places, shifts, weights, 0, count, start, stop)
+
+
+@njit
+def compiled_exp(numbers, out):  # type: ignore[no-untyped-def]
+    for i in range(len(numbers)):
+        out[i] = exponential.exp(numbers[i])
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    columns=st.integers(1, 150),
+    target_columns=st.integers(1, 150),
+    first=st.integers(0, 149),
+    most=st.integers(0, 40),
+    pieces=st.integers(1, 5),
+    single=st.booleans(),
+)
+def test_vectors_of_sums_are_the_plain_sums(
+    columns: int, target_columns: int, first: int, most: int, pieces: int, single: bool
+) -> None:
+    dtype = np.float32 if single else np.float64
+    random = np.random.default_rng(columns + 1000 * most)
+    source = random.random(7 * columns).astype(dtype)
+    target = random.random(target_columns + 20).astype(dtype)
+    places = (columns * random.integers(0, 6, pieces)).astype(np.int32)
+    shifts = random.integers(-most, most + 1, pieces).astype(np.int32)
+    weights = random.random(pieces).astype(dtype)
+    start = min(first, target_columns)
+    wanted, found = target.copy(), target.copy()
+    rows.add_rows(wanted, 10, source, columns, columns, places, shifts, weights, 0, pieces, start, target_columns)
+    compiled_add_rows(found, 10, source, columns, columns, places, shifts, weights, pieces, start, target_columns)
+    assert np.allclose(found, wanted, rtol=1e-6, atol=0)
+    assert np.array_equal(found[: 10 + start], target[: 10 + start])
+    assert np.array_equal(found[10 + target_columns :], target[10 + target_columns :])
+
+
+def test_exponential_is_exact_to_two_units_in_the_last_place() -> None:
+    numbers = np.linspace(-86.5, 87.5, 20_001, dtype=np.float32)
+    out = np.empty_like(numbers)
+    compiled_exp(numbers, out)
+    exact = np.exp(numbers.astype(np.float64))
+    assert np.all(np.abs(out - exact) <= 2 * np.spacing(exact.astype(np.float32)))
+
+
+def test_exponential_ends_in_0_and_never_in_infinity() -> None:
+    numbers = np.array([-1e30, -200, 200, 1e30], np.float32)
+    out = np.empty_like(numbers)
+    compiled_exp(np.clip(numbers, -100, 100), out)
+    assert np.all(out[:2] < 1e-37)
+    assert np.all(out[2:] > 1e38)
+    assert np.all(np.isfinite(out[:2]))
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0, -75.0])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_tiles_that_do_not_divide_agree_with_plain_boxes(shape: tuple[int, int, int], elevation: float) -> None:
+    grid = Grid(shape, voxel_mm=0.7)
+    views = turntable(grid, [0.0, 33.0, 90.0], elevation=elevation, picture_shape=(shape[0], 2 + shape[2] % 2))
+    volume = np.random.default_rng(1).random((1, *shape))
+    matrix = Projector(grid, views)
+    x = volume[0].transpose(1, 2, 0).reshape(matrix.shape[1], -1)
+    shown = matrix.forward(np.ascontiguousarray(x)).reshape(len(views), views.picture_shape[1], -1)
+    wanted = plain.absorbance_pictures(grid, views, volume)[..., 0]
+    assert np.allclose(shown[:, :, ::-1].transpose(0, 2, 1), wanted, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(("dtype", "bound"), [(np.float32, 1e-5), (np.float64, 1e-12)])
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("channels", [1, 2, 5])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_many_groups_of_views_and_all_tiles_are_one_matrix(
+    shape: tuple[int, int, int], channels: int, elevation: float, dtype: type[np.floating], bound: float
+) -> None:
+    """`to_sparse` traces each beam through the whole grid at once."""
+    grid = Grid(shape)
+    angles = np.linspace(0, 180, GROUP + 3, endpoint=False) + 1
+    matrix = Projector(grid, turntable(grid, angles, elevation=elevation, picture_shape=(shape[0], 4 + shape[2] % 2)))
+    sparse = matrix.to_sparse()
+    columns = channels * (shape[0] if matrix.shape[1] == shape[1] * shape[2] else 1)
+    random = np.random.default_rng(5)
+    x = random.random((matrix.shape[1], columns)).astype(dtype)
+    b = random.random((matrix.shape[0], columns)).astype(dtype)
+    there, back = sparse @ x.astype(np.float64), sparse.T @ b.astype(np.float64)
+    assert np.max(np.abs(matrix.forward(x) - there)) <= bound * np.max(there)
+    assert np.max(np.abs(matrix.adjoint(b) - back)) <= bound * np.max(back)
+    assert dot_test(matrix, columns, dtype) < bound
+
+
+_HASHES = """
+import hashlib, numba, numpy as np
+from lightcube.geometry import Grid, turntable
+from lightcube.projector import Projector
+from lightcube.solvers import METHODS
+grid = Grid((2, 19, 18))
+total = hashlib.sha256()
+for elevation, views in ((0.0, 1), (0.0, 9), (35.0, 4)):
+    matrix = Projector(grid, turntable(grid, np.arange(views) * 17.0 + 3, elevation=elevation))
+    columns = 6 if elevation == 0 else 3
+    x = np.random.default_rng(0).random((matrix.shape[1], columns), dtype=np.float32)
+    b = matrix.forward(x)
+    light = np.exp(-b).clip(1e-3)
+    bounds = (np.full((views, 3), 1e-3), np.full((views, 3), 4.0))
+    result = METHODS["display"](matrix, light, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=4)
+    for array in (b, matrix.adjoint(b), result.x, result.lamp_powers, result.residuals):
+        total.update(np.ascontiguousarray(array).tobytes())
+print(total.hexdigest())
+"""
+
+
+def test_results_are_the_same_for_any_number_of_threads() -> None:
+    """Seven threads on any machine: numba takes as many as it is told to."""
+    found = set()
+    for threads in (1, 2, 7):
+        told = {**os.environ, "NUMBA_NUM_THREADS": str(threads)}
+        run = subprocess.run([sys.executable, "-c", _HASHES], env=told, capture_output=True, text=True, check=True)
+        found.add(run.stdout)
+    assert len(found) == 1
+    assert len(found.pop().strip()) == len(hashlib.sha256().hexdigest())
