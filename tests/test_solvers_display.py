@@ -181,6 +181,17 @@ def test_lamp_powers_are_found_where_beams_beside_the_cube_show_them() -> None:
     assert result.residuals[-1] < 1e-6
 
 
+def test_started_at_the_cube_it_stays_there_and_finds_the_lamps_at_once() -> None:
+    matrix, _, powers = lamp_problem()
+    truth = np.random.default_rng(4).uniform(0, 0.4, (matrix.shape[1], 2))
+    light = powers[matrix.view_of_row] * np.exp(-matrix.forward(truth))
+    bounds = (np.full((4, 2), 1e-3), np.full((4, 2), 16.0))
+    args = {"view_of_row": matrix.view_of_row, "lamp_bounds": bounds, "x0": truth, "iterations": 1}
+    result = display_values(matrix, light, **args)  # type: ignore[arg-type]
+    assert np.allclose(result.x, truth, atol=1e-6)
+    assert np.allclose(result.lamp_powers, powers, rtol=1e-6)
+
+
 def test_lamp_powers_keep_their_bounds_and_none_within_is_better() -> None:
     matrix, light, _ = lamp_problem()
     low, high = np.full((4, 2), 0.8), np.full((4, 2), 2.0)

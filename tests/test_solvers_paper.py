@@ -164,7 +164,7 @@ def test_bounds_are_kept(name: str) -> None:
         assert progress.x.max() <= 0.25
 
     result = SOLVERS[name](A, B, bounds=(0.05, 0.25), iterations=30, callback=look)
-    look(Progress(0, 0, result.x, result.x, 0.0, result.lamp_powers))
+    look(Progress(0, 0, result.x, result.x, 0.0, result.lamp_powers, dict))
     assert result.x.min() == 0.05
     assert result.x.max() == 0.25
 
@@ -178,7 +178,7 @@ def test_the_callback_sees_what_is_reached(name: str, dtype: type[np.floating]) 
 
     def look(progress: Progress) -> None:
         seen.append(
-            Progress(progress.iteration, progress.iterations, progress.x.copy(), progress.absorbance.copy(), 0, B)
+            Progress(progress.iteration, progress.iterations, progress.x.copy(), progress.absorbance.copy(), 0, B, dict)
         )
         residuals.append(progress.residual)
 

@@ -1,15 +1,16 @@
 """What a solver is given, checked once, with sentences for what cannot be used."""
 
 import operator
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from lightcube.errors import InputError
 from lightcube.solvers._absorbance import absorbance_wanted
-from lightcube.solvers.contract import Floats, Operator
+from lightcube.solvers.contract import Floats, Operator, State
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ def check_weights(weights: Floats | None, B: Floats) -> Floats:
     """Return `weights` in the shape and dtype of `B` (None = all 1), finite and at least 0, else raise `InputError`."""
     given = np.asarray(1.0 if weights is None else weights)
     try:
-        whole = np.broadcast_to(given.astype(B.dtype), B.shape)
+        whole = np.broadcast_to(given.astype(B.dtype, copy=False), B.shape)
     except ValueError as error:
         raise InputError(f"weights of shape {given.shape} do not fit B of shape {B.shape}") from error
     if not np.all(np.isfinite(given)) or np.any(given < 0):
@@ -91,10 +92,11 @@ def check_start(
     x0: Floats | None, shape: tuple[int, int], bounds: tuple[float, float], dtype: np.dtype[np.floating[Any]]
 ) -> Floats:
     """Return a fresh start of `shape` and `dtype` within `bounds` from `x0` (None = all 0), or raise `InputError`."""
-    start = np.zeros(shape) if x0 is None else np.asarray(x0)
-    if start.shape != shape or not np.all(np.isfinite(start)):
-        raise InputError(f"x0 must be finite numbers of shape {shape} (unknowns, columns), not {start.shape}")
-    return np.ascontiguousarray(np.clip(start.astype(dtype), *bounds), dtype=dtype)
+    given = np.zeros(shape, dtype) if x0 is None else np.asarray(x0)
+    if given.shape != shape or not np.all(np.isfinite(given)):
+        raise InputError(f"x0 must be finite numbers of shape {shape} (unknowns, columns), not {given.shape}")
+    start = given if x0 is None else np.array(given, dtype, order="C")
+    return np.clip(start, *bounds, out=start)
 
 
 def check_iterations(iterations: int) -> int:
@@ -106,6 +108,40 @@ def check_iterations(iterations: int) -> int:
     if count < 1:
         raise InputError(f"iterations must be at least 1, not {count}")
     return count
+
+
+def check_state(
+    state: State, iterations: int, needed: Mapping[str, tuple[tuple[int, ...], DTypeLike]]
+) -> dict[str, NDArray[Any]]:
+    """Return copies of the arrays of `state` that are `needed`, and its history, or raise `InputError`.
+
+    Parameters
+    ----------
+    state
+        As in `lightcube.solvers.contract.Solver`.
+    iterations
+        The history may be as long as this.
+    needed
+        Shape and dtype by name, the history left out.
+    """
+    names = ("history", *needed)
+    for name in names:
+        if name not in state:
+            raise InputError(f"the state to continue from lacks {name!r}: it is another method's, start anew")
+    copies = {name: np.array(state[name], order="C") for name in names}
+    for name, (shape, kind) in {"history": ((copies["history"].size,), np.float64), **needed}.items():
+        found, dtype = copies[name], np.dtype(kind)
+        if (found.shape, found.dtype) != (shape, dtype):
+            raise InputError(
+                f"the state to continue from has {name!r} as {found.dtype} of shape {found.shape}, but this problem "
+                f"needs {dtype} of shape {shape}: it is another problem's, start anew"
+            )
+    if not 1 <= len(copies["history"]) <= iterations:
+        raise InputError(
+            f"the state to continue from is that after {len(copies['history'])} iterations, "
+            f"but this is to be a run of {iterations}: ask for at least as many"
+        )
+    return copies
 
 
 def linear_problem(

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.solvers._checks import LinearProblem, check_iterations, linear_problem
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: A column has converged once the gradient that the bounds leave is this part of ``A.T W b``, in the 2-norm.
@@ -27,6 +27,7 @@ def cgls(
     iterations: int = 100,
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
+    state: State | None = None,
 ) -> Result:
     """Minimise ``sum_i w_i (b - A x)_i^2`` within the bounds, ``b = ln P - ln B``, each column with its own steps.
 
@@ -55,38 +56,55 @@ def cgls(
     problem = linear_problem("cgls", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
     iterations = check_iterations(iterations)
     b, w, x, dtype = problem.b, problem.weights, problem.x, B.dtype
-    ax = A.forward(x)
-    g = A.adjoint(w * (b - ax))
     d = A.adjoint(w * A.forward(np.ones((A.shape[1], 1), dtype)))
-    small = _TOLERANCE[dtype] * np.maximum(_norms(A.adjoint(w * b)), _norms(A.adjoint(w * ax)))
-    p = np.zeros_like(x)
-    fresh = np.ones(B.shape[1], np.bool_)
-    free_before = np.ones(B.shape[1])
-    residuals: list[float] = []
-    reason = "iterations"
-    for iteration in range(1, iterations + 1):
+    if state is None:
+        ax, p = A.forward(x), np.zeros_like(x)
+        small = _TOLERANCE[dtype] * np.maximum(_norms(A.adjoint(w * b)), _norms(A.adjoint(w * ax)))
+        fresh, free_before = np.ones(B.shape[1], np.bool_), np.ones(B.shape[1])
+        residuals: list[float] = []
+    else:
+        kept = check_state(state, iterations, _needed(x, B))
+        x, ax, p, small, fresh, free_before = (kept[name] for name in _needed(x, B))
+        residuals = kept["history"].tolist()
+
+    def keep() -> State:
+        values = (x, ax, p, small, fresh, free_before)
+        return dict(zip(_needed(x, B), values, strict=True)) | {"history": np.array(residuals)}
+
+    reason = ""
+    while not reason:
+        g = A.adjoint(w * (b - ax))
         free, leaving = _parts_of_gradient(problem, x, g)
         free_norm, leaving_norm = _norms(free), _norms(leaving)
+        rests = np.hypot(free_norm, leaving_norm) <= small
+        if len(residuals) == iterations or (residuals and np.all(rests)):
+            reason = "converged" if np.all(rests) else "iterations"
+            break
         project = leaving_norm > free_norm
         p = free + _ratio(~fresh * free_norm**2, free_before**2).astype(dtype) * p
         if np.any(project):
             p[:, project] = _projected_gradient(problem, x[:, project], g[:, project], d[:, project])
-        p[:, np.hypot(free_norm, leaving_norm) <= small] = 0
+        p[:, rests] = 0
         x, ax, clipped = _step(A, problem, x, ax, g, p)
         fresh, free_before = project | clipped, free_norm
-
-        g = A.adjoint(w * (b - ax))
         residuals.append(float(np.sqrt(np.sum(w * (b - ax) ** 2, dtype=np.float64))))
-        if callback is not None and callback(
-            Progress(iteration, iterations, x, ax, residuals[-1], problem.lamp_powers)
-        ):
+        progress = Progress(len(residuals), iterations, x, ax, residuals[-1], problem.lamp_powers, keep)
+        if callback is not None and callback(progress):
             reason = "callback"
-            break
-        free, leaving = _parts_of_gradient(problem, x, g)
-        if np.all(np.hypot(_norms(free), _norms(leaving)) <= small):
-            reason = "converged"
-            break
     return Result(x, problem.lamp_powers, np.array(residuals), stop_reason=reason)
+
+
+def _needed(x: Floats, B: Floats) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]:
+    """Shapes and dtypes of what iterates. A x is among it: steps add up in it."""
+    per_column, number, flag = (x.shape[1],), np.dtype(np.float64), np.dtype(np.bool_)
+    return {
+        "x": (x.shape, x.dtype),
+        "ax": (B.shape, x.dtype),
+        "p": (x.shape, x.dtype),
+        "small": (per_column, number),
+        "fresh": (per_column, flag),
+        "free_before": (per_column, number),
+    }
 
 
 def _step(

@@ -1,6 +1,6 @@
 """What every solver takes and returns."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -11,10 +11,15 @@ from scipy.sparse import csr_array
 from lightcube.transfer import Transfer
 
 Floats = NDArray[np.floating[Any]]
+#: Everything that a stopped solver needs to go on, beside what it was called with: plain arrays by name.
+State = Mapping[str, NDArray[Any]]
 
 
 class Operator(Protocol):
-    """The matrix A as solvers see it: ``B = A X`` for blocks of columns, which are independent of each other."""
+    """The matrix A as solvers see it: ``B = A X`` for blocks of columns, which are independent of each other.
+
+    Products are new arrays, which the solver may overwrite, and the same to the last bit whenever they are taken.
+    """
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -32,7 +37,7 @@ class Operator(Protocol):
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a running solver stands; `x` and `absorbance` are the solver's own arrays: look, do not write."""
+    """Where a running solver stands; arrays are the solver's own: look while it waits, do not write, copy to keep."""
 
     iteration: int
     iterations: int
@@ -43,6 +48,9 @@ class Progress:
     residual: float
     #: ``(views, channels)`` of this `x`.
     lamp_powers: Floats
+    #: What `Solver` takes as `state` to go on from here, ``"x"`` and the residuals so far, ``"history"``, among it.
+    #: These too are the solver's own arrays: write them out or copy them before the callback returns.
+    state: Callable[[], State]
 
 
 #: Called after each iteration; True asks the solver to stop and return what it has.
@@ -109,6 +117,10 @@ class Solver(Protocol):
         Called after each iteration.
     transfer
         How display values follow from light, for methods that reckon in display levels.
+    state
+        What `Progress.state` gave after some iteration of the same problem: go on from there instead of from `x0`.
+        The result is the same, bit for bit, as that of a run that never stopped, history included. Arrays beyond
+        those that the method keeps are ignored, none is written to.
     """
 
     def __call__(  # noqa: D102
@@ -124,4 +136,5 @@ class Solver(Protocol):
         iterations: int = 100,
         callback: Callback | None = None,
         transfer: Transfer = "srgb",
+        state: State | None = None,
     ) -> Result: ...

@@ -9,23 +9,25 @@ the curve.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from lightcube.absorption import absorbance
-from lightcube.kernels import descent, display
+from lightcube.kernels import descent, display, momentum
 from lightcube.solvers._checks import (
     check_bounds,
     check_iterations,
     check_lamp,
     check_shapes,
     check_start,
+    check_state,
     check_views,
     check_weights,
 )
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: The curvatures used hold as long as no beam's ln light rises by more than this.
@@ -54,6 +56,7 @@ def display_values(
     iterations: int = 200,
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
+    state: State | None = None,
 ) -> Result:
     """Minimise half the weighted sum of squared two-sided residuals over ``lower <= x <= upper`` and the lamp powers.
 
@@ -68,7 +71,7 @@ def display_values(
 
     Parameters
     ----------
-    A, B, weights, view_of_row, lamp_bounds, x0, bounds, iterations, callback, transfer
+    A, B, weights, view_of_row, lamp_bounds, x0, bounds, iterations, callback, transfer, state
         As in `lightcube.solvers.contract.Solver`.
 
     Returns
@@ -86,52 +89,133 @@ def display_values(
     G. Golub, V. Pereyra, Separable nonlinear least squares, Inverse Problems 19 (2003) R1-R26, for the lamp.
     """
     screen = _Screen.of(A, B, weights, view_of_row, lamp_bounds, transfer)
-    lower, upper = check_bounds(bounds)
-    x = check_start(x0, (A.shape[1], B.shape[1]), (lower, upper), B.dtype)
-    before = x.copy()
-    ax = A.forward(x)
-    ay = ax
-    lamp = np.clip(np.zeros_like(screen.low), screen.low, screen.high)
-    slopes = np.empty_like(B)
-    steps = x
-    stride = np.full(B.shape[1], _STRIDE, B.dtype)
-    ahead = np.zeros(B.shape[1], B.dtype)
-    objective = np.full(B.shape[1], np.inf)
-    history: list[float] = []
+    bounds = check_bounds(bounds)
+    iterations = check_iterations(iterations)
+    shape = A.shape[1], B.shape[1]
+    limits: tuple[Any, ...] = tuple(B.dtype.type(bound) for bound in bounds)
+    if state is None:
+        at = _State.first(check_start(x0, shape, bounds, B.dtype), screen.low, screen.high)
+    else:
+        at = _State.kept(state, iterations, shape, B.dtype, screen.low.shape)
+    ax = A.forward(at.x)
+    ay = A.forward(at.before) if np.any(at.ahead) else ax.copy()
+    momentum.run_ahead(ay, ax, at.ahead)
+    if state is None:
+        at.lamp = screen.best_lamp(ay, at.lamp)
     enough = _PERFECT * float(np.sum(screen.weights, dtype=np.float64))
-    limits: tuple[Any, Any] = (B.dtype.type(lower), B.dtype.type(upper))
-    renewal, stop_reason = 1, "iterations"
-    for iteration in range(1, check_iterations(iterations) + 1):
-        lamp = screen.best_lamp(ay, lamp)
-        if iteration == renewal:
-            expected = _expected_change(x)
-            metric = A.adjoint(screen.curvatures(ay, lamp, slopes) * A.forward(expected))
-            steps = np.divide(expected, metric, out=np.zeros_like(metric), where=metric > 0)
-            del expected, metric
-            renewal = int(iteration * _RENEWAL) + 1
-        screen.descend(ay, lamp, slopes)
-        uphill = descent.step(x, before, ahead, A.adjoint(slopes), steps, stride, *limits) > 0
-        x, before = before, x
-        a_new = A.forward(x)
-        lamp = screen.best_lamp(a_new, lamp)
-        last, objective = objective, screen.descend(a_new, lamp, slopes)
-        rose = objective > last
-        stride[rose] = np.maximum(1, _CAUTION * stride[rose])
-        if np.any(rose & (ahead == 0)):  # not for the momentum: the bounds on the curvature are out of date
-            renewal = iteration + 1
-        too_far = np.min(2 * a_new - ax, axis=0) < _LEAST_AHEAD
-        ahead = np.where(rose | uphill | too_far, 0, 1).astype(B.dtype)
-        ax, ay = a_new, a_new + ahead * (a_new - ax)
-        history.append(float(np.sum(objective)))
-        progress = Progress(iteration, iterations, x, ax, history[-1], screen.powers(lamp))
-        if callback is not None and callback(progress):
-            stop_reason = "callback"
-            break
-        if _has_converged(history, enough):
-            stop_reason = "converged"
-            break
-    bound = screen.lower_bound(A, ax, lamp, slopes, (lower, upper))
-    return Result(x, screen.powers(lamp), np.array(history), stop_reason=stop_reason, lower_bound=bound)
+    stop_reason = at.stop_reason(iterations, enough)
+    while not stop_reason:
+        if np.any(at.ahead):  # else these are the lamps already
+            at.lamp = screen.best_lamp(ay, at.lamp)
+        if at.iteration + 1 == at.renewal:
+            at.renew(A, screen, ay)
+        slopes = screen.descend(ay, at.lamp)
+        uphill = descent.step(at.x, at.before, at.ahead, A.adjoint(slopes), at.steps, at.stride, *limits) > 0
+        del ay, slopes  # make room
+        at.x, at.before = at.before, at.x
+        a_new = A.forward(at.x)
+        at.lamp = screen.best_lamp(a_new, at.lamp)
+        objective, least = screen.arrive(ax, a_new, at.lamp)
+        at.judge(objective, uphill, least)
+        momentum.run_ahead(ax, a_new, at.ahead)
+        ax, ay = a_new, ax
+        asked = callback is not None and callback(
+            Progress(at.iteration, iterations, at.x, ax, at.history[-1], screen.powers(at.lamp), at.arrays)
+        )
+        stop_reason = "callback" if asked else at.stop_reason(iterations, enough)
+    x, lamp, history = at.x, at.lamp, np.array(at.history)
+    del at, ay  # make room
+    bound = screen.lower_bound(A, ax, lamp, bounds)
+    return Result(x, screen.powers(lamp), history, stop_reason=stop_reason, lower_bound=bound)
+
+
+@dataclass
+class _State:
+    """What iterates: from this, and nothing else, the solver can go on."""
+
+    #: ``(unknowns, columns)``: the last point, the one before it, and how far a slope of 1 moves each unknown.
+    x: Floats
+    before: Floats
+    steps: Floats
+    #: ``(columns,)``: how much longer the steps are, how much of the last change to run ahead, and what was reached.
+    stride: Floats
+    ahead: Floats
+    objective: NDArray[np.float64]
+    #: ln P, ``(views, channels)``.
+    lamp: NDArray[np.float64]
+    #: The objective of all columns after each iteration.
+    history: list[float]
+    #: In which iteration the metric is renewed.
+    renewal: int
+
+    @classmethod
+    def first(cls, x: Floats, low: NDArray[np.float64], high: NDArray[np.float64]) -> "_State":
+        """Before the first iteration; `low` and `high` bound ln P."""
+        columns = x.shape[1]
+        return cls(
+            x=x,
+            before=x.copy(),
+            steps=np.empty_like(x),
+            stride=np.full(columns, _STRIDE, x.dtype),
+            ahead=np.zeros(columns, x.dtype),
+            objective=np.full(columns, np.inf),
+            lamp=np.clip(np.zeros_like(low), low, high),
+            history=[],
+            renewal=1,
+        )
+
+    @classmethod
+    def kept(
+        cls, state: State, iterations: int, shape: tuple[int, int], dtype: np.dtype[Any], lamps: tuple[int, ...]
+    ) -> "_State":
+        """From what `arrays` gave, or raise `InputError`."""
+        per_column = (shape[1],)
+        needed: dict[str, tuple[tuple[int, ...], DTypeLike]] = {
+            **dict.fromkeys(("x", "before", "steps"), (shape, dtype)),
+            **dict.fromkeys(("stride", "ahead"), (per_column, dtype)),
+            "objective": (per_column, np.float64),
+            "lamp": (lamps, np.float64),
+            "renewal": ((), np.int64),
+        }
+        arrays: dict[str, Any] = check_state(state, iterations, needed)
+        return cls(**{**arrays, "history": arrays["history"].tolist(), "renewal": int(arrays["renewal"])})
+
+    def arrays(self) -> State:
+        """All of it as arrays, none of them a copy."""
+        return {**vars(self), "history": np.array(self.history), "renewal": np.array(self.renewal, np.int64)}
+
+    @property
+    def iteration(self) -> int:
+        """How many are done."""
+        return len(self.history)
+
+    def renew(self, A: Operator, screen: "_Screen", ay: Floats) -> None:
+        """Take the metric of where the solver stands now."""
+        expected = np.abs(self.x, out=self.steps)  # how far each unknown may move, relative to the others; above 0
+        mean = np.mean(expected, axis=0)
+        expected += np.where(mean > 0, _EXPECTED * mean, 1).astype(expected.dtype)
+        metric = A.adjoint(screen.curved(A.forward(expected), ay, self.lamp))
+        self.steps = np.divide(expected, metric, out=metric, where=metric > 0)
+        self.renewal = int((self.iteration + 1) * _RENEWAL) + 1
+
+    def judge(self, objective: NDArray[np.float64], uphill: NDArray[np.bool_], least: NDArray[np.float64]) -> None:
+        """End an iteration that reached `objective`: which columns start anew, and with what stride.
+
+        `least` is the least absorbance that each column's momentum leads to.
+        """
+        rose = objective > self.objective
+        self.stride[rose] = np.maximum(1, _CAUTION * self.stride[rose])
+        self.history.append(float(np.sum(objective)))
+        if np.any(rose & (self.ahead == 0)):  # not for the momentum: the bounds on the curvature are out of date
+            self.renewal = self.iteration + 1
+        self.ahead = np.where(rose | uphill | (least < _LEAST_AHEAD), 0, 1).astype(self.ahead.dtype)
+        self.objective = objective
+
+    def stop_reason(self, iterations: int, enough: float) -> str:
+        """Why to stop here, or nothing."""
+        if self.history and _has_converged(self.history, enough):
+            return "converged"
+        return "iterations" if self.iteration >= iterations else ""
 
 
 @dataclass(frozen=True)
@@ -167,7 +251,8 @@ class _Screen:
         views = np.zeros(len(B), np.intp) if view_of_row is None else view_of_row
         rows = np.argsort(views, kind="stable")
         starts = np.searchsorted(views[rows], np.arange(len(low) + 1))
-        wanted = -np.ascontiguousarray(absorbance(B))
+        wanted = np.ascontiguousarray(absorbance(B))
+        np.negative(wanted, out=wanted)
         return cls(
             wanted,
             check_weights(weights, B),
@@ -193,61 +278,66 @@ class _Screen:
         display.fit_lamp(ax, *data, self.low, self.high, lamp)
         return lamp
 
-    def descend(self, ax: Floats, lamp: NDArray[np.float64], slopes: Floats) -> NDArray[np.float64]:
-        """Write the objective's derivative by the absorbance to `slopes`; return the objective per column."""
-        return display.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.srgb, slopes)
+    def arrive(
+        self, last: Floats, ax: Floats, lamp: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
+        return momentum.arrive(last, ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.srgb)
 
-    def lower_bound(
-        self, A: Operator, ax: Floats, lamp: NDArray[np.float64], slopes: Floats, bounds: tuple[float, float]
-    ) -> float:
+    def descend(self, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+        """Write over `ax`, and return, the objective's derivative by the absorbance."""
+        display.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.srgb, ax)
+        return ax
+
+    def curved(self, values: Floats, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+        """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
+        data = (self.views, self.wanted, self.weights, self.srgb)
+        display.curvatures(ax, lamp.astype(ax.dtype), *data, _ROOM, values)
+        return values
+
+    def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: tuple[float, float]) -> float:
         """A number that the objective cannot fall below, by duality from the derivatives at `ax`; at least 0.
 
         For any s, the objective is at least ``min over lamps of s.lnP + min over x of -(A's).x - sum of conjugates``
-        (R. T. Rockafellar, Convex Analysis, 1970, section 31).
+        (R. T. Rockafellar, Convex Analysis, 1970, section 31). Writes over `ax`.
         """
         lower, upper = bounds
         if lower == -np.inf:
             return 0.0
-        self.descend(ax, lamp, slopes)
-        pull = -slopes
+        pull = self.descend(ax, lamp)
+        np.negative(pull, out=pull)
         if upper == np.inf:
             self._make_feasible(A, pull)
-        back = A.adjoint(pull).astype(np.float64)
-        least_x = -lower * np.sum(np.minimum(back, 0))
+        back = A.adjoint(pull)
+        least = -lower * float(np.sum(np.minimum(back, 0), dtype=np.float64))
         if upper < np.inf:
-            least_x -= upper * np.sum(np.maximum(back, 0))
-        per_view = np.zeros((len(self.low), ax.shape[1]))
-        np.add.at(per_view, self.views, pull)
+            least -= upper * float(np.sum(np.maximum(back, 0), dtype=np.float64))
+        rows_of_view = (self.rows[first:last] for first, last in pairwise(self.starts))
+        per_view = np.stack([np.sum(pull[rows], axis=0, dtype=np.float64) for rows in rows_of_view])
         per_lamp = per_view.reshape(len(self.low), -1, self.low.shape[1]).sum(axis=1)
-        least = float(least_x + np.sum(np.minimum(per_lamp * self.low, per_lamp * self.high)))
+        least += float(np.sum(np.minimum(per_lamp * self.low, per_lamp * self.high)))
         return max(0.0, *(part * least - self._conjugates(part * pull) for part in (1.0, 0.85, 0.7, 0.5, 0.3)))
 
     def _make_feasible(self, A: Operator, pull: Floats) -> None:
         """Lower `pull`, along the beams through the unknowns where ``A'pull`` is above 0, until it is nowhere."""
-        rising = np.maximum(A.adjoint(pull), 0)
+        rising = A.adjoint(pull)
+        np.maximum(rising, 0, out=rising)
         heard = (self.weights > 0).astype(pull.dtype)
         reach = A.adjoint(heard)
-        beams = A.forward(np.divide(rising, reach, out=np.zeros_like(rising), where=reach > 0) ** 2)
+        reach = np.divide(rising, reach, out=reach, where=reach > 0)
+        beams = A.forward(np.square(reach, out=reach))
         mean = np.mean(beams, axis=0)
         # Part along those beams and part along all: of the mixtures tried, the one with the best bounds.
-        beams = heard * (beams / np.where(mean > 0, mean, 1) + pull.dtype.type(0.3))
+        beams /= np.where(mean > 0, mean, 1)
+        beams += pull.dtype.type(0.3)
+        beams *= heard
+        del heard, reach  # make room
         back = A.adjoint(beams)
-        lowered = np.max(np.divide(rising, back, out=np.zeros_like(rising), where=back > 0), axis=0)
-        pull -= (1 + 1e-5) * lowered * beams
+        beams *= (1 + 1e-5) * np.max(np.divide(rising, back, out=back, where=back > 0), axis=0)
+        pull -= beams
 
     def _conjugates(self, pull: Floats) -> float:
         return float(np.sum(display.conjugates(pull, self.wanted, self.weights, self.srgb)))
-
-    def curvatures(self, ax: Floats, lamp: NDArray[np.float64], out: Floats) -> Floats:
-        """Write to `out`, and return, bounds on the curvature of each entry's term."""
-        display.curvatures(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.srgb, _ROOM, out)
-        return out
-
-
-def _expected_change(x: Floats) -> Floats:
-    """How far each unknown is expected to move, relative to the others of its column; above 0."""
-    mean = np.mean(np.abs(x), axis=0, keepdims=True)
-    return np.abs(x) + np.where(mean > 0, _EXPECTED * mean, 1).astype(x.dtype)
 
 
 def _has_converged(history: list[float], enough: float) -> bool:

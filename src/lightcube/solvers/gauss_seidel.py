@@ -1,16 +1,17 @@
 """The paper's adapted Gauss-Seidel: one beam after the other, inconsistent beams thrown out."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from lightcube.kernels.row_action import sweep
 from lightcube.solvers._absorbance import half_level
-from lightcube.solvers._checks import LinearProblem, check_iterations, linear_problem
+from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: A column has settled once a sweep changes it by at most this part of its largest number.
@@ -35,6 +36,7 @@ def gauss_seidel(
     iterations: int = 100,
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
+    state: State | None = None,
 ) -> Result:
     """Solve ``A x = b``, ``b = ln P - ln B``, by row actions within the bounds, throwing out what is inconsistent.
 
@@ -71,33 +73,39 @@ def gauss_seidel(
     """
     problem = linear_problem("gauss-seidel", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
     iterations = check_iterations(iterations)
-    dtype, columns = B.dtype, B.shape[1]
-    x = problem.x
+    x, dtype = problem.x, B.dtype
     rows = _Rows.of(A, dtype)
     judge = _Judge(problem, rows, half_level(B, transfer))
-    relaxation = np.ones(columns, dtype)
     limits = dtype.type(problem.lower), dtype.type(problem.upper)
+    start, settled = x, False
     residuals: list[float] = []
-    reason = "iterations"
-    start = x
-    for iteration in range(1, iterations + 1):
+    if state is not None:
+        unknowns = dict.fromkeys(("x", "start"), (x.shape, dtype))
+        kept = check_state(state, iterations, {**unknowns, **judge.needed, "settled": ((), np.bool_)})
+        judge.go_on(kept)
+        x, start, settled = kept["x"], kept["start"], bool(kept["settled"])
+        residuals = kept["history"].tolist()
+
+    def keep() -> State:
+        arrays = {"x": x, "start": start, "settled": np.array(settled), "history": np.array(residuals)}
+        return {**arrays, **judge.arrays()}
+
+    asked = False
+    while not (asked or settled or len(residuals) == iterations):
         before, x = x, start.copy()
+        relaxation = judge.relaxation.astype(dtype)
         sweep(*rows.csr, rows.inverse_norms, rows.order, problem.b, judge.active, relaxation, *limits, x)
         ax = A.forward(x)
         difference = np.abs(problem.b - ax)
         residuals.append(float(np.linalg.norm(difference[judge.active])))
         changed = judge.look(difference)
         still = np.max(np.abs(x - start), axis=0) <= _SETTLED[dtype] * np.max(np.abs(x), axis=0)
-        if callback is not None and callback(
-            Progress(iteration, iterations, x, ax, residuals[-1], problem.lamp_powers)
-        ):
-            reason = "callback"
-            break
-        if not changed and np.all(still & judge.agrees):
-            reason = "converged"
-            break
-        relaxation = judge.relaxation.astype(dtype)
+        settled = not changed and bool(np.all(still & judge.agrees))
         start = np.clip(x + judge.ahead.astype(dtype) * (x - before), *limits)
+        asked = callback is not None and bool(
+            callback(Progress(len(residuals), iterations, x, ax, residuals[-1], problem.lamp_powers, keep))
+        )
+    reason = "callback" if asked else "converged" if settled else "iterations"
     undetermined = A.adjoint(judge.active.astype(dtype)) == 0
     x[undetermined] = np.clip(dtype.type(0), *limits)
     return Result(x, problem.lamp_powers, np.array(residuals), np.argwhere(judge.rejected), undetermined, reason)
@@ -140,10 +148,30 @@ class _Judge:
         self.agrees = np.zeros(columns, np.bool_)
         self._reference = np.full(columns, np.inf)
         self._age = np.zeros(columns, np.int64)
-        self._residual = np.full(columns, np.inf)
+        self._residual = np.full(columns, np.inf, problem.b.dtype)
         self._momentum = np.ones(columns)
         #: How far each column's next sweep starts ahead, as a part of its last change.
         self.ahead = np.zeros(columns)
+
+    @property
+    def needed(self) -> dict[str, tuple[tuple[int, ...], DTypeLike]]:
+        """Shapes and dtypes of `arrays`."""
+        return {name: (array.shape, array.dtype) for name, array in self.arrays().items()}
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """All that changes from sweep to sweep and is not found anew."""
+        return {
+            "active": self.active,
+            "reference": self._reference,
+            "age": self._age,
+            "residual": self._residual,
+            "momentum": self._momentum,
+        }
+
+    def go_on(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Take what `arrays` gave."""
+        self.active, self._reference, self._age = arrays["active"], arrays["reference"], arrays["age"]
+        self._residual, self._momentum = arrays["residual"], arrays["momentum"]
 
     @property
     def rejected(self) -> NDArray[np.bool_]:

@@ -10,8 +10,8 @@ from scipy.sparse import csr_array, eye_array, hstack
 
 from lightcube.errors import InputError
 from lightcube.solvers._absorbance import half_level
-from lightcube.solvers._checks import LinearProblem, check_iterations, linear_problem
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: The largest matrix, in equations times unknowns.
@@ -39,6 +39,7 @@ def row_reduction(
     iterations: int = 100,
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
+    state: State | None = None,
 ) -> Result:
     """Solve ``A x = b``, ``b = ln P - ln B``, by Gauss-Jordan elimination in float64, for small cubes.
 
@@ -87,14 +88,27 @@ def row_reduction(
     rejected = np.zeros(B.shape, np.bool_)
     finished = np.zeros(columns, np.bool_)
     residuals: list[float] = []
+    if state is not None:
+        masks = {"undetermined": undetermined, "rejected": rejected, "finished": finished}
+        kept = check_state(
+            state, columns, {name: (array.shape, array.dtype) for name, array in {"x": x, **masks}.items()}
+        )
+        x, undetermined, rejected, finished = (kept[name] for name in ("x", *masks))
+        residuals = kept["history"].tolist()
+
+    def keep() -> State:
+        arrays = {"x": x, "undetermined": undetermined, "rejected": rejected, "finished": finished}
+        return {**arrays, "history": np.array(residuals)}
+
     reason = "converged"
-    for some, values, free, out in _solve(A.to_sparse().toarray(), problem, half_level(B, transfer).astype(np.float64)):
+    matrix, tolerance = A.to_sparse().toarray(), half_level(B, transfer).astype(np.float64)
+    for some, values, free, out in _solve(matrix, problem, tolerance, finished.copy()):
         x[:, some] = np.clip(np.where(free, 0, values), problem.lower, problem.upper)
         undetermined[:, some], rejected[:, some], finished[some] = free, out, True
         ax = A.forward(x)
         remaining = (problem.weights > 0) & ~rejected & finished
         residuals.append(float(np.linalg.norm((problem.b - ax)[remaining])))
-        progress = Progress(int(np.sum(finished)), columns, x, ax, residuals[-1], problem.lamp_powers)
+        progress = Progress(int(np.sum(finished)), columns, x, ax, residuals[-1], problem.lamp_powers, keep)
         if callback is not None and callback(progress):
             reason = "callback"
             break
@@ -102,18 +116,21 @@ def row_reduction(
 
 
 def _solve(
-    matrix: Matrix, problem: LinearProblem, tolerance: Matrix
+    matrix: Matrix, problem: LinearProblem, tolerance: Matrix, finished: Mask
 ) -> Iterator[tuple[NDArray[np.intp], Matrix, Mask, Mask]]:
-    """For some columns after others: which, their values, undetermined voxels and rejected equations."""
+    """For some unfinished columns after others: which, values, undetermined voxels and rejected equations."""
     b = problem.b.astype(np.float64)
     patterns, pattern_of_column = np.unique(problem.weights > 0, axis=1, return_inverse=True)
     for pattern, present in enumerate(patterns.T):
         rows, columns = np.flatnonzero(present), np.flatnonzero(pattern_of_column == pattern)
+        if np.all(finished[columns]):
+            continue
+        # Finished columns too: pivots are the same, and rounding is.
         values, free, misses = _reduce(matrix[rows], b[np.ix_(rows, columns)], len(rows))
         bad = np.any(np.abs(misses) > tolerance[np.ix_(rows, columns)], axis=0)
-        if not np.all(bad):
+        if not np.all(bad | finished[columns]):
             yield columns[~bad], values[:, ~bad], free, np.zeros((len(b), 1), np.bool_)
-        for column in columns[bad]:
+        for column in columns[bad & ~finished[columns]]:
             fit = _fit(matrix[rows], b[rows, column], problem.weights[rows, column], problem.lower, problem.upper)
             disagreement = np.abs(b[rows, column] - matrix[rows] @ fit) / tolerance[rows, column]
             order = rows[np.argsort(disagreement, kind="stable")]

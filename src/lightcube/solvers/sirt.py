@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.solvers._checks import check_iterations, linear_problem
+from lightcube.solvers._checks import check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: A column has converged once a step is shorter than this part of its right-hand side (both in the method's norms).
@@ -26,6 +26,7 @@ def sirt(
     iterations: int = 100,
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
+    state: State | None = None,
 ) -> Result:
     """Minimise ``sum_i w_i / r_i * (b - A x)_i^2`` within the bounds, ``b = ln P - ln B`` and ``r`` the row sums of A.
 
@@ -49,31 +50,44 @@ def sirt(
     """
     problem = linear_problem("sirt", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
     iterations = check_iterations(iterations)
-    b, x = problem.b, problem.x
+    b, x, columns = problem.b, problem.x, (B.shape[1],)
     row_weights = problem.weights * _inverse(A.forward(np.ones((A.shape[1], 1), B.dtype)))
     column_sums = _column_sums(A, problem.weights)
     C = _inverse(column_sums)
-    ax = A.forward(x)
-    small = _TOLERANCE[B.dtype] * np.maximum(_norms(row_weights, b), _norms(row_weights, ax))
-    y, ay, momentum = x, ax, np.ones(B.shape[1])
-    residuals: list[float] = []
-    reason = "iterations"
-    for iteration in range(1, iterations + 1):
+    if state is None:
+        before, ahead, momentum = x, np.zeros(columns), np.ones(columns)
+        ax = ax_before = A.forward(x)
+        small = _TOLERANCE[B.dtype] * np.maximum(_norms(row_weights, b), _norms(row_weights, ax))
+        residuals: list[float] = []
+        settled = False
+    else:
+        per_column = dict.fromkeys(("ahead", "momentum", "small"), (columns, np.float64))
+        unknowns = dict.fromkeys(("x", "before"), (x.shape, x.dtype))
+        kept = check_state(state, iterations, {**unknowns, **per_column, "settled": ((), np.bool_)})
+        x, before, ahead, momentum, small = (kept[name] for name in ("x", "before", "ahead", "momentum", "small"))
+        ax, ax_before = A.forward(x), A.forward(before)
+        residuals, settled = kept["history"].tolist(), bool(kept["settled"])
+
+    def keep() -> State:
+        arrays = {"x": x, "before": before, "ahead": ahead, "momentum": momentum, "small": small}
+        return {**arrays, "settled": np.array(settled), "history": np.array(residuals)}
+
+    asked = False
+    while not (asked or settled or len(residuals) == iterations):
+        y = x + ahead.astype(B.dtype) * (x - before)
+        ay = ax + ahead.astype(B.dtype) * (ax - ax_before)
         before, ax_before = x, ax
         x = np.clip(y + C * A.adjoint(row_weights * (b - ay)), problem.lower, problem.upper)
         ax = A.forward(x)
-        step, moved = x - y, x - before
+        step = x - y
         residuals.append(float(np.linalg.norm(_norms(row_weights, b - ax))))
-        asked = callback is not None and callback(
-            Progress(iteration, iterations, x, ax, residuals[-1], problem.lamp_powers)
-        )
-        if asked or np.all(_norms(column_sums, step) <= small):
-            reason = "callback" if asked else "converged"
-            break
-        uphill = np.sum(column_sums * step * moved, axis=0) < 0
+        settled = bool(np.all(_norms(column_sums, step) <= small))
+        uphill = np.sum(column_sums * step * (x - before), axis=0) < 0
         ahead, momentum = run_ahead(momentum, uphill)
-        y = x + ahead.astype(B.dtype) * moved
-        ay = ax + ahead.astype(B.dtype) * (ax - ax_before)
+        asked = callback is not None and bool(
+            callback(Progress(len(residuals), iterations, x, ax, residuals[-1], problem.lamp_powers, keep))
+        )
+    reason = "callback" if asked else "converged" if settled else "iterations"
     return Result(x, problem.lamp_powers, np.array(residuals), stop_reason=reason)
 
 
