@@ -68,13 +68,13 @@ def test_exponential_is_exact_to_two_units_in_the_last_place() -> None:
     assert np.all(np.abs(out - exact) <= 2 * np.spacing(exact.astype(np.float32)))
 
 
-def test_exponential_ends_in_0_and_never_in_infinity() -> None:
-    numbers = np.array([-1e30, -200, 200, 1e30], np.float32)
+def test_exponential_ends_in_0_and_in_numbers() -> None:
+    numbers = np.array([-100, -95, 87, 88], np.float32)
     out = np.empty_like(numbers)
-    compiled_exp(np.clip(numbers, -100, 100), out)
+    compiled_exp(numbers, out)
     assert np.all(out[:2] < 1e-37)
-    assert np.all(out[2:] > 1e38)
-    assert np.all(np.isfinite(out[:2]))
+    assert np.all(out >= 0)
+    assert np.all(np.isfinite(out))
 
 
 @pytest.mark.parametrize("elevation", [0.0, 35.0, -75.0])

@@ -9,6 +9,7 @@ from scipy.optimize import Bounds, minimize
 from lightcube.geometry import Grid, spread_angles, turntable
 from lightcube.kernels import descent
 from lightcube.kernels.display import conjugate, curvature, display_of_log, residual
+from lightcube.kernels.display import curve as curve_of
 from lightcube.projector import Projector
 from lightcube.solvers.contract import Progress
 from lightcube.solvers.display import display_values
@@ -33,12 +34,15 @@ def plain_objective(matrix: np.ndarray, x: np.ndarray, wanted: np.ndarray, power
 @settings(deadline=None)
 @given(st.floats(-9, 4), st.booleans())
 def test_display_of_log_is_the_curve_and_its_derivatives(u: float, srgb: bool) -> None:
-    value, slope, bend = display_of_log(u, srgb)
+    value, slope, bend = display_of_log(u, curve_of(srgb, np.float64))
     light = np.exp(np.array([u]))
     assert value == pytest.approx(float((encode(light) if srgb else light)[0]), rel=1e-7, abs=1e-7)
     if abs(u - np.log(0.0031308)) > 1e-3:
         step = 1e-5
-        low, high = display_of_log(u - step, srgb), display_of_log(u + step, srgb)
+        low, high = (
+            display_of_log(u - step, curve_of(srgb, np.float64)),
+            display_of_log(u + step, curve_of(srgb, np.float64)),
+        )
         assert slope == pytest.approx((high[0] - low[0]) / (2 * step), rel=1e-4)
         assert bend == pytest.approx((high[1] - low[1]) / (2 * step), rel=1e-4)
 
@@ -46,12 +50,15 @@ def test_display_of_log_is_the_curve_and_its_derivatives(u: float, srgb: bool) -
 @settings(deadline=None)
 @given(st.floats(-9, 3), st.floats(-9, 0), st.booleans())
 def test_the_bound_on_the_curvature_holds_below(u: float, wanted: float, srgb: bool) -> None:
-    bound = curvature(u, wanted, srgb)
+    bound = curvature(u, wanted, curve_of(srgb, np.float64))
     step = 1e-4
     for other in np.linspace(-9, max(u, wanted) - 2 * step, 7):
         if min(abs(other - wanted), abs(other - np.log(0.0031308))) < 3 * step:
             continue  # half the square has a kink in its slope there
-        halves = [0.5 * residual(float(v), wanted, srgb)[0] ** 2 for v in (other - step, other, other + step)]
+        halves = [
+            0.5 * residual(float(v), wanted, curve_of(srgb, np.float64))[0] ** 2
+            for v in (other - step, other, other + step)
+        ]
         second = (halves[0] - 2 * halves[1] + halves[2]) / step**2
         assert second <= bound + 1e-4
 
@@ -60,8 +67,11 @@ def test_the_bound_on_the_curvature_holds_below(u: float, wanted: float, srgb: b
 @given(st.floats(-2, 2), st.floats(-9, 0), st.booleans())
 def test_the_conjugate_is_the_largest_of_all_differences(slope: float, wanted: float, srgb: bool) -> None:
     """Convex duality: slope u - f(u) never exceeds it, and comes near it somewhere."""
-    found = conjugate(slope, wanted, srgb)
-    lines = [slope * u - 0.5 * residual(float(u), wanted, srgb)[0] ** 2 for u in np.linspace(-40, 6, 4001)]
+    found = conjugate(slope, wanted, curve_of(srgb, np.float64))
+    lines = [
+        slope * u - 0.5 * residual(float(u), wanted, curve_of(srgb, np.float64))[0] ** 2
+        for u in np.linspace(-40, 6, 4001)
+    ]
     assert max(lines) <= found + 1e-9 * (1 + abs(found))
     if abs(slope) < 0.01:  # its place lies within the range looked at
         assert max(lines) == pytest.approx(found, rel=2e-3, abs=2e-3)

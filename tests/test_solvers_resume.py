@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 
 from lightcube.errors import InputError
 from lightcube.geometry import Grid, spread_angles, turntable
-from lightcube.kernels import display, momentum
+from lightcube.kernels import display, momentum, screen
 from lightcube.projector import Projector
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Floats, Progress, Result
@@ -155,14 +155,15 @@ def test_momentum_is_what_its_formulas_say() -> None:
     weights = np.broadcast_to(random.random((70, 1)), (70, 4))
     lamp, views = random.normal(size=(3, 2)), random.integers(0, 3, 70)
     u = lamp[views][:, np.arange(4) % 2] - now
-    pairs = [display.residual(float(a), float(b), True) for a, b in zip(u.ravel(), wanted.ravel(), strict=True)]
+    curve = display.curve(True, np.float64)
+    pairs = [display.residual(float(a), float(b), curve) for a, b in zip(u.ravel(), wanted.ravel(), strict=True)]
     value, slope = np.array(pairs).T.reshape(2, 70, 4)
-    objective, least = momentum.arrive(last, now, lamp, views, wanted, weights, True)
+    objective, least = screen.arrive(last, now, lamp, views, wanted, weights, curve)
     np.testing.assert_allclose(objective, np.sum(0.5 * weights * value**2, axis=0))
     np.testing.assert_allclose(least, np.min(2 * now - last, axis=0))
 
     slopes = now.copy()
-    display.descend(slopes, lamp, views, wanted, weights, True, slopes)
+    screen.descend(slopes, lamp, views, wanted, weights, curve, slopes)
     np.testing.assert_allclose(slopes, -weights * value * slope)
 
     ahead = np.array([0.0, 1.0, 0.5, 1.0])

@@ -29,16 +29,16 @@ def exp(u: float) -> float:
 
 
 @overload(exp)
-def _compiled_exp(u: Any) -> Any:
+def _compiled_exp(u):  # type: ignore[no-untyped-def]
     if u != types.float32:
         return lambda u: math.exp(u)
 
-    def single(u: Any) -> Any:
+    def single(u):  # type: ignore[no-untyped-def]
         u = min(max(u, _LEAST), _MOST)
         whole = np.int32(u * _LOG2_E + (_HALF if u >= 0 else -_HALF))
         r = u - np.float32(whole) * _LN2_HIGH - np.float32(whole) * _LN2_LOW
         rest = ((((_R7 * r + _R6) * r + _R5) * r + _R4) * r + _R3) * r + _R2
-        return (rest * r * r + r + _ONE) * _power_of_two(whole)
+        return (rest * r * r + r + _ONE) * _power_of_two(whole)  # type: ignore[call-arg]
 
     return single
 

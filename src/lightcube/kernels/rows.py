@@ -4,7 +4,6 @@ A loop over columns that numba compiles keeps its sums in memory; here up to fou
 registers while the rows go by. The vectors are LLVM's, which any processor gets in the width it has.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
@@ -46,7 +45,7 @@ def add_rows(
             target[at + low : at + high] += weights[k] * source[there + low : there + high]
 
 
-def _summing(vectors: int, masked: bool) -> Callable[..., None]:
+def _summing(vectors: int, masked: bool) -> Any:
     """Make `add_rows` for `vectors` vectors of columns from `start` on, compiled; where not masked, all must exist."""
 
     @intrinsic
@@ -57,12 +56,12 @@ def _summing(vectors: int, masked: bool) -> Callable[..., None]:
         signature = types.void(
             target, number, source, number, number, places, shifts, weights, number, number, number, number
         )
-        return signature, lambda *compiled: _emit(*compiled, vectors, masked)
+        return signature, lambda *emitter: _emit(vectors, masked, *emitter)
 
     return add
 
 
-def _emit(context: Any, builder: Any, signature: Any, args: Any, vectors: int, masked: bool) -> Any:
+def _emit(vectors: int, masked: bool, context: Any, builder: Any, signature: Any, args: Any) -> Any:
     """Emit the code of `_summing`."""
     at, base, columns, first, last, start, stop = (args[i] for i in (1, 3, 4, 8, 9, 10, 11))
     target, source, places, shifts, weights = (
@@ -173,7 +172,7 @@ def prefetch(array: Array, index: int) -> None:
 @overload(prefetch, inline="always")
 def _compiled_prefetch(array, index):  # type: ignore[no-untyped-def]
     def bring(array, index):  # type: ignore[no-untyped-def]
-        _bring(array, index)
+        _bring(array, index)  # type: ignore[call-arg]
 
     return bring
 

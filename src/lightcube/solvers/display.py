@@ -17,6 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from lightcube.absorption import absorbance
 from lightcube.kernels import descent, display, momentum
+from lightcube.kernels import screen as entries
 from lightcube.solvers._checks import (
     check_bounds,
     check_iterations,
@@ -232,8 +233,8 @@ class _Screen:
     high: NDArray[np.float64]
     #: The same as powers.
     bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
-    #: Display values are sRGB, not linear light.
-    srgb: bool
+    #: How display values follow from ln light.
+    curve: display.Curve
 
     @classmethod
     def of(
@@ -262,7 +263,7 @@ class _Screen:
             np.log(low),
             np.log(high),
             (low, high),
-            transfer == "srgb",
+            display.curve(transfer == "srgb", B.dtype.type),
         )
 
     def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -274,25 +275,25 @@ class _Screen:
         if np.array_equal(self.low, self.high):
             return self.low
         lamp = start.copy()
-        data = (self.rows, self.starts, self.wanted, self.weights, self.srgb)
-        display.fit_lamp(ax, *data, self.low, self.high, lamp)
+        data = (self.rows, self.starts, self.wanted, self.weights, self.curve)
+        entries.fit_lamp(ax, *data, self.low, self.high, lamp)
         return lamp
 
     def arrive(
         self, last: Floats, ax: Floats, lamp: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
-        return momentum.arrive(last, ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.srgb)
+        return entries.arrive(last, ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.curve)
 
     def descend(self, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Write over `ax`, and return, the objective's derivative by the absorbance."""
-        display.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.srgb, ax)
+        entries.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.curve, ax)
         return ax
 
     def curved(self, values: Floats, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
-        data = (self.views, self.wanted, self.weights, self.srgb)
-        display.curvatures(ax, lamp.astype(ax.dtype), *data, _ROOM, values)
+        data = (self.views, self.wanted, self.weights, self.curve)
+        entries.curvatures(ax, lamp.astype(ax.dtype), *data, ax.dtype.type(_ROOM), values)
         return values
 
     def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: tuple[float, float]) -> float:
@@ -337,7 +338,7 @@ class _Screen:
         pull -= beams
 
     def _conjugates(self, pull: Floats) -> float:
-        return float(np.sum(display.conjugates(pull, self.wanted, self.weights, self.srgb)))
+        return float(np.sum(display.conjugates(pull, self.wanted, self.weights, self.curve)))
 
 
 def _has_converged(history: list[float], enough: float) -> bool:

@@ -1,0 +1,240 @@
+"""The two-sided residual of all entries of a block (see `lightcube.solvers.display`), in runs that fill vectors.
+
+Blocks are ``(rows, columns)``; the colour channel of column ``j`` is ``j % channels``, and ``lamp[view, channel]`` is
+ln P. Rows of one view that follow each other are walked as one long run, however few columns there are. Results do
+not depend on the number of threads.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from lightcube.kernels.display import Curve, curvature, pull, residual
+
+Array = NDArray[Any]
+
+#: Entries of a run at most, but one row at least; parts that a block's rows are divided into.
+_RUN, _PARTS = 1024, 64
+#: The last step of a lamp may be so long, in ln P, by Newton's method and by bisection.
+_SMALL, _TINY = 3e-4, 1e-6
+
+
+@njit(cache=True)
+def _run(columns: int) -> int:
+    """Rows of a run at most."""
+    return max(1, _RUN // columns)
+
+
+@njit(cache=True)
+def _run_end(view_of_row: Array, row: int, last: int) -> int:
+    """Return the row after those from `row` on, before `last`, that belong to the same view."""
+    end = row + 1
+    while end < last and view_of_row[end] == view_of_row[row]:
+        end += 1
+    return end
+
+
+@njit(cache=True)
+def _repeat(few: Array, many: Array) -> None:
+    """Fill `many` with copies of `few`."""
+    for i in range(len(many)):
+        many[i] = few[i % len(few)]
+
+
+@njit(cache=True)
+def _descend_run(bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve, slopes: Array) -> None:
+    for i in range(len(absorbance)):
+        value, slope = residual(bright[i] - absorbance[i], wanted[i], curve)
+        slopes[i] = -weights[i] * value * slope
+
+
+@njit(cache=True, parallel=True)
+def descend(
+    absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, curve: Curve, slopes: Array
+) -> None:
+    """Write the derivative of the objective by the absorbance to `slopes`, which may be `absorbance` itself.
+
+    The objective is half the weighted sum of squared residuals.
+    """
+    rows, columns = absorbance.shape
+    now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), slopes.reshape(-1)
+    for part in prange(_PARTS):
+        bright, heavy = np.empty(_run(columns) * columns, now.dtype), np.empty(_run(columns) * columns, now.dtype)
+        row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
+        while row < last:
+            end = _run_end(view_of_row, row, min(last, row + _run(columns)))
+            _repeat(lamp[view_of_row[row]], bright)
+            for each in range(row, end):
+                heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
+            here = slice(row * columns, end * columns)
+            _descend_run(bright, now[here], aim[here], heavy, curve, out[here])
+            row = end
+
+
+@njit(cache=True)
+def _arrive_run(
+    bright: Array, last: Array, now: Array, wanted: Array, weights: Array, curve: Curve, sums: Array, least: Array
+) -> None:
+    for i in range(len(now)):
+        value, _ = residual(bright[i] - now[i], wanted[i], curve)
+        sums[i] += weights[i] * value * value
+        least[i] = min(least[i], now[i] + (now[i] - last[i]))
+
+
+@njit(cache=True, parallel=True)
+def arrive(
+    last: Array, now: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, curve: Curve
+) -> tuple[Array, Array]:
+    """Of each column, the objective at absorbance `now`, and the least absorbance if it changed as much once more.
+
+    The objective is half the weighted sum of squared residuals; the change was from absorbance `last`.
+    """
+    rows, columns = now.shape
+    before, after, aim = last.reshape(-1), now.reshape(-1), wanted.reshape(-1)
+    run = _run(columns) * columns
+    sums, least = np.zeros((_PARTS, run)), np.full((_PARTS, run), np.inf, now.dtype)
+    for part in prange(_PARTS):
+        bright, heavy = np.empty(run, now.dtype), np.empty(run, now.dtype)
+        row, stop = part * rows // _PARTS, (part + 1) * rows // _PARTS
+        while row < stop:
+            end = _run_end(view_of_row, row, min(stop, row + _run(columns)))
+            _repeat(lamp[view_of_row[row]], bright)
+            for each in range(row, end):
+                heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
+            here = slice(row * columns, end * columns)
+            _arrive_run(bright, before[here], after[here], aim[here], heavy, curve, sums[part], least[part])
+            row = end
+    total, lowest = np.zeros(columns), np.full(columns, np.inf)
+    for part in range(_PARTS):
+        for i in range(run):
+            total[i % columns] += 0.5 * sums[part, i]
+            lowest[i % columns] = min(lowest[i % columns], least[part, i])
+    return total, lowest
+
+
+@njit(cache=True)
+def _curve_run(
+    bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve, room: Any, values: Array
+) -> None:
+    for i in range(len(absorbance)):
+        now = bright[i] - absorbance[i]
+        u = max(now, min(now + room, bright[i]))
+        values[i] *= weights[i] * curvature(u, wanted[i], curve)
+
+
+@njit(cache=True, parallel=True)
+def curvatures(
+    absorbance: Array,
+    lamp: Array,
+    view_of_row: Array,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    room: Any,
+    values: Array,
+) -> None:
+    """Multiply `values` by the weighted `curvature` that holds while ln light rises by no more than `room`."""
+    rows, columns = absorbance.shape
+    now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), values.reshape(-1)
+    for part in prange(_PARTS):
+        bright, heavy = np.empty(_run(columns) * columns, now.dtype), np.empty(_run(columns) * columns, now.dtype)
+        row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
+        while row < last:
+            end = _run_end(view_of_row, row, min(last, row + _run(columns)))
+            _repeat(lamp[view_of_row[row]], bright)
+            for each in range(row, end):
+                heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
+            here = slice(row * columns, end * columns)
+            _curve_run(bright, now[here], aim[here], heavy, curve, room, out[here])
+            row = end
+
+
+@njit(cache=True)
+def _pull_run(
+    bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve, slopes: Array, bends: Array
+) -> None:
+    for i in range(len(absorbance)):
+        first, second = pull(bright[i] - absorbance[i], wanted[i], curve)
+        slopes[i] += weights[i] * first
+        bends[i] += weights[i] * second
+
+
+@njit(cache=True)
+def _pulls(
+    absorbance: Array, rows: Array, wanted: Array, weights: Array, curve: Curve, lamp: Array, sums: Array
+) -> None:
+    """Write the first and second derivative of the objective by each channel's ln P, for some rows, to `sums`."""
+    columns = absorbance.shape[1]
+    now, aim = absorbance.reshape(-1), wanted.reshape(-1)
+    run = _run(columns) * columns
+    bright, heavy = np.empty(run, now.dtype), np.empty(run, now.dtype)
+    slopes, bends = np.zeros(run), np.zeros(run)
+    _repeat(lamp.astype(now.dtype), bright)
+    k = 0
+    while k < len(rows):
+        row, end = rows[k], k + 1
+        while end < len(rows) and end - k < _run(columns) and rows[end] == row + end - k:
+            end += 1
+        for each in range(end - k):
+            heavy[each * columns : (each + 1) * columns] = weights[row + each]
+        here = slice(row * columns, (row + end - k) * columns)
+        _pull_run(bright, now[here], aim[here], heavy, curve, slopes, bends)
+        k = end
+    sums[:] = 0
+    for i in range(run):
+        sums[0, i % len(lamp)] += slopes[i]
+        sums[1, i % len(lamp)] += bends[i]
+
+
+@njit(cache=True, parallel=True)
+def fit_lamp(
+    absorbance: Array,
+    rows: Array,
+    starts: Array,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    low: Array,
+    high: Array,
+    lamp: Array,
+) -> None:
+    """Replace ``lamp[view, channel]`` = ln P, where to start, by the best one between `low` and `high`.
+
+    The rows of view v are ``rows[starts[v]:starts[v + 1]]``. Newton's method on a convex function of one number,
+    kept inside a shrinking bracket by bisection; it ends with a step so small that its square no longer counts.
+    """
+    views, channels = lamp.shape
+    for view in prange(views):
+        below, above = low[view].copy(), high[view].copy()
+        u = np.minimum(np.maximum(lamp[view], below), above)
+        tried_low, tried_high = u == below, u == above
+        found = np.zeros(channels, np.bool_)
+        sums = np.empty((2, channels))
+        for _ in range(40):
+            _pulls(absorbance, rows[starts[view] : starts[view + 1]], wanted, weights, curve, u, sums)
+            for c in range(channels):
+                if found[c]:
+                    continue
+                slope, bend = sums[0, c], sums[1, c] + 1e-30
+                if slope == 0:
+                    found[c] = True
+                    continue
+                if slope > 0:
+                    above[c], tried_high[c] = u[c], True
+                else:
+                    below[c], tried_low[c] = u[c], True
+                following = u[c] - slope / bend
+                newton = below[c] < following < above[c]
+                if following >= above[c]:
+                    following = 0.5 * (below[c] + above[c]) if tried_high[c] else high[view, c]
+                    tried_high[c] = True
+                elif following <= below[c]:
+                    following = 0.5 * (below[c] + above[c]) if tried_low[c] else low[view, c]
+                    tried_low[c] = True
+                found[c] = abs(following - u[c]) < (_SMALL if newton else _TINY)
+                u[c] = following
+            if np.all(found):
+                break
+        lamp[view] = u
