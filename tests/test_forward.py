@@ -10,10 +10,12 @@ from lightcube.consistency import mirror_conflicts
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import targets
-from lightcube.forward import cast, lamp_at, play, turn, views_at
+from lightcube.forward import cast, lamp_at, play, player, turn, views_at
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, Views, turntable
+from lightcube.layout import columns_from_volume, pictures_from_columns
 from lightcube.metrics import mean_psnr, psnr, score, ssim
+from lightcube.projector import Projector
 from lightcube.sheet import beside_targets, contact_sheet
 from lightcube.transfer import encode
 from tests import plain
@@ -42,6 +44,42 @@ def test_many_views_come_in_order_and_one_by_one() -> None:
     angles = np.linspace(0, 360, 37)
     one_by_one = np.stack([play(cube, [angle])[0] for angle in angles])
     assert np.array_equal(play(cube, angles), one_by_one)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("whole_screen", [False, True])
+def test_a_player_shows_what_play_does_however_often_it_is_asked(elevation: float, whole_screen: bool) -> None:
+    powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
+    cube = make_cube([10.0, 100.0], elevation, powers)
+    show = player(cube, whole_screen=whole_screen)
+    angles = [3.0, 100.0, -77.7]
+    expected = play(cube, angles, whole_screen=whole_screen)
+    assert np.array_equal(show(angles), expected)
+    assert np.array_equal(np.concatenate([show(angle) for angle in angles]), expected)
+    assert np.array_equal(show(None), play(cube, whole_screen=whole_screen))
+
+
+def test_a_player_refuses_what_are_no_angles() -> None:
+    show = player(make_cube([10.0]))
+    with pytest.raises(InputError, match="angle number 2 is not a finite number"):
+        show([1.0, np.nan])
+    with pytest.raises(InputError, match="at least one"):
+        show([])
+
+
+@pytest.mark.parametrize(("elevation", "window"), [(0.0, (1, 36)), (35.0, (5, 34)), (0.0, None), (20.0, None)])
+def test_strips_of_beams_and_batches_leave_no_seam(elevation: float, window: tuple[int, int] | None) -> None:
+    """Few views, shared by strips, and more views than a batch: still the plain forward computation."""
+    grid = Grid((1, 30, 36), 0.5)
+    angles = np.linspace(1, 170, 2) if window else np.linspace(1, 170, 17)
+    extinction = np.random.default_rng(6).random((2, 1, 30, 36)).astype(np.float32)
+    views = turntable(grid, angles, elevation=elevation, picture_shape=window)
+    cube = Cube(extinction, grid, views, lamp_powers=np.random.default_rng(7).random((len(angles), 2)) + 0.5)
+    matrix = Projector(grid, views)
+    absorbance = matrix.forward(columns_from_volume(extinction).reshape(matrix.shape[1], -1))
+    block = absorbance.reshape(-1, views.picture_shape[0] * 2)
+    expected = np.exp(-pictures_from_columns(block, views.picture_shape, 2)) * cube.powers[:, None, None, :]
+    assert np.allclose(play(cube), expected, rtol=1e-5)
 
 
 def test_beams_that_miss_the_cube_show_the_lamp() -> None:

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
+from lightcube import layout
 from lightcube.geometry import Grid, turntable
 from lightcube.kernels import exponential, rows
 from lightcube.kernels.projection import GROUP, TILE
@@ -110,6 +111,14 @@ def test_many_groups_of_views_and_all_tiles_are_one_matrix(
     assert np.max(np.abs(matrix.forward(x) - there)) <= bound * np.max(there)
     assert np.max(np.abs(matrix.adjoint(b) - back)) <= bound * np.max(back)
     assert dot_test(matrix, columns, dtype) < bound
+
+
+def test_products_begin_at_whole_cache_lines() -> None:
+    matrix = Projector(Grid((3, 5, 7)), turntable(Grid((3, 5, 7)), [0.0, 33.0]))
+    b = matrix.forward(np.ones((matrix.shape[1], 9), np.float32))
+    for array in (b, matrix.adjoint(b), layout.copied(b[1:], np.float64)):
+        assert array.ctypes.data % 64 == 0
+        assert array.flags.c_contiguous
 
 
 _HASHES = """

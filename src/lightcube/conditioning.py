@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array, eye_array, kron
-from scipy.spatial.distance import cdist
 
 from lightcube import backward
 from lightcube.absorption import absorbance
@@ -85,7 +85,7 @@ def best_order(frames: Frames, grid: Grid, **lamp: Any) -> Order:
     canonical = np.lexsort(seen.T[::-1])
     along = np.argsort(frames.views.angles, kind="stable")
     tour = np.empty(len(frames), np.int64)
-    tour[along] = ordering.shortest_tour(cdist(seen[canonical], seen[canonical]))
+    tour[along] = ordering.shortest_tour(scipy.spatial.distance.cdist(seen[canonical], seen[canonical]))
     candidates = [np.arange(len(frames)), canonical[tour]]
     tiles = _tiles(len(frames), draft.views.picture_shape)
     if len(frames) > 1 and max(tiles) > 1:

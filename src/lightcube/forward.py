@@ -1,7 +1,7 @@
 """Program 3, the forward computation: what the screen shows at any turntable angle."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -101,15 +101,7 @@ def cast(cube: Cube, views: Views, lamp_powers: NDArray[np.float64]) -> Iterator
     lamp_powers
         ``(views, channels)``; a beam that misses the cube shows the lamp's power.
     """
-    columns = columns_from_volume(cube.extinction)
-    for start in range(0, len(views), _BATCH):
-        batch = views.take(slice(start, start + _BATCH))
-        matrix = Projector(cube.grid, batch)
-        absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
-        block = absorbance.reshape(len(batch) * batch.picture_shape[1], -1)
-        powers = lamp_powers[start : start + _BATCH].astype(np.float32)
-        pictures = pictures_from_columns(np.exp(-block), batch.picture_shape, powers.shape[1])
-        yield from pictures * powers[:, None, None, :]
+    yield from _cast(columns_from_volume(cube.extinction), cube, views, lamp_powers)
 
 
 def play(cube: Cube, angles: ArrayLike | None = None, *, whole_screen: bool = False) -> NDArray[np.float32]:
@@ -122,8 +114,41 @@ def play(cube: Cube, angles: ArrayLike | None = None, *, whole_screen: bool = Fa
     whole_screen
         Show the whole shadow and its surroundings instead of the picture window.
     """
-    if angles is None and not whole_screen:
-        return np.stack(list(cast(cube, cube.views, cube.powers)))
-    turned = cube.views.angles if angles is None else check_angles(angles)
-    powers = cube.powers if angles is None else lamp_at(cube, turned)
-    return np.stack(list(cast(cube, views_at(cube, turned, whole_screen=whole_screen), powers)))
+    return player(cube, whole_screen=whole_screen)(angles)
+
+
+def player(cube: Cube, *, whole_screen: bool = False) -> Callable[[ArrayLike | None], NDArray[np.float32]]:
+    """Make a function of the angles that shows what `play` does, fast enough for a cube that is turned by hand.
+
+    The cube is laid out for casting once, which takes as much memory again.
+
+    Parameters
+    ----------
+    whole_screen
+        Show the whole shadow and its surroundings instead of the picture window.
+    """
+    columns = columns_from_volume(cube.extinction)
+
+    def show(angles: ArrayLike | None) -> NDArray[np.float32]:
+        turned = cube.views.angles if angles is None else check_angles(angles)
+        powers = cube.powers if angles is None else lamp_at(cube, turned)
+        own = angles is None and not whole_screen
+        views = cube.views if own else views_at(cube, turned, whole_screen=whole_screen)
+        return np.stack(list(_cast(columns, cube, views, powers)))
+
+    return show
+
+
+def _cast(
+    columns: NDArray[np.floating], cube: Cube, views: Views, lamp_powers: NDArray[np.float64]
+) -> Iterator[NDArray[np.float32]]:
+    """Yield what `cast` does, of the cube's extinction as `columns_from_volume` lays it out."""
+    channels = lamp_powers.shape[1]
+    for start in range(0, len(views), _BATCH):
+        batch = views.take(slice(start, start + _BATCH))
+        matrix = Projector(cube.grid, batch)
+        absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
+        light = absorbance.reshape(len(batch), batch.picture_shape[1], -1)
+        np.exp(np.negative(light, out=light), out=light)
+        light *= np.tile(lamp_powers[start : start + _BATCH].astype(np.float32), batch.picture_shape[0])[:, None, :]
+        yield from pictures_from_columns(light.reshape(-1, light.shape[2]), batch.picture_shape, channels)

@@ -5,10 +5,30 @@ The unknowns are a block of ``(ny * nx)`` rows and ``(nz * channels)`` columns, 
 like z. The innermost axis is the colour channel in both, so a block of columns is contiguous.
 """
 
+import math
+from typing import Any
+
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 Floats = NDArray[np.floating]
+#: Bytes that a processor reads at a time.
+_LINE = 64
+
+
+def empty(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
+    """An array like numpy's, but begun at a whole cache line: the kernels' vectors then do not straddle two."""
+    size = math.prod(shape) * np.dtype(dtype).itemsize
+    room = np.empty(size + _LINE, np.uint8)
+    start = -room.ctypes.data % _LINE
+    return room[start : start + size].view(dtype).reshape(shape)
+
+
+def copied(array: NDArray[Any], dtype: DTypeLike = None) -> NDArray[Any]:
+    """A contiguous copy of an array, of its own dtype unless another one is given, begun as `empty` begins one."""
+    copy = empty(array.shape, array.dtype if dtype is None else dtype)
+    copy[...] = array
+    return copy
 
 
 def columns_from_volume(volume: Floats) -> Floats:

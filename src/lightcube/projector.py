@@ -13,6 +13,7 @@ from lightcube.errors import InputError
 from lightcube.geometry import PARALLEL, Grid, Views
 from lightcube.kernels import projection
 from lightcube.kernels.beam import max_pieces
+from lightcube.layout import empty
 
 Floats = NDArray[np.floating[Any]]
 
@@ -72,7 +73,7 @@ class Projector:
         """``A @ x``: `x` is ``(A.shape[1], columns)`` float32 or float64, the result has its dtype."""
         x = self._checked(x, self.shape[1])
         channels = x.shape[1]
-        b = np.empty((self.shape[0] // self._stacked, self._stacked * channels), x.dtype)
+        b = empty((self.shape[0] // self._stacked, self._stacked * channels), x.dtype)
         projection.forward(self._beams, self._width, *self._plane(), x.reshape(self._voxels, -1), b, channels, _tasks())
         return b.reshape(self.shape[0], channels)
 
@@ -80,7 +81,7 @@ class Projector:
         """``A.T @ b``: `b` is ``(A.shape[0], columns)`` float32 or float64, the result has its dtype."""
         b = self._checked(b, self.shape[0])
         channels = b.shape[1]
-        x = np.empty((self._voxels, self.shape[1] // self._voxels * channels), b.dtype)
+        x = empty((self._voxels, self.shape[1] // self._voxels * channels), b.dtype)
         stacked = b.reshape(-1, self._stacked * channels)
         projection.adjoint(self._beams, self._width, *self._plane(), stacked, x, channels, _tasks())
         return x.reshape(self.shape[1], channels)

@@ -44,19 +44,19 @@ def _room(beams: Array, width: int) -> tuple[int, int]:
 
 
 @njit(cache=True)
-def _meeting(beams: Array, view: int, width: int, x: int, y: int, nx: int, ny: int) -> tuple[int, int]:
-    """Return the first beam of a view that may meet the tile at ``(x, y)``, and the one after the last."""
+def _meeting(beams: Array, view: int, low: int, high: int, x: int, y: int, nx: int, ny: int) -> tuple[int, int]:
+    """Return the first of the beams `low` to before `high` of a view that may meet a tile, and one after the last."""
     start, step, light = beams[view, 0], beams[view, 1], beams[view, 2]
     turned = step[0] * light[1] - step[1] * light[0]
     if abs(turned) < PARALLEL:
-        return 0, width
+        return low, high
     first, last = np.inf, -np.inf
     for corner in range(4):
         across = x - start[0] + (nx if corner & 1 else 0)
         along = y - start[1] + (ny if corner & 2 else 0)
         column = (across * light[1] - along * light[0]) / turned
         first, last = min(first, column), max(last, column)
-    return int(max(0.0, math.floor(first))), int(min(float(width), math.ceil(last) + 1))
+    return int(max(float(low), math.floor(first))), int(min(float(high), math.ceil(last) + 1))
 
 
 @njit(cache=True)
@@ -65,6 +65,8 @@ def _trace_tile(
     width: int,
     view: int,
     after: int,
+    low: int,
+    high: int,
     x: int,
     y: int,
     nx: int,
@@ -77,16 +79,16 @@ def _trace_tile(
     shifts: Array,
     weights: Array,
 ) -> int:
-    """Trace the beams of views from `view` to before `after` through the tile of `nx` by `ny` voxels at ``(x, y)``.
+    """Trace the beams of views `view` to before `after` through the tile of `nx` by `ny` voxels at ``(x, y)``.
 
-    The pieces of beam ``rays[i]``, counted from the first beam of `view`, end before ``ends[i + 1]``; returns how many
-    beams meet the tile.
+    Of each view only the beams `low` to before `high`. The pieces of beam ``rays[i]``, counted from the first beam of
+    `view`, end before ``ends[i + 1]``; returns how many beams meet the tile.
     """
     met = 0
     ends[0] = 0
     for each in range(view, after):
         start, step, light = beams[each, 0], beams[each, 1], beams[each, 2]
-        first, last = _meeting(beams, each, width, x, y, nx, ny)
+        first, last = _meeting(beams, each, low, high, x, y, nx, ny)
         for column in range(first, last):
             count = trace_beam(
                 start[0] + column * step[0] - x,
@@ -121,14 +123,13 @@ def forward(
     most_rays, most_pieces = _room(beams, width)
     group = max(1, min(GROUP, len(beams) // tasks, _MOST_PIECES // (most_rays * most_pieces)))
     groups = (len(beams) + group - 1) // group
-    parts = max(1, min((tasks + groups - 1) // groups, columns // (4 * LANES)))
-    part = (columns + parts * LANES - 1) // (parts * LANES) * LANES
+    parts = min((tasks + groups - 1) // groups, width)  # where there are few views, strips of beams
     for task in prange(groups * parts):
         view = (task // parts) * group
         after = min(view + group, len(beams))
-        start = (task % parts) * part
-        stop = min(start + part, columns)
-        b[view * width : after * width, start:stop] = 0
+        low, high = task % parts * width // parts, (task % parts + 1) * width // parts
+        for each in range(view, after):
+            b[each * width + low : each * width + high] = 0
         rays, ends = np.empty(group * most_rays, np.int64), np.empty(group * most_rays + 1, np.int64)
         room = group * most_rays * most_pieces
         places, shifts, weights = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
@@ -141,6 +142,8 @@ def forward(
                     width,
                     view,
                     after,
+                    low,
+                    high,
                     tile_x,
                     tile_y,
                     size_x,
@@ -154,8 +157,8 @@ def forward(
                     weights,
                 )
                 base = (tile_y * nx + tile_x) * slices
-                for column in range(start, stop, COLUMNS):
-                    last = min(column + COLUMNS, stop)
+                for column in range(0, columns, COLUMNS):
+                    last = min(column + COLUMNS, columns)
                     for i in range(met):
                         if i + 1 < met:
                             for near in range(column, last, LANES):
@@ -211,6 +214,8 @@ def adjoint(
                 width,
                 view,
                 after,
+                0,
+                width,
                 tile_x,
                 tile_y,
                 size_x,

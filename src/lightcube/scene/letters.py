@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
-from skimage.measure import approximate_polygon, find_contours
+from skimage import measure
 
 from lightcube.errors import InputError
 
@@ -51,8 +51,8 @@ def outlines(picture: NDArray[np.float64]) -> list[Polygon]:
     Rings run counter-clockwise around what is bright and clockwise around holes in it.
     """
     rings = []
-    for contour in find_contours(picture, 0.5):
-        ring = approximate_polygon(contour, _TOLERANCE)[:-1]
+    for contour in measure.find_contours(picture, 0.5):
+        ring = measure.approximate_polygon(contour, _TOLERANCE)[:-1]
         if len(ring) >= 3:
             rings.append(np.column_stack([ring[:, 1], -ring[:, 0]]))
     if sum(area(ring) for ring in rings) < 0:

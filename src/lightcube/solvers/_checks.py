@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from lightcube.errors import InputError
+from lightcube.layout import copied
 from lightcube.solvers._absorbance import absorbance_wanted
 from lightcube.solvers.contract import Floats, Operator, State
 
@@ -92,10 +93,10 @@ def check_start(
     x0: Floats | None, shape: tuple[int, int], bounds: tuple[float, float], dtype: np.dtype[np.floating[Any]]
 ) -> Floats:
     """Return a fresh start of `shape` and `dtype` within `bounds` from `x0` (None = all 0), or raise `InputError`."""
-    given = np.zeros(shape, dtype) if x0 is None else np.asarray(x0)
+    given = np.broadcast_to(dtype.type(0), shape) if x0 is None else np.asarray(x0)
     if given.shape != shape or not np.all(np.isfinite(given)):
         raise InputError(f"x0 must be finite numbers of shape {shape} (unknowns, columns), not {given.shape}")
-    start = given if x0 is None else np.array(given, dtype, order="C")
+    start = copied(given, dtype)
     return np.clip(start, *bounds, out=start)
 
 
@@ -128,7 +129,7 @@ def check_state(
     for name in names:
         if name not in state:
             raise InputError(f"the state to continue from lacks {name!r}: it is another method's, start anew")
-    copies = {name: np.array(state[name], order="C") for name in names}
+    copies = {name: copied(state[name]) for name in names}
     for name, (shape, kind) in {"history": ((copies["history"].size,), np.float64), **needed}.items():
         found, dtype = copies[name], np.dtype(kind)
         if (found.shape, found.dtype) != (shape, dtype):

@@ -18,6 +18,7 @@ from numpy.typing import DTypeLike, NDArray
 from lightcube.absorption import absorbance
 from lightcube.kernels import descent, display, momentum
 from lightcube.kernels import screen as entries
+from lightcube.layout import copied, empty
 from lightcube.solvers._checks import (
     check_bounds,
     check_iterations,
@@ -99,7 +100,7 @@ def display_values(
     else:
         at = _State.kept(state, iterations, shape, B.dtype, screen.low.shape)
     ax = A.forward(at.x)
-    ay = A.forward(at.before) if np.any(at.ahead) else ax.copy()
+    ay = A.forward(at.before) if np.any(at.ahead) else copied(ax)
     momentum.run_ahead(ay, ax, at.ahead)
     if state is None:
         at.lamp = screen.best_lamp(ay, at.lamp)
@@ -155,8 +156,8 @@ class _State:
         columns = x.shape[1]
         return cls(
             x=x,
-            before=x.copy(),
-            steps=np.empty_like(x),
+            before=copied(x),
+            steps=empty(x.shape, x.dtype),
             stride=np.full(columns, _STRIDE, x.dtype),
             ahead=np.zeros(columns, x.dtype),
             objective=np.full(columns, np.inf),

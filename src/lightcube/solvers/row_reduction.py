@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 from scipy.sparse import csr_array, eye_array, hstack
 
 from lightcube.errors import InputError
@@ -186,7 +186,7 @@ def _fit(matrix: Matrix, b: Matrix, weights: Floats, lower: float, upper: float)
     """Return the ``x`` within the bounds of least ``sum w |b - A x|``."""
     equations, unknowns = matrix.shape
     one = eye_array(equations)
-    solution = linprog(
+    solution = scipy.optimize.linprog(
         np.concatenate([np.zeros(unknowns), weights, weights]),
         A_eq=hstack([csr_array(matrix), one, -one], format="csr"),
         b_eq=b,

@@ -1,0 +1,38 @@
+"""Time the projections, to be compared with an earlier run.
+
+    python -m pytest benchmarks/test_kernels_speed.py --benchmark-autosave
+    python -m pytest benchmarks/test_kernels_speed.py --benchmark-compare
+
+Nothing is asserted about time: `lightcube bench` says what the figures are worth on a machine.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lightcube.bench.products import columns_of, projector
+from lightcube.cube import Cube
+from lightcube.forward import player
+from lightcube.geometry import Grid, turntable
+
+N, VIEWS = 96, 96
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("direction", ["forward", "adjoint"])
+def test_product(benchmark: Callable[..., Any], direction: str, elevation: float) -> None:
+    matrix = projector(N, VIEWS, elevation)
+    rows = matrix.shape[1] if direction == "forward" else matrix.shape[0]
+    given = np.random.default_rng(0).random((rows, columns_of(matrix)), dtype=np.float32)
+    result = benchmark(getattr(matrix, direction), given)
+    assert np.all(np.isfinite(result))
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_playback(benchmark: Callable[..., Any], elevation: float) -> None:
+    grid = Grid((N, N, N))
+    extinction = np.full((3, *grid.shape), 1 / N, np.float32)
+    show = player(Cube(extinction, grid, turntable(grid, [10.0], elevation=elevation)))
+    assert np.all(benchmark(show, [77.7]) > 0)

@@ -1,0 +1,25 @@
+"""Playback: one picture at a time, as a cube that is turned by hand wants it."""
+
+import numpy as np
+
+from lightcube.bench.clock import seconds
+from lightcube.bench.products import CHANNELS
+from lightcube.cube import Cube
+from lightcube.forward import player
+from lightcube.geometry import Grid, turntable
+
+#: Angles that are looked at for each repeat.
+_ANGLES = 5
+
+
+def playback(n: int, elevation: float, repeats: int) -> dict[str, float]:
+    """Seconds of one picture of an n-cube, the whole screen in colour, with all threads; the cube is laid out before.
+
+    A picture is beams, light, lamp and layout, ready to be encoded for a screen.
+    """
+    grid = Grid((n, n, n))
+    extinction = np.full((CHANNELS, *grid.shape), 1 / n, np.float32)
+    show = player(Cube(extinction, grid, turntable(grid, [10.0], elevation=elevation)))
+    rows, columns = show([10.0]).shape[1:3]
+    angles = iter(np.linspace(3, 177, repeats * _ANGLES))
+    return {"rows": rows, "columns": columns, **seconds(lambda: show([next(angles)]), repeats * _ANGLES)}

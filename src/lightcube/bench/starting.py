@@ -1,0 +1,36 @@
+"""Start-up: how long one waits for a command that has little to do."""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lightcube import io
+from lightcube.bench.clock import seconds
+from lightcube.cube import Cube
+from lightcube.geometry import Grid, turntable
+
+
+def starts() -> list[dict[str, Any]]:
+    """Seconds of the second start of `lightcube --help` and of `lightcube play` on a tiny cube."""
+    grid = Grid((3, 3, 3))
+    cube = Cube(np.ones((3, 3, 3, 3), np.float32), grid, turntable(grid, [10.0]))
+    with tempfile.TemporaryDirectory() as folder:
+        kept, shown = Path(folder) / "cube.zarr", Path(folder) / "shown.npy"
+        io.save(cube, kept)
+        commands = [["--help"], ["play", str(kept), "-o", str(shown), "--angles", "10", "--overwrite"]]
+        return [{"command": words[0], "seconds": _second(words)} for words in commands]
+
+
+def _second(words: list[str]) -> float:
+    """Run a command twice; return the seconds of the second time, when everything compiled is on the disk."""
+    command = [sys.executable, "-c", "from lightcube.cli import main; main()", *words]
+
+    def run() -> None:
+        subprocess.run(command, check=True, capture_output=True)  # noqa: S603
+
+    run()
+    return seconds(run, 1)["seconds"]
