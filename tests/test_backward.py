@@ -6,17 +6,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lightcube.backward import memory_needed, solve
+from lightcube.backward import solve
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.forward import lamp_at, play
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, held, spread_angles, turntable
 from lightcube.metrics import score
+from lightcube.pieces import Step
 from lightcube.problem import BLACK
 from lightcube.solvers import METHODS
 from lightcube.transfer import decode
-from lightcube.units import Step
 
 SHAPE = (3, 4, 5)
 ITERATIONS: Mapping[str, dict[str, Any]] = {
@@ -109,24 +109,6 @@ def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
     assert np.allclose(seen[-1], play(solution.cube), rtol=1e-4, atol=1e-5)
 
 
-def test_the_store_is_given_unfinished_cubes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lightcube.units.FIRST_CHECKPOINT_S", 0.0)
-    kept: list[Cube] = []
-
-    class Shelf:
-        def keep(self, cube: Cube) -> None:
-            kept.append(cube)
-
-    cube = known_cube(4, 0.0, power=1.0)
-    frames = Frames(play(cube), cube.views)
-    solution = solve(frames, cube.grid, iterations=3, store=Shelf())
-    assert [c.status for c in kept] == ["interrupted"] * 3
-    assert np.array_equal(kept[-1].extinction, solution.cube.extinction)
-    assert solution.cube.status == "complete"
-    solve(frames, cube.grid, iterations=3, store=Shelf(), callback=lambda step: True)
-    assert len(kept) == 5
-
-
 @pytest.mark.parametrize("elevation", [0.0, 35.0])
 def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation: float) -> None:
     """One pixel of a redundant set is made wrong; Gauss-Seidel must name it."""
@@ -170,14 +152,6 @@ def test_frames_of_another_grid_are_refused() -> None:
     cube = known_cube(2, 0.0, power=1.0)
     with pytest.raises(InputError, match="larger than"):
         solve(Frames(play(cube), cube.views), Grid((2, 2, 2), 0.5))
-
-
-def test_memory_grows_with_the_cube_the_pictures_and_the_matrix() -> None:
-    small = memory_needed("display", Grid((8, 8, 8)), (8, 8), 4)
-    assert memory_needed("display", Grid((16, 16, 16)), (8, 8), 4) > 4 * small
-    assert memory_needed("display", Grid((8, 8, 8)), (16, 16), 64) > 4 * small
-    assert memory_needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4) > small
-    assert memory_needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4, 35.0) > 2 * small
 
 
 @pytest.mark.parametrize("elevation", [0.0, 35.0])

@@ -9,6 +9,7 @@ from PIL import Image
 
 from lightcube import load, score, solving
 from lightcube.backward import QUALITIES
+from lightcube.cli_options import Options
 from lightcube.errors import InputError
 from lightcube.forward import play, views_at
 from tests.test_cli import frames, run
@@ -150,10 +151,10 @@ def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, qual
 
 def test_options_are_settled_before_anything_is_read() -> None:
     with pytest.raises(InputError, match="--paper"):
-        solving.settled(solving.Options(paper=True, hold=1.0))
-    assert solving.settled(solving.Options(method="cgls")).lamp == "fixed"
-    assert solving.settled(solving.Options()).power == 16
-    assert solving.settled(solving.Options(paper=True)).power == 1
+        solving.settled(Options(paper=True, hold=1.0))
+    assert solving.settled(Options(method="cgls")).lamp == "fixed"
+    assert solving.settled(Options()).power == 16
+    assert solving.settled(Options(paper=True)).power == 1
 
 
 @pytest.mark.parametrize(

@@ -20,18 +20,23 @@ from hypothesis.extra import numpy as st_numpy
 
 from lightcube.cube import Cube
 from lightcube.errors import InputError
+from lightcube.frames import Frames
 from lightcube.geometry import Grid, Views, turntable
 from lightcube.io import (
+    DiskStore,
     UnfinishedCube,
     _zarr,
     check_cube_target,
     discard_partial,
     load,
+    open_partial,
     partial_path,
     publish,
     save,
-    write_partial,
 )
+from lightcube.job import Job
+from lightcube.pieces import solve_piece
+from lightcube.solution import merged
 
 SUFFIXES = (".zarr", ".zarr.zip", ".npz")
 MANY = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -463,119 +468,53 @@ def test_an_interrupted_cube_loads_with_a_warning(tmp_path: Path, suffix: str) -
     assert caught[0].filename == __file__
 
 
+def begun(out: Path, *pieces: str) -> Job:
+    """A partial folder with some pieces of a job in it."""
+    views = turntable(Grid((3, 5, 7)), [10.0, 80.0], picture_shape=(3, 5))
+    frames = Frames(np.full((2, 3, 5, 3), 0.5, np.float32), views)
+    job = Job(frames, Grid((3, 5, 7)), method="sirt", lamp="fixed", lamp_power=1.0, iterations=2, units=2)
+    store = open_partial(out, job)
+    for name in pieces:
+        solve_piece(job, name, store)
+    return job
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 class TestPartial:
-    def test_write_load_publish(self, tmp_path: Path, suffix: str) -> None:
+    def test_begin_load_publish(self, tmp_path: Path, suffix: str) -> None:
         out = tmp_path / f"a{suffix}"
-        partial = write_partial(out, make((5, 3, 7), status="interrupted"))
-        assert partial == partial_path(out) == tmp_path / f"a{suffix}.partial"
-        write_partial(out, make(status="interrupted"))
-        assert len(files_in(partial)) == 1
+        begun(out, "unit-0")
+        assert files_in(tmp_path) == [f"a{suffix}.partial"]
         with pytest.warns(UnfinishedCube, match="still being made"):
-            assert_same(load(partial), make(status="interrupted"))
-        assert publish(partial) == out
+            reached = load(partial_path(out))
+        assert reached.status == "interrupted"
+        assert publish(partial_path(out)) == out
         assert files_in(tmp_path) == [out.name]
         with pytest.warns(UnfinishedCube, match="stopped early"):
-            assert_same(load(out), make(status="interrupted"))
+            assert_same(load(out), reached)
 
-    def test_a_complete_one_is_published_complete(self, tmp_path: Path, suffix: str) -> None:
+    def test_a_finished_one_is_published_complete(self, tmp_path: Path, suffix: str) -> None:
         out = tmp_path / f"a{suffix}"
-        partial = write_partial(out, make())
+        job = begun(out, "unit-0", "unit-1")
         with pytest.warns(UnfinishedCube, match="still being made"):
-            assert_same(load(partial), make())
-        assert_same(load(publish(partial)), make())
-
-    def test_the_newest_state_counts(self, tmp_path: Path, suffix: str) -> None:
-        out = tmp_path / f"a{suffix}"
-        (state,) = write_partial(out, make((5, 3, 7))).iterdir()
-        state.rename(state.with_name("state-9"))
-        save(make((5, 3, 7)), tmp_path / "old.zarr")
-        write_partial(out, make())
-        (tmp_path / "old.zarr").rename(partial_path(out) / "state-9")
-        assert files_in(partial_path(out)) == ["state-10", "state-9"]
-        assert_same(load(publish(partial_path(out))), make())
+            whole = load(partial_path(out))
+        assert_same(whole, merged(job, DiskStore(partial_path(out))).cube)
+        assert_same(load(publish(partial_path(out))), whole)
 
     def test_publish_overwrites_only_when_asked(self, tmp_path: Path, suffix: str) -> None:
         out = save(make((5, 3, 7)), tmp_path / f"a{suffix}")
-        partial = write_partial(out, make())
+        begun(out, "unit-0", "unit-1")
         with pytest.raises(InputError, match="exists already"):
-            publish(partial)
-        assert partial.is_dir()
+            publish(partial_path(out))
+        assert partial_path(out).is_dir()
         assert_same(load(out), make((5, 3, 7)))
-        publish(partial, overwrite=True)
-        assert_same(load(out), make())
-
-    def test_a_kill_at_any_moment_leaves_a_whole_state(
-        self, tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        """Stop before each step that touches the disk: what is found then is the old cube or the new one."""
-        out = tmp_path / f"a{suffix}"
-        old, new = make(status="interrupted"), make((5, 3, 7), status="interrupted")
-
-        class Killed(BaseException):
-            pass
-
-        steps = 0
-        allowed = 0
-
-        def step(real: Any) -> Any:
-            def counted(*args: Any, **keys: Any) -> Any:
-                nonlocal steps
-                steps += 1
-                if steps > allowed:
-                    raise Killed
-                return real(*args, **keys)
-
-            return counted
-
-        seen = set()
-        for allowed in range(100):  # noqa: B007 - read by `counted`
-            shutil.rmtree(partial_path(out), ignore_errors=True)
-            write_partial(out, old)
-            steps = 0
-            with monkeypatch.context() as patch:
-                patch.setattr(zarr.storage.LocalStore, "set", step(zarr.storage.LocalStore.set))
-                patch.setattr(Path, "rename", step(Path.rename))
-                patch.setattr(shutil, "rmtree", step(shutil.rmtree))
-                try:
-                    write_partial(out, new)
-                    finished = True
-                except Killed:
-                    finished = False
-            with pytest.warns(UnfinishedCube):
-                found = load(partial_path(out))
-            assert_same(found, new if found.grid.shape == (5, 3, 7) else old)
-            seen.add(found.grid.shape)
-            if finished:
-                break
-        assert finished
-        assert seen == {(3, 5, 7), (5, 3, 7)}
-        write_partial(out, new)
-        assert len(files_in(partial_path(out))) == 1
-
-    def test_a_full_disk_keeps_the_state_before(
-        self, tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
-        out = tmp_path / f"a{suffix}"
-
-        def full(*_: Any, **__: Any) -> None:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-        with monkeypatch.context() as patch:
-            patch.setattr(zarr.storage.LocalStore, "set", full)
-            with pytest.raises(InputError, match="no space"):
-                write_partial(out, make())
-            assert files_in(tmp_path) == []
-        write_partial(out, make())
-        before = content(tmp_path)
-        monkeypatch.setattr(zarr.storage.LocalStore, "set", full)
-        with pytest.raises(InputError, match="no space"):
-            write_partial(out, make((5, 3, 7)))
-        assert content(tmp_path) == before
+        publish(partial_path(out), overwrite=True)
+        assert load(out).grid.shape == (3, 5, 7)
+        assert files_in(tmp_path) == [out.name]
 
     def test_discard(self, tmp_path: Path, suffix: str) -> None:
         out = tmp_path / f"a{suffix}"
-        write_partial(out, make())
+        begun(out, "unit-0")
         discard_partial(out)
         assert files_in(tmp_path) == []
 
@@ -591,9 +530,14 @@ class TestPartial:
     def test_an_empty_or_foreign_folder_is_refused(self, tmp_path: Path, suffix: str) -> None:
         out = tmp_path / f"a{suffix}"
         partial_path(out).mkdir()
-        with pytest.raises(InputError, match="no state"):
+        with pytest.raises(InputError, match="nothing of a cube"):
+            publish(partial_path(out))
+        begun(out)
+        with pytest.raises(InputError, match="nothing of a cube"):
             publish(partial_path(out))
         (partial_path(out) / "thesis.tex").write_text("years of work")
         with pytest.raises(InputError, match="no unfinished cube"):
             discard_partial(out)
-        assert files_in(partial_path(out)) == ["thesis.tex"]
+        with pytest.raises(InputError, match="is none"):
+            begun(out)
+        assert files_in(partial_path(out)) == ["frames.npz", "job.json", "thesis.tex"]

@@ -1,12 +1,12 @@
 """Pictures in, a cube of coloured shadows out."""
 
-from lightcube.backward import Solution, solve
+from lightcube.backward import solve
 from lightcube.conditioning import best_order
 from lightcube.consistency import check
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import fit
-from lightcube.forward import cast, lamp_at, play, views_at
+from lightcube.forward import cast, lamp_at, play, player, views_at
 from lightcube.frames import Frames, Pictures
 from lightcube.geometry import Grid, Views, spread_angles, turntable
 from lightcube.io import load, publish, read_pictures, read_scene, save, write_pictures
@@ -16,6 +16,7 @@ from lightcube.prediction import Prediction, predict
 from lightcube.projector import Projector, dot_test
 from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_frames, scene_views
+from lightcube.solution import Solution
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
 
@@ -42,6 +43,7 @@ __all__ = [
     "load",
     "plan",
     "play",
+    "player",
     "predict",
     "publish",
     "read_pictures",

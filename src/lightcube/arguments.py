@@ -1,5 +1,6 @@
 """What the texts and numbers of the command line mean."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,23 @@ def whole_numbers(text: str, separator: str, option: str, count: int) -> list[in
         example = separator.join(["64", "48", "32"][:count])
         raise InputError(f"{option} {text}: give {count} whole numbers of at least 1, such as {example}")
     return [int(part) for part in parts]
+
+
+def memory(text: str) -> int:
+    """Bytes that a text such as 2GB, 512MB or 1.5GiB means."""
+    match = re.fullmatch(r"([0-9]+(?:\.[0-9]*)?)\s*([KMGT]?)(i?)B?", text.strip(), re.IGNORECASE)
+    size = float(match[1]) * (1024 if match[3] else 1000) ** " KMGT".index(match[2].upper() or " ") if match else 0
+    if not 1 <= size < 1e18:
+        raise InputError(f"--memory {text}: give a number with its unit, such as 2GB, 512MB or 1.5GiB")
+    return int(size)
+
+
+def unit(text: str) -> tuple[int, int]:
+    """``(I, N)`` of a text I/N with 1 <= I <= N."""
+    which, of = whole_numbers(text, "/", "--unit", 2)
+    if which > of:
+        raise InputError(f"--unit {text}: give the number of a unit and how many there are, such as 1/{of}")
+    return which, of
 
 
 def voxels(n: int | None, shape: str | None, size_mm: float) -> tuple[int, int, int]:

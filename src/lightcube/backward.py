@@ -1,71 +1,33 @@
 """Program 2, the backward computation: from pictures to the cube that casts them."""
 
-import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from importlib.metadata import version
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike
 
-from lightcube.coarse import enlarged
-from lightcube.cube import Cube, Status
 from lightcube.errors import InputError
-from lightcube.fitting import targets
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, raster_shape
-from lightcube.problem import BLACK, Lamp, pose
+from lightcube.job import LAMP_MIN, Job
+from lightcube.needs import MEMORY, fewest_units
+from lightcube.pieces import Watching, solve_pieces
+from lightcube.problem import BLACK, Lamp, is_level
+from lightcube.solution import Solution, merged
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Solver
-from lightcube.units import COARSE_PASSES, Step, Store, Watch, coarser, solve_levels, solve_units
+from lightcube.store import MemoryStore, Store
+from lightcube.units import most_units
 
-#: Bounds of the power of a lamp that is not fixed, unless the upper one is given.
-LAMP_MIN, LAMP_MAX = 1e-4, 16.0
+#: Largest power of a lamp that is not fixed, unless another one is given.
+LAMP_MAX = 16.0
 #: No lamp may be stronger.
 LAMP_MOST = 1e6
 #: At most so many passes of method display, and the PSNR of all pixels, dB, that is enough: for a look, for use, and
 #: for the last tenth of a dB.
 Quality = Literal["draft", "normal", "best"]
 QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 36.0), "normal": (200, 42.0), "best": (1000, np.inf)}
-
-
-@dataclass(frozen=True)
-class Solution:
-    """A cube and how the solver arrived at it.
-
-    Parameters
-    ----------
-    cube
-        What was solved for.
-    residuals
-        One figure per iteration, in the norm of the method.
-    rejected
-        ``(count, 4)`` whole numbers: (view, row, column, channel) of pixels thrown out as inconsistent.
-    undetermined
-        How many voxel colours no remaining equation determines; they are transparent.
-    stop_reason
-        One of ``"converged"``, ``"enough"``, ``"iterations"``, ``"callback"``.
-    lower_bound
-        What no cube and no lamps (with lamp ``"coarse"``: these lamps) can bring the last residual below, or None
-        where the method does not tell.
-    """
-
-    cube: Cube
-    residuals: NDArray[np.float64]
-    rejected: NDArray[np.int64]
-    undetermined: int
-    stop_reason: str
-    lower_bound: float | None = None
-
-    @property
-    def optimality(self) -> dict[str, float] | None:
-        """The objective, what it cannot be below, and how many dB at most are left to gain on average, if known."""
-        if self.lower_bound is None:
-            return None
-        reached = float(self.residuals[-1])
-        most = 10 * math.log10(reached / self.lower_bound) if 0 < self.lower_bound < reached else None
-        return {"objective": reached, "lower_bound": self.lower_bound} | ({} if most is None else {"left_db": most})
 
 
 def solve(
@@ -81,8 +43,10 @@ def solve(
     max_extinction: float = np.inf,
     iterations: int | None = None,
     enough_db: float = np.inf,
-    dtype: type[np.floating[Any]] = np.float32,
-    callback: Callable[[Step], bool | None] | None = None,
+    dtype: DTypeLike = np.float32,
+    units: int | None = None,
+    memory: int | None = None,
+    callback: Watching | None = None,
     store: Store | None = None,
     provenance: Mapping[str, Any] | None = None,
 ) -> Solution:
@@ -101,8 +65,7 @@ def solve(
         A name in `lightcube.solvers.METHODS`.
     lamp
         ``"per-view"``: each view and colour has the lamp power that suits it best; ``"global"``: each colour has one
-        for all views; ``"coarse"``: as per-view, but found at half the size and then kept, so that colours (slabs of
-        slices where the lamp is level) are solved one after the other in a part of the memory; ``"fixed"``: all have
+        for all views; ``"coarse"``: as per-view, but found at half the size and then kept; ``"fixed"``: all have
         `lamp_power`. Default per-view, but fixed where `lamp_power` is given or the method cannot choose.
     lamp_power
         Power of a fixed lamp, linear light; 1 (the default) shows white where a beam meets nothing.
@@ -122,10 +85,19 @@ def solve(
         linearised) is as small as at this PSNR, dB.
     dtype
         Of the computation: float32 or float64.
+    units
+        In so many parts the cube is solved, one after the other and each in its part of the memory: colours, or slabs
+        of slices where the lamp is level. With more than one the powers of lamps that are not fixed are found at half
+        the size and then kept. Default as few as fit `memory`, or as many as can be where none fits.
+    memory
+        Bytes; default 4e9. What callback, store and the finished units themselves take comes on top.
     callback
         Called after each iteration; True stops the solver, and the cube's status becomes ``"interrupted"``.
     store
-        Keeps an unfinished cube after 2 s at full size, ever more seldom up to every 30 s, and when stopped.
+        Keeps the pieces that are finished, and the state of the running one after 2 s, ever more seldom up to every
+        30 s, and when stopped; what is in it already is not computed again, and a solver that was stopped goes on
+        from its state: the cube is the same, bit for bit, as that of a run without a stop. It must have been used
+        for this very job only (`lightcube.io.DiskStore` sees to that).
     provenance
         What else the cube shall remember of how it was made.
 
@@ -134,56 +106,72 @@ def solve(
     InputError
         For an unknown method, numbers out of range, or frames that do not belong to the grid.
     """
+    job = make_job(
+        frames,
+        grid,
+        method=method,
+        lamp=lamp,
+        lamp_power=lamp_power,
+        lamp_max=lamp_max,
+        hold=hold,
+        black=black,
+        max_extinction=max_extinction,
+        iterations=iterations,
+        enough_db=enough_db,
+        dtype=dtype,
+        units=units,
+        memory=memory,
+        provenance=provenance,
+    )
+    return run(job, store, callback)
+
+
+def run(job: Job, store: Store | None = None, callback: Watching | None = None) -> Solution:
+    """Solve what is not finished of a job, and put the cube together; `store` and `callback` as `solve` takes them."""
+    shelf = MemoryStore() if store is None else store
+    solve_pieces(job, job.pieces, shelf, callback, checkpoints=store is not None)
+    return merged(job, shelf)
+
+
+def make_job(
+    frames: Frames,
+    grid: Grid,
+    *,
+    method: str = "display",
+    lamp: Lamp | None = None,
+    lamp_power: float | None = None,
+    lamp_max: float | None = None,
+    hold: float = 0.0,
+    black: float = BLACK,
+    max_extinction: float = np.inf,
+    iterations: int | None = None,
+    enough_db: float = np.inf,
+    dtype: DTypeLike = np.float32,
+    units: int | None = None,
+    memory: int | None = None,
+    provenance: Mapping[str, Any] | None = None,
+) -> Job:
+    """Check what `solve` is asked for, and leave nothing open; parameters and errors as there."""
     kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations, black)
     check_frames(frames, grid)
-    problem = pose(frames, grid, hold, kind, black, dtype)
-    power = float(lamp_power or lamp_max or (1.0 if kind == "fixed" else LAMP_MAX))
-    made = {
-        "lightcube": version("lightcube"),
-        "method": method,
-        "lamp": kind,
-        "lamp_power" if kind == "fixed" else "lamp_max": power,
-        "max_extinction": None if np.isinf(max_extinction) else float(max_extinction),
-        "black": float(black),
-        "angles_per_view": problem.angles,
-        **(provenance or {}),
-    }
-    draft = Cube(
-        extinction=np.zeros((problem.channels, *grid.shape), np.float32),
+    job = Job(
+        frames=frames,
         grid=grid,
-        views=frames.views,
-        targets=targets(frames),
-        names=frames.names,
-        transfer=frames.transfer,
-        status="interrupted",
-        hold_deg=float(hold),
-        provenance=made,
+        method=method,
+        lamp=kind,
+        lamp_power=float(lamp_power or lamp_max or (1.0 if kind == "fixed" else LAMP_MAX)),
+        hold=float(hold),
+        black=float(black),
+        max_extinction=float(max_extinction),
+        iterations=iterations or (QUALITIES["normal"][0] if method == "display" else None),
+        enough_db=float(enough_db),
+        dtype=np.dtype(dtype).name,
+        provenance=dict(provenance or {}),
     )
-    powers = np.full((1 if kind == "global" else len(frames), problem.channels), power)
-    lamp_bounds = (powers if kind == "fixed" else np.full_like(powers, LAMP_MIN), powers)
-    smaller = coarser(frames, grid, at_least=int(kind == "coarse")) if method == "display" else []
-    levels = [pose(*each, hold, kind, black, dtype) for each in smaller]
-    options: dict[str, Any] = {"bounds": (0.0, max_extinction), "transfer": frames.transfer}
-    passes = iterations or (QUALITIES["normal"][0] if method == "display" else None)
-    ahead = sum(COARSE_PASSES / 8**k for k in range(1, len(levels) + 1))
-    enough = 10 ** (-enough_db / 10) if method == "display" else 0.0
-    watch = Watch(draft, callback, store, ahead, passes, enough)
-    start, found, going = solve_levels(levels, lamp_bounds, watch, **options)
-    if kind == "coarse":
-        lamp_bounds = (found, found)
-    if passes is not None:
-        options["iterations"] = passes if going else 1
-    x = None if start is None else problem.unknowns(enlarged(start, grid.shape))
-    parts = problem.units() if kind == "coarse" else [slice(None)]
-    result = solve_units(find_method(method), problem, lamp_bounds, x, parts, watch, **options)
-    rejected = problem.pixels(result.rejected)
-    made |= {"iterations": len(result.residuals), "stop_reason": result.stop_reason, "rejected": len(rejected)}
-    status: Status = "interrupted" if result.stop_reason == "callback" else "complete"
-    cube = replace(watch.cube(problem, result.x, result.lamp_powers), provenance=made, status=status)
-    if store is not None and status == "interrupted":
-        store.keep(cube)
-    undetermined = 0 if result.undetermined is None else int(np.sum(result.undetermined))
-    return Solution(cube, result.residuals, rejected, undetermined, result.stop_reason, result.lower_bound)
+    most = most_units(grid.shape, job.channels, level=is_level(grid, frames.views))
+    if units is not None and not 1 <= units <= most:
+        raise InputError(f"this cube can be solved in 1 to {most} units, not in {units}: ask for a number between")
+    return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)
 
 
 def find_method(name: str) -> Solver:
@@ -203,21 +191,6 @@ def check_frames(frames: Frames, grid: Grid) -> None:
             f"pictures of {rows} x {columns} pixels (rows x columns) are larger than "
             f"the cube's screen of {most_rows} x {most_columns}: fit them to this grid first"
         )
-
-
-def memory_needed(method: str, grid: Grid, picture_shape: tuple[int, int], views: int, elevation: float = 0.0) -> int:
-    """Bytes that `solve` needs at its peak, in float32 with three channels, from measured counts of arrays.
-
-    Methods that need single rows also hold the sparse matrix: about 1.3 voxels per beam and voxel of the cube's width.
-    """
-    rows, columns = picture_shape
-    nz, ny, nx = grid.shape
-    arrays = 4 * 3 * ((18 if method == "cgls" else 12) * nz * ny * nx + 10 * rows * columns * views)
-    if method not in ("gauss-seidel", "row-reduction"):
-        return arrays
-    level = elevation == 0 and rows == nz
-    pieces = 1.3 * max(ny, nx) + (0 if level else min(nz, 1.3 * max(ny, nx) * math.tan(math.radians(abs(elevation)))))
-    return arrays + int(60 * pieces * columns * views * (1 if level else rows))
 
 
 def _check_lamp(method: str, lamp: Lamp | None, lamp_power: float | None, lamp_max: float | None) -> Lamp:

@@ -11,35 +11,18 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from lightcube import arguments, backward, between, demo, forward, io, metrics, plots, reports, solving
-from lightcube.cli_options import (
-    ANGLES,
-    BLACK_LEVEL,
-    ELEVATION,
-    FIT,
-    FRAME_WIDTH,
-    FRAMES,
-    HOLD,
-    LAMP,
-    LAMP_MAX,
-    LAMP_POWER,
-    MAX_EXTINCTION,
-    ORDER,
-    PAPER,
-    SHAPE,
-    SHIFT,
-    SPAN,
-    TRANSFER,
-    N,
-)
-from lightcube.console import ctrl_c, err, json_document, json_line, out, plain_warnings, prepare, progress
+from lightcube import arguments, between, demo, forward, io, metrics, plots, reports, running, solving
+from lightcube.cli_options import FRAMES, Options, one_by_one
+from lightcube.console import err, json_document, json_line, out, plain_warnings, prepare, progress
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import check_fit, fit_to_views, frames_from_targets
 from lightcube.frames import Frames
+from lightcube.job import Job
+from lightcube.needs import job_memory
 from lightcube.scene.tracer import scene_frames, scene_views
 from lightcube.sheet import beside_targets, contact_sheet
-from lightcube.units import Step
+from lightcube.solution import merged
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -89,48 +72,10 @@ def trace(
 
 
 @app.command()
-def check(
-    frames: FRAMES,
-    n: N = None,
-    shape: SHAPE = None,
-    frame_width: FRAME_WIDTH = None,
-    fit_mode: FIT = "crop",
-    angles: ANGLES = None,
-    span: SPAN = None,
-    elevation: ELEVATION = None,
-    paper: PAPER = False,
-    order: ORDER = "given",
-    shift: SHIFT = 0,
-    lamp: LAMP = None,
-    lamp_power: LAMP_POWER = None,
-    lamp_max: LAMP_MAX = None,
-    hold: HOLD = None,
-    black: BLACK_LEVEL = None,
-    max_extinction: MAX_EXTINCTION = None,
-    transfer: TRANSFER = "srgb",
-    as_json: Annotated[bool, JSON] = False,
-) -> None:
+@one_by_one
+def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
     """Say before solving what can be known: what contradicts itself, how full the cube is, how good it will be."""
-    said = solving.Options(
-        n=n,
-        shape=shape,
-        frame_width=frame_width,
-        fit=fit_mode,
-        angles=angles,
-        span=span,
-        elevation=elevation,
-        paper=paper,
-        order=order,
-        shift=shift,
-        lamp=lamp,
-        lamp_power=lamp_power,
-        lamp_max=lamp_max,
-        hold=hold,
-        black=black,
-        max_extinction=max_extinction,
-        transfer=transfer,
-    )
-    options = solving.settled(said)
+    options = solving.settled(options)
     with err.status("rehearsing"):
         prepared = solving.prepare(frames, options)
     advice = solving.what_to_change(prepared, options)
@@ -143,97 +88,74 @@ def check(
 
 
 @app.command()
+@one_by_one
 def solve(
     frames: FRAMES,
     output: Annotated[Path, OUT],
-    n: N = None,
-    shape: SHAPE = None,
-    size_mm: Annotated[float, typer.Option(help="Longest side of the cube in mm.")] = 100.0,
-    frame_width: FRAME_WIDTH = None,
-    fit_mode: FIT = "crop",
-    angles: ANGLES = None,
-    span: SPAN = None,
-    elevation: ELEVATION = None,
-    paper: PAPER = False,
-    order: ORDER = "given",
-    shift: SHIFT = 0,
-    quality: Annotated[
-        backward.Quality | None,
-        typer.Option(help="At most 30, 200 or 1000 passes.  [default: normal]"),
+    options: Options,
+    memory: Annotated[
+        str | None, typer.Option(help="Use at most so much, 2GB or 512MB, by solving in parts.  [default: 4GB]")
     ] = None,
-    method: Annotated[str, typer.Option(help=f"One of {', '.join(backward.METHODS)}.")] = "display",
-    iterations: Annotated[int | None, typer.Option(help="At most so many passes, instead of --quality.")] = None,
-    lamp: LAMP = None,
-    lamp_power: LAMP_POWER = None,
-    lamp_max: LAMP_MAX = None,
-    hold: HOLD = None,
-    black: BLACK_LEVEL = None,
-    max_extinction: MAX_EXTINCTION = None,
-    transfer: TRANSFER = "srgb",
+    unit: Annotated[
+        str | None, typer.Option(help="Solve only unit I of N, I/N; merge makes the cube when all are there.")
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what memory and time it takes, and solve nothing.")
+    ] = False,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Compute the cube whose shadows are the frames."""
+    """Compute the cube whose shadows are the frames; what was stopped or killed goes on where it was."""
     io.check_cube_target(output, overwrite=overwrite)
-    _check_partial(output, overwrite=overwrite)
-    said = solving.Options(
-        n=n,
-        shape=shape,
-        size_mm=size_mm,
-        frame_width=frame_width,
-        fit=fit_mode,
-        angles=angles,
-        span=span,
-        elevation=elevation,
-        paper=paper,
-        order=order,
-        shift=shift,
-        method=method,
-        lamp=lamp,
-        lamp_power=lamp_power,
-        lamp_max=lamp_max,
-        hold=hold,
-        black=black,
-        max_extinction=max_extinction,
-        quality=quality,
-        iterations=iterations,
-        transfer=transfer,
-    )
-    options = solving.settled(said)
+    io.check_partial(output)
+    if unit is not None and memory is not None:
+        raise InputError("--unit and --memory both say how many units there are: leave one of them out")
+    which, units = (None, None) if unit is None else arguments.unit(unit)
+    budget = None if memory is None else arguments.memory(memory)
+    options = solving.settled(options)
     with err.status("rehearsing"):
         prepared = solving.prepare(frames, options)
-    solving.check_room(prepared, options)
+    job = solving.job(prepared, options, memory=budget, units=units)
+    if dry_run:
+        with err.status("timing a smaller cube"):
+            needs = solving.needs(job)
+        _done(as_json, reports.needed(needs), **needs)
+        return
+    solving.check_memory(job_memory(job))
     if not as_json:
         for line in [*solving.in_short(prepared, options), *solving.what_to_change(prepared, options)]:
             err.print(line)
+    del prepared  # pictures as they were read
     began = time.monotonic()
-    with ctrl_c() as stopped, progress("solving", as_json=as_json) as advance:
-        looked = 0.0
-
-        def step(step: Step) -> bool:
-            nonlocal looked
-            figures = {}
-            if step.shown is not None and time.monotonic() - looked > 1.0:  # looking costs as much as half a pass
-                figures = {"PSNR": metrics.mean_psnr(step.shown(), prepared.frames)}
-                looked = time.monotonic()
-            advance(round(step.done * step.iterations), step.iterations, **figures)
-            return stopped()
-
-        solution = solving.solve(prepared, options, callback=step, store=io.PartialStore(output))
-    cube = solution.cube
-    if cube.status == "interrupted":
-        partial = io.partial_path(output)
-        err.print(f"interrupted: {partial} holds what was reached; publish it with")
-        err.print(f"  lightcube publish {partial}")
+    store = io.open_partial(output, job, overwrite=overwrite)
+    pieces = job.pieces if which is None else job.pieces_of(which - 1)
+    if not running.run(job, pieces, store, as_json=as_json):
+        err.print(f"interrupted: {store.folder} holds what was reached; the same command goes on; to publish that, use")
+        err.print(f"  lightcube publish {store.folder}")
         raise typer.Exit(130)
-    scores = metrics.score(cube, prepared.frames)
-    io.publish(io.write_partial(output, replace(cube, scores=scores)), overwrite=overwrite)
-    seconds = time.monotonic() - began
-    if as_json:
-        predicted = solving.said(prepared.plan.prediction)
-        json_line("result", out=str(output), seconds=seconds, **reports.facts(solution), predicted=predicted, **scores)
+    if which is None:
+        _finish(job, store, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
     else:
-        reports.solved(solution, scores, output, seconds)
+        _done(as_json, f"unit {which} of {units} is in {store.folder}", out=str(store.folder), unit=which, units=units)
+
+
+@app.command()
+def merge(
+    partial: Annotated[Path, typer.Argument(help="The unfinished cube, NAME.zarr.partial, with all its units.")],
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Make the cube of units that were solved one by one."""
+    output = io.published_path(partial)
+    io.check_cube_target(output, overwrite=overwrite)
+    began, store = time.monotonic(), io.DiskStore(partial)
+    job = io.load_job(partial)
+    missing = [str(number) for number, name in enumerate(job.unit_names, 1) if name not in store.names()]
+    if missing:
+        raise InputError(
+            f"{partial} lacks unit {', '.join(missing)} of {job.units}: solve with --unit {missing[0]}/{job.units}"
+        )
+    _finish(job, store, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
 
 
 @app.command()
@@ -350,6 +272,28 @@ def publish(
     out.print(f"{io.publish(partial, overwrite=overwrite)}")
 
 
+@app.command()
+def bench(
+    n: Annotated[int, typer.Option("--n", min=2, max=2000, help="Voxels along each side of the cube.")] = 300,
+    views: Annotated[
+        int | None, typer.Option(min=1, max=100_000, help="Number of pictures.  [default: as many as voxels]")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Time everything once only; the figures scatter.")] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Measure this machine and what lightcube makes of it, beside others: tables in Markdown."""
+    from lightcube import bench as benches
+    from lightcube.bench.report import markdown
+
+    pictures = n if views is None else views
+    solving.check_memory(benches.memory(n, pictures))
+    found = benches.measure(n, pictures, lambda what: err.print(f"{what} ..."), quick=quick)
+    if as_json:
+        json_document(found)
+    else:
+        out.print("\n".join(markdown(found)))
+
+
 @app.command("demo")
 def demo_command(
     output: Annotated[Path, typer.Option("-o", "--out", help="Folder for what the demo makes.")] = Path("out"),
@@ -398,15 +342,17 @@ def _done(as_json: bool, sentence: str, **fields: object) -> None:
         out.print(sentence)
 
 
-def _check_partial(output: Path, *, overwrite: bool) -> None:
-    """Refuse to run over an interrupted solve unless it is to be replaced; never touch what is none."""
-    partial = io.partial_path(output)
-    if not partial.exists():
-        return
-    if not io.is_partial(partial):
-        raise InputError(f"{partial} stands where the unfinished cube would, and is none: move it or use another name")
-    if not overwrite:
-        raise InputError(f"{partial} holds an interrupted solve: publish it, or use --overwrite to start anew")
+def _finish(job: Job, store: io.DiskStore, output: Path, seconds: float, *, overwrite: bool, as_json: bool) -> None:
+    """Make the cube of a job that is finished, score it, and say so."""
+    solution = merged(job, store)
+    scores = metrics.score(solution.cube, job.frames)
+    io.save(replace(solution.cube, scores=scores), output, overwrite=overwrite)
+    io.discard_partial(output)
+    if as_json:
+        predicted = solution.cube.provenance.get("predicted")
+        json_line("result", out=str(output), seconds=seconds, **reports.facts(solution), predicted=predicted, **scores)
+    else:
+        reports.solved(solution, scores, output, seconds)
 
 
 def _counted(

@@ -21,20 +21,26 @@ def halved(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
     small = Grid(((nz + 1) // 2, (ny + 1) // 2, (nx + 1) // 2), 2 * grid.voxel_mm)
     rows, columns = frames.views.picture_shape
     down, across = _halving(rows), _halving(columns)
-    weight = np.einsum("ir,vrc,jc->vij", down, frames.weight, across, optimize=True)
-    light = np.einsum("ir,vrck,jc->vijk", down, frames.pictures * frames.weight[..., None], across, optimize=True)
-    pictures = np.divide(light, weight[..., None], out=np.ones_like(light), where=weight[..., None] > 0)
     views = frames.views
     shape = (len(down), len(across))
+    weight = np.empty((len(frames), *shape), np.float32)
+    pictures = np.ones((*weight.shape, frames.pictures.shape[-1]), np.float32)
+    for view, picture in enumerate(frames.pictures):  # one by one, for the memory
+        weight[view] = down @ frames.weight[view] @ across.T
+        light = np.einsum("ir,rck,jc->ijk", down, picture * frames.weight[view, ..., None], across, optimize=True)
+        part = weight[view, ..., None]
+        np.divide(light, part, out=pictures[view], where=part > 0)
     halves = Views(views.lamps, views.origins, 2 * views.column_steps, 2 * views.row_steps, shape)
-    return Frames(pictures.astype(np.float32), halves, weight.astype(np.float32), frames.names, frames.transfer), small
+    return Frames(pictures, halves, weight, frames.names, frames.transfer), small
 
 
-def enlarged(volume: Array, shape: tuple[int, int, int]) -> Array:
-    """`volume` ``(channel, z, y, x)`` at the voxels of a grid of `shape`, half as large: trilinear."""
+def enlarged(volume: Array, shape: tuple[int, int, int], slices: slice | None = None) -> Array:
+    """`volume` ``(channel, z, y, x)`` at the voxels, or some slices, of a grid of `shape`, half as large: trilinear."""
     for axis, count in enumerate(shape, 1):
         coarse = volume.shape[axis]
         place = (np.arange(count) - (count - 1) / 2) / 2 + (coarse - 1) / 2
+        if axis == 1 and slices is not None:
+            place = place[slices]
         below = np.clip(np.floor(place).astype(int), 0, coarse - 1)
         above = np.clip(below + 1, 0, coarse - 1)
         part = np.clip(place - below, 0, 1).astype(volume.dtype).reshape([-1] + [1] * (3 - axis))

@@ -138,10 +138,12 @@ def targets(frames: Frames) -> NDArray[np.uint8]:
 
     Weights are scaled so that the largest is 255; none that is above 0 becomes 0.
     """
-    weight = frames.weight
-    scaled = np.rint(weight.astype(np.float64) / float(weight.max()) * 255)
-    levels = np.where(weight > 0, np.maximum(scaled, 1), 0).astype(np.uint8)
-    return np.concatenate([to_uint8(frames.pictures, frames.transfer), levels[..., None]], axis=3)
+    most = float(frames.weight.max())
+    made = np.empty((*frames.pictures.shape[:3], frames.pictures.shape[3] + 1), np.uint8)
+    for levels, picture, weight in zip(made, frames.pictures, frames.weight, strict=True):  # one by one, for the memory
+        levels[..., :-1] = to_uint8(picture, frames.transfer)
+        levels[..., -1] = np.where(weight > 0, np.maximum(np.rint(weight.astype(np.float64) / most * 255), 1), 0)
+    return made
 
 
 def frames_from_targets(cube: Cube) -> Frames:

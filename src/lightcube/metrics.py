@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from skimage.color import deltaE_ciede2000, rgb2lab
-from skimage.metrics import structural_similarity
+from skimage import color
+from skimage import metrics as similarities
 
 from lightcube.cube import Cube
 from lightcube.errors import InputError
@@ -42,7 +42,7 @@ def ssim(shown: Display, wanted: Display, weight: Display) -> float:
     if smallest < 3:
         return float("nan")
     window = min(7, smallest - 1 + smallest % 2)
-    _, similarity = structural_similarity(
+    _, similarity = similarities.structural_similarity(
         shown.astype(np.float64), wanted.astype(np.float64), win_size=window, data_range=1.0, channel_axis=-1, full=True
     )
     return float(np.sum(weight * similarity.mean(axis=-1)) / np.sum(weight))
@@ -50,7 +50,9 @@ def ssim(shown: Display, wanted: Display, weight: Display) -> float:
 
 def delta_e(shown: Display, wanted: Display, weight: Display) -> float:
     """Colour difference CIEDE2000 (D65, sRGB primaries), the weighted mean over pixels."""
-    difference = deltaE_ciede2000(rgb2lab(shown.astype(np.float64)), rgb2lab(wanted.astype(np.float64)))
+    difference = color.deltaE_ciede2000(
+        color.rgb2lab(shown.astype(np.float64)), color.rgb2lab(wanted.astype(np.float64))
+    )
     return float(np.sum(weight * difference) / np.sum(weight))
 
 
@@ -102,10 +104,20 @@ def score_pictures(shown: Iterable[NDArray[np.float32]], frames: Frames) -> dict
     }
 
 
-def mean_psnr(shown: NDArray[np.float32], frames: Frames) -> float:
-    """Mean over pictures of `psnr`, for pictures in linear light ``(view, row, column, channel)``."""
-    display, wanted = encode(shown, frames.transfer), encode(frames.pictures, frames.transfer)
-    return float(np.mean([psnr(*each) for each in zip(display, wanted, frames.weight, strict=True)]))
+def mean_psnr(
+    shown: NDArray[np.float32], frames: Frames, window: tuple[slice, slice] = (slice(None), slice(None))
+) -> float:
+    """Mean over pictures of `psnr`, for pictures in linear light ``(view, row, column, channel)``.
+
+    `shown` are the rows and channels of the frames that `window` says; pictures without weight there do not count.
+    """
+    rows, channels = window
+    each = [
+        psnr(encode(picture, frames.transfer), encode(wanted[rows, :, channels], frames.transfer), weight[rows])
+        for picture, wanted, weight in zip(shown, frames.pictures, frames.weight, strict=True)
+        if np.any(weight[rows])
+    ]
+    return float(np.mean(each)) if each else BEST_DB
 
 
 def check_same_views(cube: Cube, frames: Frames) -> None:

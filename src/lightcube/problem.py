@@ -4,13 +4,14 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from lightcube.frames import Frames
-from lightcube.geometry import Grid, held
+from lightcube.geometry import Grid, Views, held
 from lightcube.layout import columns_from_pictures, columns_from_volume, pictures_from_columns, volume_from_columns
 from lightcube.projector import Projector
 from lightcube.transfer import Transfer, decode
+from lightcube.units import Part
 
 Floats = NDArray[np.floating[Any]]
 Lamp = Literal["per-view", "global", "coarse", "fixed"]
@@ -20,7 +21,9 @@ BLACK = 0.5 / 255
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """The matrix, the wanted light of every beam, and which lamp it belongs to; columns are independent of each other.
+    """The matrix, the wanted light of every beam, and which lamp it belongs to, for a part of the cube.
+
+    Columns are independent of each other.
 
     Parameters
     ----------
@@ -30,8 +33,10 @@ class Problem:
         ``(matrix.shape[0], columns)``, linear light above 0, and at least 0.
     lamp_of_row
         ``(matrix.shape[0],)``: the lamp that each equation belongs to.
-    channels
-        Colours of the pictures: column ``j`` is of colour ``j % channels``.
+    part
+        Colours and slices of the cube; their columns are all that is here.
+    rows
+        Rows of the pictures that the part is seen in.
     stops, angles
         Pictures, and at how many angles each of them is asked for.
     transfer
@@ -42,41 +47,59 @@ class Problem:
     light: Floats
     weights: Floats
     lamp_of_row: NDArray[np.intp]
-    channels: int
+    part: Part
+    rows: slice
     stops: int
     angles: int
     transfer: Transfer
 
-    def units(self) -> list[slice]:
-        """Blocks of columns that may be solved one after the other: colours, or slabs of slices with level lamps."""
-        columns = self.light.shape[1]
-        width = 1 if columns == self.channels else self.channels * -(-columns // (4 * self.channels))
-        return [slice(start, min(start + width, columns)) for start in range(0, columns, width)]
+    @property
+    def channels(self) -> int:
+        """Colours of the part: column ``j`` is of the colour ``j % channels`` of these."""
+        return self.part.colours.stop - self.part.colours.start
+
+    @property
+    def slices(self) -> int:
+        """Slices of the part."""
+        return self.part.slices.stop - self.part.slices.start
 
     def extinction(self, x: Floats) -> Floats:
-        """``(channel, z, y, x)`` of the unknowns `x`."""
-        _, ny, nx = self.matrix.grid.shape
-        return volume_from_columns(x.reshape(ny * nx, -1), self.matrix.grid.shape, self.channels)
+        """``(channel, z, y, x)`` of the unknowns `x`: those of the part."""
+        return volume_from_unknowns(x, (self.slices, *self.matrix.grid.shape[1:]), self.channels)
 
     def unknowns(self, extinction: Floats) -> Floats:
         """Inverse of `extinction`."""
         return columns_from_volume(extinction).reshape(self.matrix.shape[1], -1)
 
-    def shown(self, absorbance: Floats, powers: NDArray[np.float64]) -> NDArray[np.float32]:
-        """``(stop, row, column, channel)``, linear light at the stops themselves, of ``A x`` and the lamps' powers."""
-        shape = self.matrix.views.picture_shape
+    def shown(self, absorbance: Floats, powers: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
+        """What ``A x`` and the lamps' powers show at the stops themselves, linear light.
+
+        ``(stop, row, column, channel)`` of the part: `rows` and colours only.
+        """
+        shape = self.rows.stop - self.rows.start, self.matrix.views.picture_shape[1]
         at_stops = absorbance.reshape(self.stops, self.angles, shape[1], -1)[:, self.angles // 2]
         light = pictures_from_columns(np.exp(-at_stops).reshape(self.stops * shape[1], -1), shape, self.channels)
         return (light * powers[:, None, None, :]).astype(np.float32)
 
     def pixels(self, rejected: NDArray[np.int64]) -> NDArray[np.int64]:
         """(stop, row, column, channel) of rejected (equation, column) pairs, each once."""
-        rows, columns = self.matrix.views.picture_shape
         flat = rejected[:, 0] * self.light.shape[1] + rejected[:, 1]
-        shape = (self.stops * self.angles, columns, rows, self.channels)
+        rows, colours = self.rows, self.part.colours
+        shape = (self.stops * self.angles, self.matrix.views.picture_shape[1], rows.stop - rows.start, self.channels)
         view, column, lifted, channel = np.unravel_index(flat, shape)
-        pixels = np.stack([view // self.angles, rows - 1 - lifted, column, channel], axis=1).astype(np.int64)
-        return np.unique(pixels, axis=0)
+        pixels = [view // self.angles, rows.stop - 1 - lifted, column, colours.start + channel]
+        return np.unique(np.stack(pixels, axis=1).astype(np.int64), axis=0)
+
+
+def volume_from_unknowns(x: Floats, shape: tuple[int, int, int], channels: int) -> Floats:
+    """``(channel, z, y, x)`` of a grid of `shape` ``(nz, ny, nx)`` from the unknowns that a solver finds."""
+    return volume_from_columns(x.reshape(shape[1] * shape[2], -1), shape, channels)
+
+
+def is_level(grid: Grid, views: Views) -> bool:
+    """Tell whether each slice of the cube casts one row of the pictures, by itself."""
+    rows, columns = views.picture_shape
+    return Projector(grid, views).shape[0] == len(views) * columns and rows == grid.shape[0]
 
 
 def pose(
@@ -85,9 +108,12 @@ def pose(
     hold: float,
     lamp: Lamp,
     black: float = BLACK,
-    dtype: type[np.floating[Any]] = np.float32,
+    dtype: DTypeLike = np.float32,
+    part: Part | None = None,
 ) -> Problem:
     """Pose the problem of the cube `grid` whose shadows are `frames`, held for so many degrees on either side.
+
+    Only the columns of `part` are made: None = all colours and slices; some slices only where `is_level`.
 
     Pixels darker than `black`, a display value, are wanted at it. The ends of a hold, with nothing to hold on to
     beyond, count twice: else they are what falls apart first (measured).
@@ -96,7 +122,11 @@ def pose(
     angles = len(views) // len(frames)
     matrix = Projector(grid, views)
     darkest = decode(np.array([black], np.float32), frames.transfer)
-    channels = frames.pictures.shape[-1]
+    high, channels = views.picture_shape[0], frames.pictures.shape[-1]
+    part = part or Part(slice(0, channels), slice(0, grid.shape[0]))
+    rows = slice(0, high)
+    if part.slices != slice(0, grid.shape[0]):
+        rows = slice(high - part.slices.stop, high - part.slices.start)
 
     def block(pictures: Floats) -> Floats:
         return columns_from_pictures(np.repeat(pictures.astype(dtype), angles, axis=0)).reshape(matrix.shape[0], -1)
@@ -106,12 +136,15 @@ def pose(
         importance[[0, -1]] = 2
     of_row = np.tile(importance, len(frames))[matrix.view_of_row]
     stop_of_row = matrix.view_of_row // angles
+    weights = block(np.repeat(frames.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
+    weights *= of_row[:, None]
     return Problem(
         matrix=matrix,
-        light=block(np.maximum(frames.pictures, darkest)),
-        weights=of_row[:, None] * block(np.repeat(frames.weight[..., None], channels, axis=-1)),
+        light=block(np.maximum(frames.pictures[:, rows, :, part.colours], darkest)),
+        weights=weights,
         lamp_of_row=np.zeros_like(stop_of_row) if lamp == "global" else stop_of_row,
-        channels=channels,
+        part=part,
+        rows=rows,
         stops=len(frames),
         angles=angles,
         transfer=frames.transfer,

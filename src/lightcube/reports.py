@@ -4,9 +4,9 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from lightcube.backward import Solution
 from lightcube.between import DISTURBANCES
 from lightcube.console import out
+from lightcube.solution import Solution
 
 
 def facts(solution: Solution) -> dict[str, Any]:
@@ -19,6 +19,22 @@ def facts(solution: Solution) -> dict[str, Any]:
         "rejected": solution.rejected.tolist(),
         "undetermined": solution.undetermined,
     }
+
+
+def needed(needs: dict[str, Any]) -> str:
+    """What a job will need, in words."""
+    units = f"in {needs['units']} units" if needs["units"] > 1 else "in one unit"
+    memory = f"{needs['memory'] / 1e9:.2g} GB of memory ({needs['free_memory'] / 1e9:.2g} GB are free)"
+    if needs["seconds"] is None:
+        return f"{memory}, {units}"
+    return f"{memory}, {units}, at most {needs['passes']:.0f} passes, about {duration(needs['seconds'])}"
+
+
+def duration(seconds: float) -> str:
+    """A time for people: "40 s", "12 min", "3.5 h"."""
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
 
 
 def solved(solution: Solution, scores: dict[str, Any], output: Path, seconds: float) -> None:

@@ -1,74 +1,28 @@
 """What `check` and `solve` share: from the options of the command line to a plan, and what is said of it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from lightcube import arguments, backward, io
+from lightcube.cli_options import Options
 from lightcube.conditioning import Order, best_order, shifted, spread_over_screen
 from lightcube.consistency import advice, check
 from lightcube.errors import InputError
-from lightcube.fitting import Fit, fit, fit_report
+from lightcube.fitting import fit, fit_report
 from lightcube.frames import Frames, Pictures
 from lightcube.geometry import Grid, held
+from lightcube.job import Job
+from lightcube.needs import expected_passes, job_memory, memory_needed, seconds_a_pass
 from lightcube.planning import Plan, plan
 from lightcube.prediction import Prediction, predict
-from lightcube.problem import BLACK, Lamp
-from lightcube.transfer import Transfer
-from lightcube.units import Step, Store
 
-Arrangement = Literal["given", "best"]
 #: A picture below this PSNR, dB, is hardly recognised.
 POOR_DB = 25.0
 #: Orders of more pictures than this are looked for only when asked for: it takes too long.
 _QUICK = 40
-
-
-@dataclass(frozen=True)
-class Options:
-    """What the command line says of the cube, None where it says nothing."""
-
-    n: int | None = None
-    shape: str | None = None
-    size_mm: float = 100.0
-    frame_width: float | None = None
-    fit: Fit = "crop"
-    angles: str | None = None
-    span: float | None = None
-    elevation: float | None = None
-    paper: bool = False
-    order: Arrangement = "given"
-    shift: int = 0
-    method: str = "display"
-    lamp: Lamp | None = None
-    lamp_power: float | None = None
-    lamp_max: float | None = None
-    hold: float | None = None
-    black: float | None = None
-    max_extinction: float | None = None
-    quality: backward.Quality | None = None
-    iterations: int | None = None
-    transfer: Transfer = "srgb"
-
-    @property
-    def power(self) -> float:
-        """Largest power of the lamp, linear light."""
-        return self.lamp_power or self.lamp_max or (1.0 if self.lamp == "fixed" else backward.LAMP_MAX)
-
-    @property
-    def lamps(self) -> dict[str, Any]:
-        """As `lightcube.backward.solve` and `lightcube.planning.plan` take them."""
-        most = np.inf if self.max_extinction is None else self.max_extinction
-        return {
-            "lamp": self.lamp,
-            "lamp_power": self.lamp_power,
-            "lamp_max": self.lamp_max,
-            "max_extinction": most,
-            "black": BLACK if self.black is None else self.black,
-        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +77,7 @@ def _as_in_the_paper(options: Options) -> Options:
 def prepare(path: Path, options: Options) -> Prepared:
     """Read the pictures and plan the cube, for options that are settled; `InputError` for all that cannot be."""
     shape = arguments.voxels(options.n, options.shape, options.size_mm)
-    check_memory(backward.memory_needed(options.method, Grid(shape), (1, 1), 1))
+    check_memory(memory_needed(options.method, Grid(shape), (1, 1), 1, units=3))
     pictures = io.read_pictures(path, transfer=options.transfer)
     turned = None if options.angles is None else arguments.numbers(options.angles, "--angles")
     lamps = options.lamps
@@ -152,19 +106,8 @@ def prepare(path: Path, options: Options) -> Prepared:
     return Prepared(pictures, planned, order)
 
 
-def check_room(prepared: Prepared, options: Options) -> None:
-    """Raise `InputError` where there is not enough memory to solve what was prepared."""
-    planned = prepared.plan
-    views = planned.frames.views
-    angles = len(held(views, planned.hold, planned.grid))
-    raised = float(views.elevations[0])
-    check_memory(backward.memory_needed(options.method, planned.grid, views.picture_shape, angles, raised))
-
-
-def solve(
-    prepared: Prepared, options: Options, *, callback: Callable[[Step], bool | None], store: Store
-) -> backward.Solution:
-    """Solve what was prepared."""
+def job(prepared: Prepared, options: Options, *, memory: int | None = None, units: int | None = None) -> Job:
+    """Settle all that decides the cube; `InputError` where it does not fit into `memory` bytes."""
     planned = prepared.plan
     provenance: dict[str, Any] = {"fit": options.fit, "predicted": said(planned.prediction)}
     if options.shift:
@@ -175,17 +118,39 @@ def solve(
     if options.iterations is None and options.method == "display":
         most, enough = backward.QUALITIES[options.quality or "normal"]
         passes = {"iterations": most, "enough_db": enough}
-    return backward.solve(
+    made = backward.make_job(
         planned.frames,
         planned.grid,
         method=options.method,
         hold=planned.hold,
-        callback=callback,
-        store=store,
+        units=units,
+        memory=memory,
         provenance=provenance,
         **passes,
         **options.lamps,
     )
+    needed = job_memory(made)
+    if memory is not None and needed > memory:
+        raise InputError(
+            f"this needs {needed / 1e9:.3g} GB of memory at least, more than --memory {memory / 1e9:.3g}GB allows: "
+            "allow more, or use a smaller cube, or fewer or smaller pictures"
+        )
+    return made
+
+
+def needs(made: Job) -> dict[str, Any]:
+    """What a job will need, for JSON: a smaller one is timed for it."""
+    passes = expected_passes(made)
+    seconds = None if passes is None else passes * seconds_a_pass(made)
+    return {
+        "memory": job_memory(made),
+        "free_memory": io.free_memory(),
+        "units": made.units,
+        "unit_voxels": [part.columns * made.grid.shape[1] * made.grid.shape[2] for part in made.parts],
+        "coarse_sizes": made.levels,
+        "passes": passes,
+        "seconds": seconds,
+    }
 
 
 def table(facts: dict[str, Any]) -> list[str]:

@@ -4,33 +4,43 @@ from lightcube.io.cubes import UnfinishedCube, check_cube_target, load, publish,
 from lightcube.io.figures import check_figure_target, write_figure
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures, check_pictures_target, write_pictures
-from lightcube.io.partial import PartialStore, discard_partial, is_partial, partial_path, write_partial
+from lightcube.io.partial import (
+    DiskStore,
+    check_partial,
+    discard_partial,
+    load_job,
+    open_partial,
+    partial_path,
+    published_path,
+)
 from lightcube.io.pictures import TransparentPictures, read_pictures
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.sheets import check_sheet_target, write_json, write_sheet
 
 __all__ = [
     "ClippedPictures",
-    "PartialStore",
+    "DiskStore",
     "TransparentPictures",
     "UnfinishedCube",
     "check_cube_target",
     "check_figure_target",
+    "check_partial",
     "check_pictures_target",
     "check_sheet_target",
     "discard_partial",
     "free_memory",
-    "is_partial",
     "load",
+    "load_job",
+    "open_partial",
     "partial_path",
     "publish",
+    "published_path",
     "read_pictures",
     "read_scene",
     "save",
     "scene_names",
     "write_figure",
     "write_json",
-    "write_partial",
     "write_pictures",
     "write_sheet",
 ]

@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import TypeVar
 
 from lightcube.errors import InputError
+from lightcube.io._remote import Place, exists, is_folder, name_of, send
 
 Entry = TypeVar("Entry")
 
 
-def suffix_entry(path: Path, table: Mapping[str, Entry], what: str) -> Entry:
+def suffix_entry(path: Place, table: Mapping[str, Entry], what: str) -> Entry:
     """Entry of `table` for the longest suffix that the name of `path` ends with, in any case, or `InputError`."""
-    name = path.name.lower()
+    name = name_of(path).lower()
     for suffix in sorted(table, key=len, reverse=True):
         if name.endswith(suffix) and len(name) > len(suffix):
             return table[suffix]
@@ -23,8 +24,8 @@ def suffix_entry(path: Path, table: Mapping[str, Entry], what: str) -> Entry:
     raise InputError(f"{path} has no suffix that {what} can have: use one of {known}")
 
 
-def check_free(path: Path, *, overwrite: bool, replaceable: Callable[[Path], bool]) -> None:
-    """Raise `InputError` unless `path` can be written.
+def check_free(path: Place, *, overwrite: bool, replaceable: Callable[[Place], bool]) -> None:
+    """Raise `InputError` unless `path` can be written. At a URL, folders on the way are made where there are any.
 
     Parameters
     ----------
@@ -35,9 +36,9 @@ def check_free(path: Path, *, overwrite: bool, replaceable: Callable[[Path], boo
         ever replaced.
     """
     with system_errors(path, "writing"):
-        has_place, taken = path.parent.is_dir(), path.exists() or path.is_symlink()
-        other_folder = path.is_dir() and not replaceable(path)
-    if not has_place:
+        taken = exists(path)
+        other_folder = taken and is_folder(path) and not replaceable(path)
+    if isinstance(path, Path) and not path.parent.is_dir():
         raise InputError(f"there is no folder {path.parent} to write {path.name} into: make it first")
     if taken and not overwrite:
         raise InputError(f"{path} exists already: give another name, or overwrite it (--overwrite)")
@@ -46,25 +47,35 @@ def check_free(path: Path, *, overwrite: bool, replaceable: Callable[[Path], boo
 
 
 @contextmanager
-def system_errors(path: Path, doing: str) -> Iterator[None]:
+def system_errors(path: Place, doing: str) -> Iterator[None]:
     """Raise `InputError` with one sentence where the operating system refuses to write or read `path`."""
     try:
         yield
     except OSError as error:
         if error.errno in (errno.ENOSPC, errno.EDQUOT):
             raise InputError(
-                f"no space is left on the disk of {path.parent} for {doing} {path.name}: make room and start again"
+                f"no space is left on the disk of {Path(path).parent} for {doing} {name_of(path)}: "
+                "make room and start again"
             ) from error
         raise InputError(f"{doing} {path} failed: {error.strerror or error}") from error
 
 
 @contextmanager
-def written_whole(path: Path, *, overwrite: bool, replaceable: Callable[[Path], bool]) -> Iterator[Path]:
+def written_whole(path: Place, *, overwrite: bool, replaceable: Callable[[Place], bool]) -> Iterator[Path]:
     """Yield a path beside `path`, in a folder of its own; what was written there takes its place at the end.
 
-    Nothing is left behind when the body raises. An older target stays until the new one is whole.
+    Nothing is left behind when the body raises. An older target stays until the new one is whole. For a URL the
+    folder is a temporary one.
     """
     check_free(path, overwrite=overwrite, replaceable=replaceable)
+    if not isinstance(path, Path):
+        with tempfile.TemporaryDirectory(prefix="lightcube-", ignore_cleanup_errors=True) as folder:
+            fresh = Path(folder) / name_of(path)
+            with system_errors(fresh, "writing"):
+                yield fresh
+            check_free(path, overwrite=overwrite, replaceable=replaceable)
+            send(fresh, path)
+        return
     with system_errors(path, "writing"):
         workplace = Path(tempfile.mkdtemp(prefix=".lightcube-", dir=path.parent))
         try:

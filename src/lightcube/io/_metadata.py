@@ -70,19 +70,19 @@ def to_json(cube: Cube) -> dict[str, Any]:
         "transfer": cube.transfer,
         "status": cube.status,
         "hold_deg": float(cube.hold_deg),
-        "scores": _plain(cube.scores),
-        "provenance": _plain(cube.provenance),
+        "scores": plain(cube.scores),
+        "provenance": plain(cube.provenance),
     }
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """`value` in JSON's own types; NaN and infinities, which JSON has not, become null."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, list | tuple | set):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, float):
         return float(value) if math.isfinite(value) else None
     return value if value is None or isinstance(value, bool | int | str) else str(value)

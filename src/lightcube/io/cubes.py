@@ -5,7 +5,7 @@ import warnings
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -13,8 +13,12 @@ from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.io import _metadata
 from lightcube.io._files import check_free, suffix_entry, system_errors, written_whole
+from lightcube.io._remote import Place, child, fetched, name_of, place, read_bytes
 from lightcube.io._zarr import read_zarr, read_zarr_zip, write_zarr, write_zarr_zip
-from lightcube.io.partial import PARTIAL_SUFFIX, discard_partial, newest_state
+from lightcube.io.partial import PARTIAL_SUFFIX, DiskStore, discard_partial, load_job, published_path
+from lightcube.solution import merged
+
+Given = TypeVar("Given", bound=str | Path)
 
 
 class UnfinishedCube(UserWarning):
@@ -23,19 +27,20 @@ class UnfinishedCube(UserWarning):
 
 def check_cube_target(path: str | Path, *, overwrite: bool = False) -> None:
     """Raise `InputError` unless `save` could write to `path`: ask before long work."""
-    path = Path(path)
-    suffix_entry(path, _FORMATS, "a cube")
-    check_free(path, overwrite=overwrite, replaceable=_is_cube_folder)
+    at = place(path)
+    suffix_entry(at, _FORMATS, "a cube")
+    check_free(at, overwrite=overwrite, replaceable=_is_cube_folder)
 
 
-def save(cube: Cube, path: str | Path, *, overwrite: bool = False) -> Path:
+def save(cube: Cube, path: Given, *, overwrite: bool = False) -> Given:
     """Save a cube by the suffix of `path`; the file appears when it is whole.
 
     Parameters
     ----------
     path
         ``.zarr`` (a folder, OME-Zarr 0.5: napari and others open it as it is), ``.zarr.zip`` (the same in one
-        file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
+        file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`). It may be a
+        URL such as ``s3://bucket/cube.zarr``.
     overwrite
         Whether an existing file, or an existing folder with a cube in it, is replaced.
 
@@ -53,15 +58,18 @@ def save(cube: Cube, path: str | Path, *, overwrite: bool = False) -> Path:
     All arrays and numbers come back bit for bit. `scores` and `provenance` come back as JSON's types: tuples as
     lists, NaN and infinities as None, anything that JSON does not know as its text.
     """
-    path = Path(path)
-    _, write = suffix_entry(path, _FORMATS, "a cube")
-    with written_whole(path, overwrite=overwrite, replaceable=_is_cube_folder) as fresh:
+    at = place(path)
+    _, write = suffix_entry(at, _FORMATS, "a cube")
+    with written_whole(at, overwrite=overwrite, replaceable=_is_cube_folder) as fresh:
         write(fresh, cube)
     return path
 
 
 def load(path: str | Path) -> Cube:
     """Load a cube from a file that `save` wrote, or from a ``.partial`` folder of one that is being made.
+
+    Of the latter there is what is finished, the state of the unit that is being solved, and for the rest what it
+    would start from.
 
     Warns
     -----
@@ -73,9 +81,12 @@ def load(path: str | Path) -> Cube:
     InputError
         Where there is no such file, it is no light cube, it is damaged, or a newer version wrote it.
     """
-    path = Path(path)
-    cube = _load(path)
-    partial = path.name.lower().endswith(PARTIAL_SUFFIX)
+    at = place(path)
+    partial = name_of(at).lower().endswith(PARTIAL_SUFFIX)
+    if not partial:
+        suffix_entry(at, _FORMATS, "a cube")
+    with fetched(at) as local:
+        cube = _load(local)
     if partial or cube.status != "complete":
         why = "it is still being made" if partial else "its solver was stopped early"
         warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=2)
@@ -85,7 +96,10 @@ def load(path: str | Path) -> Cube:
 def _load(path: Path) -> Cube:
     """`load` without its warning."""
     if path.name.lower().endswith(PARTIAL_SUFFIX):
-        return read_zarr(newest_state(path))
+        store = DiskStore(path)
+        if store.is_empty():
+            raise InputError(f"{path} has nothing of a cube in it yet: start again without it")
+        return merged(load_job(path), store).cube
     read, _ = suffix_entry(path, _FORMATS, "a cube")
     with system_errors(path, "reading"):
         there, is_folder = path.exists(), path.is_dir()
@@ -99,19 +113,17 @@ def _load(path: Path) -> Cube:
 def publish(partial: str | Path, *, overwrite: bool = False) -> Path:
     """Turn ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``) into NAME, and return NAME.
 
-    The newest whole state is checked and saved under its name with the status it has, then the partial folder
-    is removed.
+    What there is of it, as `load` puts it together, is saved under its name, with the status ``"interrupted"`` unless
+    all is finished; then the partial folder is removed.
 
     Raises
     ------
     InputError
-        Where there is no such folder, nothing whole in it, or NAME exists and `overwrite` is not asked for;
+        Where there is no such folder, nothing of a cube in it, or NAME exists and `overwrite` is not asked for;
         the partial folder is kept then.
     """
     partial = Path(partial)
-    if not partial.name.lower().endswith(PARTIAL_SUFFIX) or len(partial.name) == len(PARTIAL_SUFFIX):
-        raise InputError(f"{partial} is no unfinished cube: give a folder that ends with {PARTIAL_SUFFIX}")
-    out = partial.with_name(partial.name[: -len(PARTIAL_SUFFIX)])
+    out = published_path(partial)
     cube = _load(partial)
     check_cube_target(out, overwrite=overwrite)
     save(cube, out, overwrite=overwrite)
@@ -152,10 +164,10 @@ def _read_npz(path: Path) -> Cube:
     return _metadata.from_json(path, document, extinction, targets)
 
 
-def _is_cube_folder(path: Path) -> bool:
+def _is_cube_folder(path: Place) -> bool:
     """Whether a folder holds a light cube, and may therefore be replaced by another one."""
     try:
-        document = json.loads((path / "zarr.json").read_bytes())
+        document = json.loads(read_bytes(child(path, "zarr.json")) or b"")
         return "lightcube" in document["attributes"]
     except (OSError, ValueError, KeyError, TypeError):
         return False

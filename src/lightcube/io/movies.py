@@ -5,7 +5,8 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
 from dataclasses import dataclass
 from fractions import Fraction
-from pathlib import Path
+from pathlib import Path, PurePath
+from typing import TypeVar
 
 import av
 import numpy as np
@@ -16,10 +17,12 @@ from lightcube.errors import InputError
 from lightcube.geometry import Views
 from lightcube.io import _encoders
 from lightcube.io._files import check_free, suffix_entry, written_whole
+from lightcube.io._remote import Place, name_of, names_in, place
 from lightcube.io.frames_folder import VIEWS_FILE, views_text
 from lightcube.transfer import Transfer, check_transfer, encode
 
 Picture = NDArray[np.float32]
+Given = TypeVar("Given", bound=str | Path)
 
 
 class ClippedPictures(UserWarning):
@@ -46,14 +49,13 @@ class _Clipped:
 
 def check_pictures_target(path: str | Path, *, overwrite: bool = False) -> None:
     """Raise `InputError` unless `write_pictures` could write to `path`: ask before long work."""
-    path = Path(path)
-    if path.suffix:
-        suffix_entry(path, _WRITERS, "a movie")
-    check_free(path, overwrite=overwrite, replaceable=_is_frames_folder)
+    at = place(path)
+    _writer(at)
+    check_free(at, overwrite=overwrite, replaceable=_is_frames_folder)
 
 
 def write_pictures(
-    path: str | Path,
+    path: Given,
     pictures: Picture | Iterable[Picture],
     *,
     count: int | None = None,
@@ -63,7 +65,7 @@ def write_pictures(
     views: Views | None = None,
     names: Sequence[str] | None = None,
     overwrite: bool = False,
-) -> Path:
+) -> Given:
     """Write pictures by the suffix of `path`; the file appears when it is whole.
 
     Parameters
@@ -71,7 +73,7 @@ def write_pictures(
     path
         ``.mp4`` (H.264, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256 colours for all
         pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no
-        suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given.
+        suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given. It may be a URL.
     pictures
         ``(view, row, column, 3)``, or one ``(row, column, 3)`` after the other, in linear light, 1 = white.
         Only one of them is in memory at a time.
@@ -101,8 +103,8 @@ def write_pictures(
         Where the suffix is unknown, the target exists, the disk is full, or the pictures cannot be used.
         Nothing is left behind.
     """
-    path = Path(path)
-    writer = suffix_entry(path, _WRITERS, "a movie") if path.suffix else _write_folder
+    at = place(path)
+    writer = _writer(at)
     if count is None:
         if not isinstance(pictures, Sized):
             raise TypeError("pictures without a length need a count")
@@ -114,7 +116,7 @@ def write_pictures(
         raise InputError(f"cannot write {count} pictures at scale {scale}: both must be whole numbers of at least 1")
     job = _Job(count, check_transfer(transfer), _rate(fps), views_text(views, names))
     clipped = _Clipped()
-    with written_whole(path, overwrite=overwrite, replaceable=_is_frames_folder) as fresh:
+    with written_whole(at, overwrite=overwrite, replaceable=_is_frames_folder) as fresh:
         try:
             writer(fresh, _checked(pictures, count, int(scale)), job, clipped)
         except av.error.FFmpegError as error:
@@ -132,6 +134,11 @@ def write_pictures(
             stacklevel=2,
         )
     return path
+
+
+def _writer(at: Place) -> Callable[[Path, Iterable[Picture], _Job, _Clipped], None]:
+    """Return the writer for the suffix; without one it is a folder."""
+    return suffix_entry(at, _WRITERS, "a movie") if PurePath(name_of(at)).suffix else _write_folder
 
 
 def _rate(fps: float) -> Fraction:
@@ -197,9 +204,9 @@ def _write_npy(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Cli
             file.write(picture.astype("<f4").tobytes())
 
 
-def _is_frames_folder(path: Path) -> bool:
+def _is_frames_folder(path: Place) -> bool:
     """Whether a folder holds nothing but what `_write_folder` writes."""
-    return all(entry.name == VIEWS_FILE or entry.suffix == ".png" for entry in path.iterdir())
+    return all(name == VIEWS_FILE or PurePath(name).suffix == ".png" for name in names_in(path))
 
 
 _WRITERS = {

@@ -1,23 +1,137 @@
 """The place of a cube that is still being made: ``NAME.partial`` beside the NAME it will have.
 
-It is a folder of whole states ``state-1``, ``state-2``, …, each a Zarr cube. A state gets its name when it is
-whole, and only then are older ones removed: whenever the work is killed, the newest state is whole.
+A folder with what was asked for (``job.json``, ``frames.npz``), the pieces that are finished (``level-1.npz``,
+``unit-0.npz``, …) and the newest state of those that are not (``unit-0.state.npz``). Each file is written under a
+hidden name and then renamed: whenever the work is killed, what has a name is whole.
 """
 
+import hashlib
+import json
+import os
 import re
-import shutil
-from contextlib import suppress
+import time
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from importlib.metadata import version
 from pathlib import Path
+from typing import IO, Annotated, Any, Literal
+from uuid import uuid4
 
-from lightcube.cube import Cube
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
 from lightcube.errors import InputError
+from lightcube.frames import Frames
+from lightcube.geometry import Grid, Views
 from lightcube.io._files import system_errors
-from lightcube.io._zarr import write_zarr
+from lightcube.io._metadata import plain
+from lightcube.job import Fingerprint, Job, differences, fingerprint
+from lightcube.problem import Lamp
+from lightcube.store import Arrays
+from lightcube.transfer import Transfer
 
 PARTIAL_SUFFIX = ".partial"
+#: Of the folders that this version writes and reads.
+FORMAT_VERSION = 1
 
-_STATE = re.compile(r"state-([0-9]+)")
-_UNNAMED = ".state"
+_JOB, _FRAMES = "job.json", "frames.npz"
+_PIECE = re.compile(r"((?:level|unit)-[0-9]+)(\.state)?\.npz")
+_HIDDEN = re.compile(r"\..+\.npz-[0-9a-f]{32}|\.job\.json-[0-9a-f]{32}")
+#: A hidden file that nobody has written to for so many seconds is of a run that was killed.
+_STALE_S = 600.0
+#: Which job a file belongs to; no array of a piece is called so.
+_OWNER = "job-key"
+_GEOMETRY = ("lamps", "origins", "column_steps", "row_steps")
+
+
+class _JobJson(BaseModel):
+    """Everything of a job but its arrays."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+    format_version: Literal[1]
+    written_by: str
+    fingerprint: dict[str, str | int | float | None]
+    shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=3, max_length=3)]
+    voxel_mm: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    names: list[str]
+    transfer: Transfer
+    method: str
+    lamp: Lamp
+    lamp_power: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    hold: Annotated[float, Field(ge=0, le=180)]
+    black: Annotated[float, Field(gt=0, lt=1)]
+    max_extinction: Annotated[float, Field(gt=0)] | None
+    iterations: Annotated[int, Field(ge=1)] | None
+    enough_db: float | None
+    dtype: Literal["float32", "float64"]
+    units: Annotated[int, Field(ge=1)]
+    provenance: dict[str, Any]
+
+
+class DiskStore:
+    """The pieces of the job in a partial folder, a `lightcube.store.Store`.
+
+    Several programs may use the same folder at the same time.
+
+    Parameters
+    ----------
+    partial
+        A folder with a job in it, as `open_partial` leaves it.
+
+    Raises
+    ------
+    InputError
+        Where there is no such folder or no job in it; from its methods, where files are damaged or of another job,
+        cannot be written, or the disk is full.
+    """
+
+    def __init__(self, partial: str | Path) -> None:
+        self.folder = Path(partial)
+        self._key = np.array(_key(_read_job(self.folder).fingerprint))
+
+    def names(self) -> frozenset[str]:
+        """Names of the pieces that are finished."""
+        with system_errors(self.folder, "reading"):
+            found = (_PIECE.fullmatch(item.name) for item in self.folder.iterdir())
+            return frozenset(match[1] for match in found if match and not match[2])
+
+    def is_empty(self) -> bool:
+        """Whether there is neither a finished piece nor a state of one."""
+        with system_errors(self.folder, "reading"):
+            return not any(_PIECE.fullmatch(item.name) for item in self.folder.iterdir())
+
+    def finished(self, name: str) -> Arrays | None:
+        """Return the result of a piece, or None where it is not finished."""
+        return self._read(f"{name}.npz")
+
+    def finish(self, name: str, arrays: Arrays) -> None:
+        """Keep the result of a piece, and remove its state."""
+        self._write(f"{name}.npz", arrays)
+        with system_errors(self.folder, "writing"):
+            (self.folder / f"{name}.state.npz").unlink(missing_ok=True)
+
+    def state(self, name: str) -> Arrays | None:
+        """Return the newest state of a piece, or None where there is none."""
+        return self._read(f"{name}.state.npz")
+
+    def keep(self, name: str, arrays: Arrays) -> None:
+        """Keep the state of a piece in place of the one before."""
+        self._write(f"{name}.state.npz", arrays)
+
+    def _write(self, name: str, arrays: Arrays) -> None:
+        _write_arrays(self.folder / name, {_OWNER: self._key, **arrays})
+
+    def _read(self, name: str) -> Arrays | None:
+        path = self.folder / name
+        arrays = _read_arrays(path)
+        if arrays is None:
+            return None
+        if not np.array_equal(arrays.pop(_OWNER, np.array("")), self._key):
+            raise InputError(f"{path} belongs to another cube: remove it, and that piece is computed again")
+        return arrays
 
 
 def partial_path(out: str | Path) -> Path:
@@ -26,60 +140,64 @@ def partial_path(out: str | Path) -> Path:
     return out.with_name(out.name + PARTIAL_SUFFIX)
 
 
-def write_partial(out: str | Path, cube: Cube) -> Path:
-    """Put `cube` in place as the newest state of the unfinished cube `out`, and return the partial folder.
+def published_path(partial: str | Path) -> Path:
+    """Return the name that the cube of a partial folder will have, or raise `InputError` where it is none by name."""
+    partial = Path(partial)
+    if not partial.name.lower().endswith(PARTIAL_SUFFIX) or len(partial.name) == len(PARTIAL_SUFFIX):
+        raise InputError(f"{partial} is no unfinished cube: give a folder that ends with {PARTIAL_SUFFIX}")
+    return partial.with_name(partial.name[: -len(PARTIAL_SUFFIX)])
 
-    The caller says by ``cube.status`` whether the solver had come to its end.
+
+def open_partial(out: str | Path, job: Job, *, overwrite: bool = False) -> DiskStore:
+    """Return the store of a job in the partial folder of `out`, which is made where there is none yet.
+
+    Parameters
+    ----------
+    overwrite
+        Whether a folder that was begun for another job is emptied and begun anew. One of this job is continued.
 
     Raises
     ------
     InputError
-        Where the folder cannot be written or the disk is full; the state before is kept then.
+        Naming what changed, where the folder was begun for another job; or where it is something else, is damaged, or
+        cannot be written.
     """
-    folder = partial_path(out)
+    folder = check_partial(out)
     with system_errors(folder, "writing"):
         folder.mkdir(exist_ok=True)
-        older = _states(folder)
-        fresh = folder / _UNNAMED
-        if fresh.exists():  # of a run that was killed
-            shutil.rmtree(fresh)
-        try:
-            write_zarr(fresh, cube)
-            fresh.rename(folder / f"state-{max(older, default=0) + 1}")
-        except BaseException:
-            shutil.rmtree(fresh, ignore_errors=True)
-            with suppress(OSError):
-                folder.rmdir()  # goes only where nothing is in it
-            raise
-        for state in older.values():
-            shutil.rmtree(state)
+        for item in folder.iterdir():
+            with suppress(FileNotFoundError):  # somebody else removed or renamed it
+                if _HIDDEN.fullmatch(item.name) and time.time() - item.stat().st_mtime > _STALE_S:
+                    item.unlink()
+    if overwrite and not _is_of(folder, job):
+        _empty(folder)
+    if not (folder / _JOB).exists():
+        _write_job(folder, job)
+    changed = differences(_read_job(folder).fingerprint, fingerprint(job))
+    if changed:
+        raise InputError(
+            f"{folder} was begun for another cube ({'; '.join(changed)}): use --overwrite to start anew, publish what "
+            "is there, or give another name"
+        )
+    return DiskStore(folder)
+
+
+def check_partial(out: str | Path) -> Path:
+    """Return the partial folder of `out`, or raise `InputError` where something else stands there."""
+    folder = partial_path(out)
+    with system_errors(folder, "reading"):
+        other = (folder.exists() or folder.is_symlink()) and not is_partial(folder)
+    if other:
+        raise InputError(f"{folder} stands where the unfinished cube would, and is none: move it or use another name")
     return folder
 
 
-class PartialStore:
-    """Keeps the unfinished states of the cube `out` in its partial folder, for `lightcube.backward.solve`."""
-
-    def __init__(self, out: str | Path) -> None:
-        self.out = Path(out)
-
-    def keep(self, cube: Cube) -> None:
-        """Put `cube` in place of the state kept before."""
-        write_partial(self.out, cube)
-
-
-def newest_state(partial: Path) -> Path:
-    """Return the newest whole state in a partial folder, or raise `InputError` where there is none."""
-    if not partial.is_dir():
-        raise InputError(f"there is no unfinished cube {partial}: give a folder that ends with {PARTIAL_SUFFIX}")
-    states = _states(partial)
-    if not states:
-        raise InputError(f"{partial} has no state of a cube in it yet: start again without it")
-    return states[max(states)]
-
-
 def is_partial(partial: Path) -> bool:
-    """Tell whether there is a folder that `write_partial` made, or an empty one."""
-    return partial.is_dir() and all(_STATE.fullmatch(item.name) or item.name == _UNNAMED for item in partial.iterdir())
+    """Tell whether there is a folder that holds nothing but parts of a job, or nothing."""
+    return partial.is_dir() and all(
+        item.name in (_JOB, _FRAMES) or _PIECE.fullmatch(item.name) or _HIDDEN.fullmatch(item.name)
+        for item in partial.iterdir()
+    )
 
 
 def discard_partial(out: str | Path) -> None:
@@ -87,11 +205,143 @@ def discard_partial(out: str | Path) -> None:
     folder = partial_path(out)
     if not is_partial(folder):
         raise InputError(f"there is no unfinished cube {folder} to remove: check the name")
+    _empty(folder)
     with system_errors(folder, "removing"):
-        shutil.rmtree(folder)
+        folder.rmdir()
 
 
-def _states(folder: Path) -> dict[int, Path]:
-    """The whole states in `folder` by their number."""
-    named = ((_STATE.fullmatch(item.name), item) for item in folder.iterdir())
-    return {int(match[1]): item for match, item in named if match}
+def load_job(partial: str | Path) -> Job:
+    """Return the job of a partial folder.
+
+    Raises
+    ------
+    InputError
+        Where there is no such folder, no job in it yet, or it is damaged.
+    """
+    folder = Path(partial)
+    said = _read_job(folder)
+    arrays = _read_arrays(folder / _FRAMES)
+    if arrays is None:
+        raise _damaged(folder / _FRAMES, "it is missing")
+    try:
+        pictures, weights = arrays["pictures"], arrays["weights"]
+        geometry = {name: arrays[name] for name in _GEOMETRY}
+        views = Views(**geometry, picture_shape=(pictures.shape[1], pictures.shape[2]))
+        job = Job(
+            frames=Frames(pictures, views, weights, tuple(said.names), said.transfer),
+            grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),
+            max_extinction=np.inf if said.max_extinction is None else said.max_extinction,
+            enough_db=np.inf if said.enough_db is None else said.enough_db,
+            **{name: getattr(said, name) for name in _PLAIN},
+        )
+    except (ValueError, IndexError, KeyError) as error:
+        raise _damaged(folder / _FRAMES, str(error)) from error
+    changed = differences({**said.fingerprint, "lightcube": version("lightcube")}, fingerprint(job))
+    if changed:
+        raise _damaged(folder / _FRAMES, "; ".join(changed))
+    return job
+
+
+#: Fields of a job that are JSON as they are.
+_PLAIN = ("method", "lamp", "lamp_power", "hold", "black", "iterations", "dtype", "units", "provenance")
+
+
+def _write_job(folder: Path, job: Job) -> None:
+    frames, grid = job.frames, job.grid
+    geometry = {name: getattr(frames.views, name) for name in _GEOMETRY}
+    _write_arrays(folder / _FRAMES, {"pictures": frames.pictures, "weights": frames.weight, **geometry})
+    document = {
+        "format_version": FORMAT_VERSION,
+        "written_by": f"lightcube {version('lightcube')}",
+        "fingerprint": dict(fingerprint(job)),
+        "shape": list(grid.shape),
+        "voxel_mm": grid.voxel_mm,
+        "names": list(frames.names),
+        "transfer": frames.transfer,
+        "max_extinction": None if np.isinf(job.max_extinction) else job.max_extinction,
+        "enough_db": None if np.isinf(job.enough_db) else job.enough_db,
+        **{name: plain(getattr(job, name)) for name in _PLAIN},
+    }
+    with _written(folder / _JOB) as file:
+        file.write(json.dumps(document, indent=1).encode())
+
+
+def _read_job(folder: Path) -> _JobJson:
+    path = folder / _JOB
+    if not folder.is_dir():
+        raise InputError(f"there is no unfinished cube {folder}: give a folder that ends with {PARTIAL_SUFFIX}")
+    try:
+        with system_errors(path, "reading"):
+            document = json.loads(path.read_bytes()) if path.exists() else None
+        if document is None:
+            raise InputError(f"{folder} has nothing of a cube in it yet: start again without it")
+        if isinstance(document, Mapping) and document.get("format_version", FORMAT_VERSION) != FORMAT_VERSION:
+            raise InputError(f"{folder} was begun by another version of lightcube: finish it with that, or start anew")
+        return _JobJson.model_validate(document)
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise _damaged(path, " ".join(str(error).split())[:100]) from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise _damaged(path, f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from error
+
+
+def _is_of(folder: Path, job: Job) -> bool:
+    """Whether the folder was begun for this job."""
+    try:
+        return not differences(_read_job(folder).fingerprint, fingerprint(job))
+    except InputError:  # a damaged one is nobody's
+        return False
+
+
+def _empty(folder: Path) -> None:
+    """Remove all that stands in a partial folder, the job last: no piece is ever there without it."""
+    with system_errors(folder, "removing"):
+        for item in sorted(folder.iterdir(), key=lambda item: item.name == _JOB):
+            item.unlink(missing_ok=True)
+
+
+def _key(said: Fingerprint) -> str:
+    return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
+
+
+def _write_arrays(path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
+    with _written(path) as file:
+        np.savez(file, allow_pickle=False, **arrays)
+
+
+def _read_arrays(path: Path) -> dict[str, NDArray[Any]] | None:
+    """All arrays of a file, or None where there is none."""
+    try:
+        with (
+            system_errors(path, "reading"),
+            suppress(FileNotFoundError),
+            path.open("rb") as file,
+            np.load(file, allow_pickle=False) as archive,
+        ):
+            return {name: archive[name] for name in archive.files}
+    # NotImplementedError is what zipfile raises for a way of compression that it does not know
+    except (ValueError, EOFError, zipfile.BadZipFile, KeyError, NotImplementedError, TypeError) as error:
+        raise _damaged(path, " ".join(str(error).split())[:100]) from error
+    return None
+
+
+@contextmanager
+def _written(path: Path) -> Iterator[IO[bytes]]:
+    """Yield a file that gets the name `path`, in place of what had it before, once it is whole and on the disk."""
+    fresh = path.with_name(f".{path.name}-{uuid4().hex}")
+    with system_errors(path, "writing"):
+        try:
+            with fresh.open("xb") as file:
+                yield file
+                file.flush()
+                os.fsync(file.fileno())
+            fresh.replace(path)
+        except BaseException:
+            fresh.unlink(missing_ok=True)
+            raise
+
+
+def _damaged(path: Path, what: str) -> InputError:
+    if path.name in (_JOB, _FRAMES):
+        return InputError(f"{path} is damaged ({what}): remove the folder and start again")
+    return InputError(f"{path} is damaged ({what}): remove it, and that piece is computed again")

@@ -11,8 +11,9 @@ from lightcube.errors import InputError
 from lightcube.frames import Pictures
 from lightcube.io._decode import Budget, Levels, Take, read_animation, read_single
 from lightcube.io._files import suffix_entry, system_errors
+from lightcube.io._remote import fetched, place
 from lightcube.io._video import read_video
-from lightcube.io.frames_folder import PICTURE_SUFFIXES, FolderViews, picture_files, read_views
+from lightcube.io.frames_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
 from lightcube.transfer import Transfer, check_transfer, decode
 
 _READERS: dict[str, Callable[[Path, Budget, Take], None]] = {
@@ -35,7 +36,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb") -> Pictures:
     path
         A folder of PNG, JPEG, WebP or TIFF files, taken in natural order (2 before 10), whose `views.toml`, if
         there is one, gives angles, elevation and names; or an animated GIF, WebP or APNG, or a TIFF of several
-        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken.
+        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken. It may be a URL.
     transfer
         How display values become linear light.
 
@@ -55,8 +56,25 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb") -> Pictures:
         Where there is nothing to read, a file is damaged or of another kind, there is only one picture, they
         would not fit into half of the machine's memory, or `views.toml` has a fault.
     """
-    path = Path(path)
     transfer = check_transfer(transfer)
+    with fetched(place(path), _is_wanted) as local:
+        pictures, transparent = _read(local, transfer)
+    if transparent:
+        warnings.warn(
+            f"{transparent} of {len(pictures)} pictures in {path} are partly transparent: they were put on white",
+            TransparentPictures,
+            stacklevel=2,
+        )
+    return pictures
+
+
+def _is_wanted(name: str) -> bool:
+    """Whether a file of a folder is read."""
+    return name == VIEWS_FILE or (Path(name).suffix.lower() in PICTURE_SUFFIXES and not name.startswith("."))
+
+
+def _read(path: Path, transfer: Transfer) -> tuple[Pictures, int]:
+    """Pictures, and how many of them are not opaque."""
     with system_errors(path, "reading"):
         there, is_folder = path.exists(), path.is_dir()
     if not there:
@@ -84,13 +102,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb") -> Pictures:
     if len(images) < 2:
         held = "one picture" if images else "no picture"
         raise InputError(f"{path} holds {held}, and a cube needs at least two: add more")
-    if transparent:
-        warnings.warn(
-            f"{transparent} of {len(images)} pictures in {path} are partly transparent: they were put on white",
-            TransparentPictures,
-            stacklevel=2,
-        )
-    return Pictures(tuple(images), names, views.angles, views.elevation, transfer)
+    return Pictures(tuple(images), names, views.angles, views.elevation, transfer), transparent
 
 
 def _linear_light(levels: Levels, transfer: Transfer) -> tuple[NDArray[np.float32], bool]:
