@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 
 from lightcube.errors import InputError
 from lightcube.geometry import Grid, spread_angles, turntable
-from lightcube.kernels import display, momentum, screen
+from lightcube.kernels import descent, display, momentum, screen
 from lightcube.projector import Projector
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Floats, Progress, Result
@@ -170,6 +170,20 @@ def test_momentum_is_what_its_formulas_say() -> None:
     expected = now + ahead * (now - last)
     momentum.run_ahead(last, now, ahead)
     np.testing.assert_allclose(last, expected)
+
+
+def test_the_metric_is_what_its_formulas_say() -> None:
+    random = np.random.default_rng(3)
+    x = random.normal(size=(70, 3)) * (1, 1, 0)
+    expected = np.empty_like(x)
+    descent.expect(x, 0.5, expected)
+    np.testing.assert_allclose(expected[:, :2], np.abs(x[:, :2]) + 0.5 * np.mean(np.abs(x[:, :2]), axis=0))
+    assert np.all(expected[:, 2] == 1)
+
+    metric = random.random((70, 3)) - 0.5
+    quotients = metric.copy()
+    descent.divide(expected, quotients)
+    np.testing.assert_allclose(quotients, np.where(metric > 0, expected / metric, 0))
 
 
 def test_weights_are_the_same_in_whatever_memory() -> None:

@@ -35,3 +35,33 @@ def step(
                 sums[part, column] += (start - new) * (new - here) / length
                 before[row, column] = new
     return sums.sum(axis=0)
+
+
+@njit(cache=True, parallel=True)
+def expect(x: Array, share: float, out: Array) -> None:
+    """Write how far each unknown may move, relative to the others of its column: ``|x|`` and `share` of its mean.
+
+    Where all of a column is 0, it is 1.
+    """
+    rows, columns = x.shape
+    parts = 64
+    sums = np.zeros((parts, columns))
+    for part in prange(parts):
+        for row in range(part * rows // parts, (part + 1) * rows // parts):
+            for column in range(columns):
+                sums[part, column] += abs(x[row, column])
+    more = (share * sums.sum(axis=0) / rows).astype(x.dtype)
+    more[more == 0] = 1
+    for row in prange(rows):
+        for column in range(columns):
+            out[row, column] = abs(x[row, column]) + more[column]
+
+
+@njit(cache=True, parallel=True)
+def divide(numerators: Array, denominators: Array) -> None:
+    """Replace positive `denominators` by the quotients, all others by 0."""
+    rows, columns = numerators.shape
+    for row in prange(rows):
+        for column in range(columns):
+            below = denominators[row, column]
+            denominators[row, column] = numerators[row, column] / below if below > 0 else 0

@@ -193,11 +193,10 @@ class _State:
 
     def renew(self, A: Operator, screen: "_Screen", ay: Floats) -> None:
         """Take the metric of where the solver stands now."""
-        expected = np.abs(self.x, out=self.steps)  # how far each unknown may move, relative to the others; above 0
-        mean = np.mean(expected, axis=0)
-        expected += np.where(mean > 0, _EXPECTED * mean, 1).astype(expected.dtype)
-        metric = A.adjoint(screen.curved(A.forward(expected), ay, self.lamp))
-        self.steps = np.divide(expected, metric, out=metric, where=metric > 0)
+        expected = self.steps
+        descent.expect(self.x, _EXPECTED, expected)
+        self.steps = A.adjoint(screen.curved(A.forward(expected), ay, self.lamp))
+        descent.divide(expected, self.steps)
         self.renewal = int((self.iteration + 1) * _RENEWAL) + 1
 
     def judge(self, objective: NDArray[np.float64], uphill: NDArray[np.bool_], least: NDArray[np.float64]) -> None:
