@@ -331,22 +331,22 @@ def test_memory_is_as_much_as_is_said(
         peak = tracemalloc.get_traced_memory()[1] + made.frames.pictures.nbytes + made.frames.weight.nbytes
     finally:
         tracemalloc.stop()
-    assert needs.job_memory(made) - needs.PROGRAM == pytest.approx(
-        peak, rel=0.25, abs=5e6
-    )  # kernels have a few MB of their own
+    # kernels have a few MB of their own
+    assert needs.job_memory(made) - needs.PROGRAM == pytest.approx(peak, rel=0.25, abs=5e6)
 
 
 @pytest.mark.parametrize("method", ["display", "cgls"])
 def test_time_is_measured_on_a_smaller_cube(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Half the size has an eighth of the multiply-adds: so many seconds go to a pass as eight of its passes take."""
+    """Of a pass of one second, a quarter grows with the multiply-adds and the rest with the numbers at hand."""
     made = job(method=method)
     clock = iter(np.arange(1000.0))
     monkeypatch.setattr("lightcube.needs.time.perf_counter", lambda: next(clock))
+    monkeypatch.setattr("lightcube.needs._seconds_of_products", lambda problem: 0.25)
     assert needs.seconds_a_pass(made) == pytest.approx(1)
-    work = needs._work(made, made.frames, made.grid)
-    monkeypatch.setattr("lightcube.needs._REHEARSED", work / 2)
-    small = coarser(made.frames, made.grid, 1)
-    assert needs.seconds_a_pass(made) == pytest.approx(work / needs._work(made, *small))
+    products, numbers = needs._work(made, made.frames, made.grid)
+    monkeypatch.setattr("lightcube.needs._REHEARSED", products / 2)
+    fewer = needs._work(made, *coarser(made.frames, made.grid, 1))
+    assert needs.seconds_a_pass(made) == pytest.approx(0.25 * products / fewer[0] + 0.75 * numbers / fewer[1])
 
 
 def test_passes_count_the_coarse_ones_by_their_work() -> None:

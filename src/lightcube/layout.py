@@ -24,7 +24,7 @@ def empty(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
     return room[start : start + size].view(dtype).reshape(shape)
 
 
-def copied(array: NDArray[Any], dtype: DTypeLike = None) -> NDArray[Any]:
+def copied(array: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
     """A contiguous copy of an array, of its own dtype unless another one is given, begun as `empty` begins one."""
     copy = empty(array.shape, array.dtype if dtype is None else dtype)
     copy[...] = array

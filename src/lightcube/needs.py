@@ -10,7 +10,7 @@ import numpy as np
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, held
 from lightcube.job import Job, shares
-from lightcube.problem import is_level, pose
+from lightcube.problem import Problem, is_level, pose
 from lightcube.solvers import METHODS
 from lightcube.units import coarse_shape, coarser, most_units, split
 
@@ -139,29 +139,48 @@ def expected_passes(job: Job) -> float | None:
 def seconds_a_pass(job: Job) -> float:
     """Seconds that a pass of the whole cube is expected to take: a smaller one is measured and scaled by its work.
 
-    The measurement takes a second or two, besides what numba compiles.
+    Products grow with their multiply-adds, all else with the numbers of unknowns and pixels. The measurement takes a
+    second or two, besides what numba compiles.
     """
     frames, grid = job.frames, job.grid
-    while _work(job, frames, grid) > _REHEARSED:
+    while _work(job, frames, grid)[0] > _REHEARSED:
         frames, grid = coarser(frames, grid, 1)
     problem = pose(frames, grid, job.hold, job.lamp, job.black, job.dtype)
+    low, high = job.lamp_bounds
     marks: list[float] = []
     METHODS[job.method](
         problem.matrix,
         problem.light,
         weights=problem.weights,
         view_of_row=problem.lamp_of_row,
-        lamp_bounds=job.lamp_bounds,
+        lamp_bounds=(high, high) if job.frozen else (low, high),
         bounds=(0.0, job.max_extinction),
         iterations=_TIMED,
         callback=lambda progress: marks.append(time.perf_counter()),
         transfer=frames.transfer,
     )
-    scale = _work(job, job.frames, job.grid) / _work(job, frames, grid)
-    return float(np.median(np.diff(marks))) * scale if len(marks) > 1 else 0.0
+    if len(marks) < 2:
+        return 0.0
+    products = _seconds_of_products(problem)
+    rest = max(0.0, float(np.median(np.diff(marks))) - products)
+    more = [
+        whole / small for whole, small in zip(_work(job, job.frames, job.grid), _work(job, frames, grid), strict=True)
+    ]
+    return products * more[0] + rest * more[1]
 
 
-def _work(job: Job, frames: Frames, grid: Grid) -> float:
-    """Multiply-adds of a pass, but for a factor: beams times the voxels that one of them runs through."""
+def _seconds_of_products(problem: Problem) -> float:
+    """The least that one product in either direction has taken."""
+    times = []
+    for _ in range(3):
+        began = time.perf_counter()
+        problem.matrix.forward(problem.matrix.adjoint(problem.light))
+        times.append(time.perf_counter() - began)
+    return min(times)
+
+
+def _work(job: Job, frames: Frames, grid: Grid) -> tuple[float, float]:
+    """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
     rows, columns = frames.views.picture_shape
-    return len(held(frames.views, job.hold, grid)) * rows * columns * job.channels * max(grid.shape[1:])
+    pixels = len(held(frames.views, job.hold, grid)) * rows * columns * job.channels
+    return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)
