@@ -151,3 +151,29 @@ def test_results_are_the_same_for_any_number_of_threads() -> None:
         found.add(run.stdout)
     assert len(found) == 1
     assert len(found.pop().strip()) == len(hashlib.sha256().hexdigest())
+
+
+_AT_ONCE = """
+import concurrent.futures, numpy as np
+from lightcube import backward
+from lightcube.frames import Frames
+from lightcube.geometry import Grid, turntable
+
+def cube(number):
+    grid = Grid((2, 6, 7))
+    views = turntable(grid, [10.0, 70.0, 200.0], elevation=35.0, picture_shape=(2, 3))
+    pictures = np.random.default_rng(number).random((3, 2, 3, 3), dtype=np.float32)
+    return backward.solve(Frames(pictures, views), grid, iterations=20).cube.extinction
+
+alone = [cube(number) for number in range(4)]
+with concurrent.futures.ThreadPoolExecutor(4) as pool:
+    together = list(pool.map(cube, [*range(4)] * 3))
+print(all(np.array_equal(alone[index % 4], found) for index, found in enumerate(together)))
+"""
+
+
+def test_cubes_may_be_solved_at_the_same_time_in_one_process() -> None:
+    """Numba's simplest threading layer, the one that is always there, ends the program where two calls meet in it."""
+    told = {**os.environ, "NUMBA_THREADING_LAYER": "workqueue", "NUMBA_NUM_THREADS": "2"}
+    run = subprocess.run([sys.executable, "-c", _AT_ONCE], env=told, capture_output=True, text=True, check=False)
+    assert run.stdout == "True\n", run.stderr

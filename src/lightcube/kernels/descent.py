@@ -3,13 +3,15 @@
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 from numpy.typing import NDArray
+
+from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def step(
     x: Array, before: Array, ahead: Array, slopes: Array, steps: Array, stride: Array, lower: float, upper: float
 ) -> Array:
@@ -37,7 +39,7 @@ def step(
     return sums.sum(axis=0)
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def expect(x: Array, share: float, out: Array) -> None:
     """Write how far each unknown may move, relative to the others of its column: ``|x|`` and `share` of its mean.
 
@@ -57,7 +59,7 @@ def expect(x: Array, share: float, out: Array) -> None:
             out[row, column] = abs(x[row, column]) + more[column]
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def divide(numerators: Array, denominators: Array) -> None:
     """Replace positive `denominators` by the quotients, all others by 0."""
     rows, columns = numerators.shape

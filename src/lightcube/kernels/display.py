@@ -11,6 +11,7 @@ from numba import njit, prange
 from numpy.typing import NDArray
 
 from lightcube.kernels.exponential import exp
+from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
@@ -104,7 +105,7 @@ def conjugate(slope: float, wanted: float, curve: Curve) -> float:
     return slope * u - 0.5 * value * value
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def conjugates(slopes: Array, wanted: Array, weights: Array, curve: Curve) -> Array:
     """Sum of the weighted terms' convex conjugates at `slopes`, one number per row; slopes are 0 where weights are."""
     rows, columns = slopes.shape

@@ -2,13 +2,15 @@
 
 from typing import Any
 
-from numba import njit, prange
+from numba import prange
 from numpy.typing import NDArray
+
+from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def run_ahead(last: Array, now: Array, ahead: Array) -> None:
     """Replace `last` by ``now + ahead (now - last)``, with one number of `ahead` per column."""
     rows, columns = now.shape

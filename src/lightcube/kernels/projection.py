@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from lightcube.kernels.beam import PARALLEL, max_pieces, trace_beam
 from lightcube.kernels.rows import LANES, add_rows, prefetch
+from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
@@ -113,7 +114,7 @@ def _trace_tile(
     return met
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def forward(
     beams: Array, width: int, nx: int, ny: int, scale: float, x: Array, b: Array, channels: int, tasks: int
 ) -> None:
@@ -180,7 +181,7 @@ def forward(
                         )
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def adjoint(
     beams: Array, width: int, nx: int, ny: int, scale: float, b: Array, x: Array, channels: int, tasks: int
 ) -> None:

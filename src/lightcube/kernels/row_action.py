@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
+from lightcube.kernels.threads import parallel
+
 Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.integer[Any]]
 
@@ -88,7 +90,7 @@ def _sweep(
         x[:, first:last] = mine
 
 
-_sweep_parallel = njit(cache=True, parallel=True)(getattr(_sweep, "py_func", _sweep))
+_sweep_parallel = parallel(getattr(_sweep, "py_func", _sweep))
 
 
 def sweep(

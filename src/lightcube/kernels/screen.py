@@ -12,6 +12,7 @@ from numba import njit, prange
 from numpy.typing import NDArray
 
 from lightcube.kernels.display import Curve, curvature, pull, residual
+from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
@@ -50,7 +51,7 @@ def _descend_run(bright: Array, absorbance: Array, wanted: Array, weights: Array
         slopes[i] = -weights[i] * value * slope
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def descend(
     absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, curve: Curve, slopes: Array
 ) -> None:
@@ -83,7 +84,7 @@ def _arrive_run(
         least[i] = min(least[i], now[i] + (now[i] - last[i]))
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def arrive(
     last: Array, now: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, curve: Curve
 ) -> tuple[Array, Array]:
@@ -124,7 +125,7 @@ def _curve_run(
         values[i] *= weights[i] * curvature(u, wanted[i], curve)
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def curvatures(
     absorbance: Array,
     lamp: Array,
@@ -188,7 +189,7 @@ def _pulls(
         sums[1, i % len(lamp)] += bends[i]
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def fit_lamp(
     absorbance: Array,
     rows: Array,

@@ -4,9 +4,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import prange
 from numpy.typing import NDArray
 
+from lightcube.kernels.threads import parallel
 from lightcube.scene.kernels.world import (
     Vector,
     World,
@@ -133,7 +134,7 @@ def _pixel(
     return (r * share, g * share, b * share)
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def shaded(world: World, sight: Sight, pictures: NDArray[np.float32]) -> None:
     """Fill `pictures` ``(f, row, column, 3)`` with what the camera sees at each instant of `world`."""
     count, rows, columns, _ = pictures.shape
@@ -147,7 +148,7 @@ def shaded(world: World, sight: Sight, pictures: NDArray[np.float32]) -> None:
             pictures[f, row, column, 2] = light[2]
 
 
-@njit(cache=True, parallel=True)
+@parallel
 def shadowed(
     world: World,
     lamps: NDArray[np.float64],
