@@ -11,7 +11,7 @@ INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 def short_rehearsals(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where kernels run interpreted, whole commands rehearse and draft briefly; the compiled run does all of it."""
     module = request.module.__name__.split(".")[-1]
-    if INTERPRETED and module in ("test_cli", "test_cli_solving", "test_docs", "test_resume"):
+    if INTERPRETED and module.startswith(("test_cli", "test_docs", "test_resume", "test_cluster")):
         monkeypatch.setattr("lightcube.prediction.PASSES", 2)
         monkeypatch.setattr("lightcube.conditioning._PASSES", 1)
         monkeypatch.setattr("lightcube.conditioning._WALKS", 1)

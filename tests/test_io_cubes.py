@@ -18,6 +18,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as st_numpy
 
+from lightcube import io
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.frames import Frames
@@ -30,7 +31,6 @@ from lightcube.io import (
     discard_partial,
     load,
     open_partial,
-    partial_path,
     publish,
     save,
 )
@@ -70,6 +70,11 @@ def assert_same(one: Any, other: Any) -> None:
             assert_same(getattr(one, item.name), getattr(other, item.name))
     else:
         assert one == other
+
+
+def partial_path(out: Path) -> Path:
+    """As `lightcube.io.partial_path`, of a path."""
+    return Path(io.partial_path(out))
 
 
 def files_in(folder: Path) -> list[str]:

@@ -81,8 +81,9 @@ def bucket() -> Iterator[str]:
         for name, value in settings.items():
             patch.setenv(name, value)
         s3fs.S3FileSystem.clear_instance_cache()
-        s3fs.S3FileSystem().mkdir("lightcube")
-        yield "s3://lightcube"
+        name = f"lightcube-{uuid4().hex}"  # all servers of a process share their buckets
+        s3fs.S3FileSystem().mkdir(name)
+        yield f"s3://{name}"
         s3fs.S3FileSystem.clear_instance_cache()
     server.stop()
 

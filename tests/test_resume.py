@@ -18,13 +18,13 @@ from PIL import Image
 from lightcube import load, needs
 from lightcube.backward import run as solved
 from lightcube.errors import InputError
-from lightcube.io import DiskStore, UnfinishedCube, load_job, open_partial, partial_path, publish
+from lightcube.io import DiskStore, UnfinishedCube, load_job, open_partial, publish
 from lightcube.job import Job, fingerprint
 from lightcube.pieces import solve_piece
 from lightcube.solution import merged
 from tests.conftest import INTERPRETED
 from tests.test_cli import pressed, run
-from tests.test_io_cubes import assert_same, content, files_in
+from tests.test_io_cubes import assert_same, content, files_in, partial_path
 from tests.test_job import LEVEL, RAISED, job, same
 
 __all__ = ["run"]
@@ -115,9 +115,11 @@ def test_units_of_several_programs_and_merge_are_the_run_in_one(run, photographs
     assert lacking.code == 2
     assert "lacks unit 1" in lacking.err
     assert "--unit 1/2" in lacking.err
-    other = run("solve", photographs, "-o", out, *said)
+    other = run("solve", photographs, "-o", out, *said, "--unit", "1/3")
     assert other.code == 2
-    assert "units was 2 and is 1" in other.err
+    assert "units was 2 and is 3" in other.err
+    told = json.loads(run("solve", photographs, "-o", out, *said, "--dry-run", "--json").out)
+    assert told["units"] == 2  # as the folder was begun
     assert run("solve", photographs, "-o", out, *said, "--unit", "1/2").code == 0
     merge = run("merge", f"{out}.partial")
     assert merge.code == 0, merge.err
@@ -285,7 +287,7 @@ def test_writers_at_the_same_time_leave_one_whole_file(tmp_path: Path) -> None:
     while any(writer.is_alive() for writer in writers):
         found = store.state("unit-0")
         assert found is None or len(np.unique(found["x"])) == 1
-    assert files_in(store.folder) == ["frames.npz", "job.json", "unit-0.state.npz"]
+    assert files_in(Path(store.folder)) == ["frames.npz", "job.json", "unit-0.state.npz"]
 
 
 @pytest.mark.parametrize("name", ["unit-0.npz", "unit-0.state.npz", "frames.npz", "job.json"])
@@ -294,7 +296,7 @@ def test_damage_is_one_sentence(tmp_path: Path, name: str, harm: str) -> None:
     made = job(**RAISED)
     store = begun(tmp_path / "a.zarr", made, "level-1", "unit-0")
     store.keep("unit-0", store.finished("unit-0") or {})
-    file = store.folder / name
+    file = Path(store.folder) / name
     data = bytearray(file.read_bytes())
     middle = len(data) // 2
     if name.startswith("unit"):
@@ -312,13 +314,13 @@ def test_damage_is_one_sentence(tmp_path: Path, name: str, harm: str) -> None:
     with pytest.raises(InputError, match=r"is damaged|begun by another version") as refused:
         read()
     assert name in str(refused.value)
-    assert store.folder.is_dir()
+    assert Path(store.folder).is_dir()
 
 
 def test_pieces_of_another_job_are_refused(tmp_path: Path) -> None:
     one = begun(tmp_path / "a.zarr", job(), "unit-0")
     other = begun(tmp_path / "b.zarr", job(hold=1.0))
-    (one.folder / "unit-0.npz").rename(other.folder / "unit-0.npz")
+    (Path(one.folder) / "unit-0.npz").rename(Path(other.folder) / "unit-0.npz")
     with pytest.raises(InputError, match="belongs to another cube"):
         merged(job(hold=1.0), other)
 
@@ -335,12 +337,12 @@ def test_another_version_refuses_to_go_on_but_publishes(tmp_path: Path, monkeypa
 
 def test_old_leftovers_are_removed_and_fresh_ones_are_not(tmp_path: Path) -> None:
     store = begun(tmp_path / "a.zarr", job())
-    old, fresh = (store.folder / f".unit-0.npz-{digit * 32}" for digit in "ab")
+    old, fresh = (Path(store.folder) / f".unit-0.npz-{digit * 32}" for digit in "ab")
     for leftover in (old, fresh):
         leftover.write_bytes(b"half")
     os.utime(old, (0, 0))
     open_partial(tmp_path / "a.zarr", job())
-    assert files_in(store.folder) == [fresh.name, "frames.npz", "job.json"]
+    assert files_in(Path(store.folder)) == [fresh.name, "frames.npz", "job.json"]
 
 
 @pytest.mark.parametrize("at", range(7))
@@ -367,7 +369,7 @@ def test_a_kill_between_any_two_files_loses_nothing(tmp_path: Path, at: int, mon
 
 def test_a_full_disk_keeps_the_state_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     store = begun(tmp_path / "a.zarr", job(), "unit-0")
-    before = content(store.folder)
+    before = content(Path(store.folder))
 
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
@@ -375,6 +377,6 @@ def test_a_full_disk_keeps_the_state_before(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(InputError, match="no space"):
         store.keep("unit-0", {"x": np.ones(3)})
-    assert content(store.folder) == before
+    assert content(Path(store.folder)) == before
     with pytest.raises(InputError, match="no space"):
         open_partial(tmp_path / "b.zarr", replace(job(), hold=1.0))

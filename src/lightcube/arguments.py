@@ -1,7 +1,7 @@
 """What the texts and numbers of the command line mean."""
 
 import re
-from pathlib import Path
+from pathlib import PurePath
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,9 +87,9 @@ def play_angles(
     return forward.turn(cube, pictures, first, last)
 
 
-def movie_scale(output: Path, views: Views) -> int:
+def movie_scale(output: str, views: Views) -> int:
     """An even scale that makes a movie at least 256 pixels high; single pictures and numbers stay as they are."""
-    return 1 if output.suffix in ("", ".npy") else 2 * -(-128 // views.picture_shape[0])
+    return 1 if PurePath(output).suffix in ("", ".npy") else 2 * -(-128 // views.picture_shape[0])
 
 
 def short(value: object) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from lightcube import arguments, between, demo, forward, io, metrics, plots, reports, running, solving
+from lightcube import arguments, between, cluster, demo, forward, io, metrics, plots, reports, running, solving
 from lightcube.cli_options import FRAMES, Options, one_by_one
 from lightcube.console import err, json_document, json_line, out, plain_warnings, prepare, progress
 from lightcube.cube import Cube
@@ -44,7 +44,7 @@ def trace(
     scene: Annotated[
         str, typer.Argument(help="A scene file (TOML), or the name of a scene that comes with lightcube.")
     ],
-    output: Annotated[Path, OUT],
+    output: Annotated[str, OUT],
     frames: Annotated[int | None, typer.Option(help="Number of pictures; default the scene's own.")] = None,
     size: Annotated[
         str | None, typer.Option(help="Size of the pictures, WIDTHxHEIGHT; default the scene's own.")
@@ -91,13 +91,17 @@ def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = Fal
 @one_by_one
 def solve(
     frames: FRAMES,
-    output: Annotated[Path, OUT],
+    output: Annotated[str, OUT],
     options: Options,
     memory: Annotated[
         str | None, typer.Option(help="Use at most so much, 2GB or 512MB, by solving in parts.  [default: 4GB]")
     ] = None,
     unit: Annotated[
         str | None, typer.Option(help="Solve only unit I of N, I/N; merge makes the cube when all are there.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Let the workers of a dask scheduler solve, tcp://HOST:PORT, or local ones: local."),
     ] = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what memory and time it takes, and solve nothing.")
@@ -108,20 +112,25 @@ def solve(
     """Compute the cube whose shadows are the frames; what was stopped or killed goes on where it was."""
     io.check_cube_target(output, overwrite=overwrite)
     io.check_partial(output)
-    if unit is not None and memory is not None:
-        raise InputError("--unit and --memory both say how many units there are: leave one of them out")
+    if unit is not None and (memory is not None or scheduler is not None):
+        other = "--memory" if scheduler is None else "--scheduler"
+        raise InputError(f"--unit and {other} both say how many units there are: leave one of them out")
     which, units = (None, None) if unit is None else arguments.unit(unit)
     budget = None if memory is None else arguments.memory(memory)
+    workers = 1 if scheduler is None else cluster.count_workers(scheduler)
     options = solving.settled(options)
     with err.status("rehearsing"):
         prepared = solving.prepare(frames, options)
     job = solving.job(prepared, options, memory=budget, units=units)
+    if units is None:
+        job = solving.divided(job, output, workers, budget)
     if dry_run:
         with err.status("timing a smaller cube"):
             needs = solving.needs(job)
         _done(as_json, reports.needed(needs), **needs)
         return
-    solving.check_memory(job_memory(job))
+    if scheduler in (None, cluster.LOCAL):
+        solving.check_memory(job_memory(job) * min(workers, job.units))
     if not as_json:
         for line in [*solving.in_short(prepared, options), *solving.what_to_change(prepared, options)]:
             err.print(line)
@@ -129,7 +138,11 @@ def solve(
     began = time.monotonic()
     store = io.open_partial(output, job, overwrite=overwrite)
     pieces = job.pieces if which is None else job.pieces_of(which - 1)
-    if not running.run(job, pieces, store, as_json=as_json):
+    if not (
+        running.run(job, pieces, store, as_json=as_json)
+        if scheduler is None
+        else cluster.run(job, scheduler, store, as_json=as_json)
+    ):
         err.print(f"interrupted: {store.folder} holds what was reached; the same command goes on; to publish that, use")
         err.print(f"  lightcube publish {store.folder}")
         raise typer.Exit(130)
@@ -141,7 +154,7 @@ def solve(
 
 @app.command()
 def merge(
-    partial: Annotated[Path, typer.Argument(help="The unfinished cube, NAME.zarr.partial, with all its units.")],
+    partial: Annotated[str, typer.Argument(help="The unfinished cube, NAME.zarr.partial, with all its units.")],
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
@@ -160,8 +173,8 @@ def merge(
 
 @app.command()
 def play(
-    cube: Annotated[Path, typer.Argument(help="A cube.")],
-    output: Annotated[Path, OUT],
+    cube: Annotated[str, typer.Argument(help="A cube.")],
+    output: Annotated[str, OUT],
     angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
     start: Annotated[float | None, typer.Option("--from", help="First angle in degrees.  [default: 0]")] = None,
     end: Annotated[float | None, typer.Option("--to", help="Where the turn ends, in degrees.  [default: 360]")] = None,
@@ -206,25 +219,25 @@ def play(
 
 @app.command()
 def score(
-    cube: Annotated[Path, typer.Argument(help="A cube.")],
+    cube: Annotated[str, typer.Argument(help="A cube.")],
     frames: Annotated[
-        Path | None, typer.Argument(help="The pictures it was made from; default its own targets.")
+        str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
     sheet: Annotated[
-        Path | None, typer.Option(help="Draw a contact sheet: wanted, shown, difference (PNG, WebP or JPEG).")
+        str | None, typer.Option(help="Draw a contact sheet: wanted, shown, difference (PNG, WebP or JPEG).")
     ] = None,
     between_frames: Annotated[
         bool, typer.Option("--between", help="Add PSNR and SSIM between the frames, and how far each one stands.")
     ] = False,
     robust: Annotated[bool, typer.Option("--robust", help="Add what a set-up that is a little off costs.")] = False,
-    plot: Annotated[Path | None, typer.Option(help="Draw PSNR against the angle (PNG or SVG); --between.")] = None,
+    plot: Annotated[str | None, typer.Option(help="Draw PSNR against the angle (PNG or SVG); --between.")] = None,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compare what a cube really casts with what was wanted."""
     if sheet is not None:
         io.check_sheet_target(sheet, overwrite=overwrite)
-    if plot is not None and plot == sheet:
+    if plot is not None and sheet is not None and Path(plot) == Path(sheet):
         raise InputError(f"--sheet and --plot both name {plot}: give them two names")
     if plot is not None:
         io.check_figure_target(plot, overwrite=overwrite)
@@ -251,7 +264,7 @@ def score(
 
 @app.command()
 def info(
-    cube: Annotated[Path, typer.Argument(help="A cube.")],
+    cube: Annotated[str, typer.Argument(help="A cube.")],
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Say what is in a cube file."""
@@ -265,7 +278,7 @@ def info(
 
 @app.command()
 def publish(
-    partial: Annotated[Path, typer.Argument(help="The unfinished cube, NAME.zarr.partial.")],
+    partial: Annotated[str, typer.Argument(help="The unfinished cube, NAME.zarr.partial.")],
     overwrite: Annotated[bool, OVERWRITE] = False,
 ) -> None:
     """Turn the unfinished cube of an interrupted solve into a cube file."""
@@ -342,7 +355,9 @@ def _done(as_json: bool, sentence: str, **fields: object) -> None:
         out.print(sentence)
 
 
-def _finish(job: Job, store: io.DiskStore, output: Path, seconds: float, *, overwrite: bool, as_json: bool) -> None:
+def _finish(
+    job: Job, store: io.DiskStore, output: str | Path, seconds: float, *, overwrite: bool, as_json: bool
+) -> None:
     """Make the cube of a job that is finished, score it, and say so."""
     solution = merged(job, store)
     scores = metrics.score(solution.cube, job.frames)
@@ -363,7 +378,7 @@ def _counted(
         advance(number, count)
 
 
-def _refitted(cube: Cube, frames: Path) -> Frames:
+def _refitted(cube: Cube, frames: str) -> Frames:
     """Pictures as `solve` fitted them to the cube, in its order."""
     pictures = io.read_pictures(frames, transfer=cube.transfer)
     order = cube.provenance.get("order", range(len(pictures)))

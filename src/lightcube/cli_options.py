@@ -4,7 +4,6 @@ import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import wraps
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -17,7 +16,7 @@ from lightcube.transfer import Transfer
 
 Arrangement = Literal["given", "best"]
 
-FRAMES = Annotated[Path, typer.Argument(help="A folder of pictures, an animated image or a video.")]
+FRAMES = Annotated[str, typer.Argument(help="A folder of pictures, an animated image or a video.")]
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ def duration(seconds: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
 
 
-def solved(solution: Solution, scores: dict[str, Any], output: Path, seconds: float) -> None:
+def solved(solution: Solution, scores: dict[str, Any], output: str | Path, seconds: float) -> None:
     """Print how good the cube is and how long it took."""
     if len(solution.rejected):
         most = Counter(solution.cube.names[view] for view in solution.rejected[:, 0]).most_common(5)

@@ -1,7 +1,6 @@
 """What `check` and `solve` share: from the options of the command line to a plan, and what is said of it."""
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,8 @@ from lightcube.job import Job
 from lightcube.needs import expected_passes, job_memory, memory_needed, seconds_a_pass
 from lightcube.planning import Plan, plan
 from lightcube.prediction import Prediction, predict
+from lightcube.problem import is_level
+from lightcube.units import most_units
 
 #: A picture below this PSNR, dB, is hardly recognised.
 POOR_DB = 25.0
@@ -74,7 +75,7 @@ def _as_in_the_paper(options: Options) -> Options:
     return replace(options, **white, shape=voxels, n=None)
 
 
-def prepare(path: Path, options: Options) -> Prepared:
+def prepare(path: str, options: Options) -> Prepared:
     """Read the pictures and plan the cube, for options that are settled; `InputError` for all that cannot be."""
     shape = arguments.voxels(options.n, options.shape, options.size_mm)
     check_memory(memory_needed(options.method, Grid(shape), (1, 1), 1, units=3))
@@ -136,6 +137,15 @@ def job(prepared: Prepared, options: Options, *, memory: int | None = None, unit
             "allow more, or use a smaller cube, or fewer or smaller pictures"
         )
     return made
+
+
+def divided(made: Job, output: str, workers: int, memory: int | None = None) -> Job:
+    """A job in units for so many workers, or in as many as its unfinished cube was begun with, if they fit `memory`."""
+    most = most_units(made.grid.shape, made.channels, level=is_level(made.grid, made.frames.views))
+    begun = io.begun_units(output, made)
+    if begun is None or (memory is not None and job_memory(replace(made, units=begun)) > memory):
+        begun = max(made.units, min(workers, most))
+    return replace(made, units=begun)
 
 
 def needs(made: Job) -> dict[str, Any]:

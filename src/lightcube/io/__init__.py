@@ -6,6 +6,7 @@ from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures, check_pictures_target, write_pictures
 from lightcube.io.partial import (
     DiskStore,
+    begun_units,
     check_partial,
     discard_partial,
     load_job,
@@ -22,6 +23,7 @@ __all__ = [
     "DiskStore",
     "TransparentPictures",
     "UnfinishedCube",
+    "begun_units",
     "check_cube_target",
     "check_figure_target",
     "check_partial",

@@ -336,6 +336,7 @@ def _file_system(url: str, scheme: str) -> tuple[Any, str]:
             f"{url} cannot be reached, nobody knows {scheme}://: use a path, s3://, or check the spelling"
         ) from None
     store, path = fsspec.url_to_fs(url)
+    store.invalidate_cache()  # others write there too
     return store, path
 
 

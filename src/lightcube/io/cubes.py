@@ -83,23 +83,28 @@ def load(path: str | Path) -> Cube:
     """
     at = place(path)
     partial = name_of(at).lower().endswith(PARTIAL_SUFFIX)
-    if not partial:
+    if partial:
+        cube = _load_partial(at)
+    else:
         suffix_entry(at, _FORMATS, "a cube")
-    with fetched(at) as local:
-        cube = _load(local)
+        with fetched(at) as local:
+            cube = _load(local)
     if partial or cube.status != "complete":
         why = "it is still being made" if partial else "its solver was stopped early"
         warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=2)
     return cube
 
 
+def _load_partial(at: Place) -> Cube:
+    """The cube of what there is of an unfinished one."""
+    store = DiskStore(at)
+    if store.is_empty():
+        raise InputError(f"{at} has nothing of a cube in it yet: start again without it")
+    return merged(load_job(at), store).cube
+
+
 def _load(path: Path) -> Cube:
-    """`load` without its warning."""
-    if path.name.lower().endswith(PARTIAL_SUFFIX):
-        store = DiskStore(path)
-        if store.is_empty():
-            raise InputError(f"{path} has nothing of a cube in it yet: start again without it")
-        return merged(load_job(path), store).cube
+    """The cube of a file or folder on this disk."""
     read, _ = suffix_entry(path, _FORMATS, "a cube")
     with system_errors(path, "reading"):
         there, is_folder = path.exists(), path.is_dir()
@@ -110,7 +115,7 @@ def _load(path: Path) -> Cube:
     return read(path)
 
 
-def publish(partial: str | Path, *, overwrite: bool = False) -> Path:
+def publish(partial: str | Path, *, overwrite: bool = False) -> Place:
     """Turn ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``) into NAME, and return NAME.
 
     What there is of it, as `load` puts it together, is saved under its name, with the status ``"interrupted"`` unless
@@ -122,9 +127,8 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Path:
         Where there is no such folder, nothing of a cube in it, or NAME exists and `overwrite` is not asked for;
         the partial folder is kept then.
     """
-    partial = Path(partial)
     out = published_path(partial)
-    cube = _load(partial)
+    cube = _load_partial(place(partial))
     check_cube_target(out, overwrite=overwrite)
     save(cube, out, overwrite=overwrite)
     discard_partial(out)

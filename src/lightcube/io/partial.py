@@ -2,10 +2,11 @@
 
 A folder with what was asked for (``job.json``, ``frames.npz``), the pieces that are finished (``level-1.npz``,
 ``unit-0.npz``, …) and the newest state of those that are not (``unit-0.state.npz``). Each file is written under a
-hidden name and then renamed: whenever the work is killed, what has a name is whole.
+hidden name and then renamed: whenever the work is killed, what has a name is whole. At a URL a file appears whole too.
 """
 
 import hashlib
+import io
 import json
 import os
 import re
@@ -27,6 +28,19 @@ from lightcube.frames import Frames
 from lightcube.geometry import Grid, Views
 from lightcube.io._files import system_errors
 from lightcube.io._metadata import plain
+from lightcube.io._remote import (
+    Place,
+    beside,
+    child,
+    exists,
+    is_folder,
+    name_of,
+    names_in,
+    place,
+    read_bytes,
+    remove,
+    write_whole,
+)
 from lightcube.job import Fingerprint, Job, differences, fingerprint
 from lightcube.problem import Lamp
 from lightcube.store import Arrays
@@ -89,19 +103,16 @@ class DiskStore:
     """
 
     def __init__(self, partial: str | Path) -> None:
-        self.folder = Path(partial)
+        self.folder = place(partial)
         self._key = np.array(_key(_read_job(self.folder).fingerprint))
 
     def names(self) -> frozenset[str]:
         """Names of the pieces that are finished."""
-        with system_errors(self.folder, "reading"):
-            found = (_PIECE.fullmatch(item.name) for item in self.folder.iterdir())
-            return frozenset(match[1] for match in found if match and not match[2])
+        return frozenset(match[1] for match in self._files() if not match[2])
 
     def is_empty(self) -> bool:
         """Whether there is neither a finished piece nor a state of one."""
-        with system_errors(self.folder, "reading"):
-            return not any(_PIECE.fullmatch(item.name) for item in self.folder.iterdir())
+        return not self._files()
 
     def finished(self, name: str) -> Arrays | None:
         """Return the result of a piece, or None where it is not finished."""
@@ -111,7 +122,7 @@ class DiskStore:
         """Keep the result of a piece, and remove its state."""
         self._write(f"{name}.npz", arrays)
         with system_errors(self.folder, "writing"):
-            (self.folder / f"{name}.state.npz").unlink(missing_ok=True)
+            remove(child(self.folder, f"{name}.state.npz"))
 
     def state(self, name: str) -> Arrays | None:
         """Return the newest state of a piece, or None where there is none."""
@@ -121,11 +132,15 @@ class DiskStore:
         """Keep the state of a piece in place of the one before."""
         self._write(f"{name}.state.npz", arrays)
 
+    def _files(self) -> list[re.Match[str]]:
+        with system_errors(self.folder, "reading"):
+            return [match for name in names_in(self.folder) if (match := _PIECE.fullmatch(name))]
+
     def _write(self, name: str, arrays: Arrays) -> None:
-        _write_arrays(self.folder / name, {_OWNER: self._key, **arrays})
+        _write_arrays(child(self.folder, name), {_OWNER: self._key, **arrays})
 
     def _read(self, name: str) -> Arrays | None:
-        path = self.folder / name
+        path = child(self.folder, name)
         arrays = _read_arrays(path)
         if arrays is None:
             return None
@@ -134,18 +149,19 @@ class DiskStore:
         return arrays
 
 
-def partial_path(out: str | Path) -> Path:
+def partial_path(out: str | Path) -> Place:
     """Return the folder of the unfinished cube `out`: ``NAME.partial``."""
-    out = Path(out)
-    return out.with_name(out.name + PARTIAL_SUFFIX)
+    at = place(out)
+    return beside(at, name_of(at) + PARTIAL_SUFFIX)
 
 
-def published_path(partial: str | Path) -> Path:
+def published_path(partial: str | Path) -> Place:
     """Return the name that the cube of a partial folder will have, or raise `InputError` where it is none by name."""
-    partial = Path(partial)
-    if not partial.name.lower().endswith(PARTIAL_SUFFIX) or len(partial.name) == len(PARTIAL_SUFFIX):
+    at = place(partial)
+    name = name_of(at)
+    if not name.lower().endswith(PARTIAL_SUFFIX) or len(name) == len(PARTIAL_SUFFIX):
         raise InputError(f"{partial} is no unfinished cube: give a folder that ends with {PARTIAL_SUFFIX}")
-    return partial.with_name(partial.name[: -len(PARTIAL_SUFFIX)])
+    return beside(at, name[: -len(PARTIAL_SUFFIX)])
 
 
 def open_partial(out: str | Path, job: Job, *, overwrite: bool = False) -> DiskStore:
@@ -163,15 +179,11 @@ def open_partial(out: str | Path, job: Job, *, overwrite: bool = False) -> DiskS
         cannot be written.
     """
     folder = check_partial(out)
-    with system_errors(folder, "writing"):
-        folder.mkdir(exist_ok=True)
-        for item in folder.iterdir():
-            with suppress(FileNotFoundError):  # somebody else removed or renamed it
-                if _HIDDEN.fullmatch(item.name) and time.time() - item.stat().st_mtime > _STALE_S:
-                    item.unlink()
+    if isinstance(folder, Path):
+        _make(folder)
     if overwrite and not _is_of(folder, job):
         _empty(folder)
-    if not (folder / _JOB).exists():
+    if not exists(child(folder, _JOB)):
         _write_job(folder, job)
     changed = differences(_read_job(folder).fingerprint, fingerprint(job))
     if changed:
@@ -182,21 +194,39 @@ def open_partial(out: str | Path, job: Job, *, overwrite: bool = False) -> DiskS
     return DiskStore(folder)
 
 
-def check_partial(out: str | Path) -> Path:
+def _make(folder: Path) -> None:
+    """Make a partial folder where there is none, and remove what killed programs have left in it."""
+    with system_errors(folder, "writing"):
+        folder.mkdir(exist_ok=True)
+        for item in folder.iterdir():
+            with suppress(FileNotFoundError):  # somebody else removed or renamed it
+                if _HIDDEN.fullmatch(item.name) and time.time() - item.stat().st_mtime > _STALE_S:
+                    item.unlink()
+
+
+def begun_units(out: str | Path, job: Job) -> int | None:
+    """Return into how many units the job in the partial folder of `out` is split; None where it is another job."""
+    try:
+        said = _read_job(partial_path(out))
+    except InputError:  # what is damaged is nobody's
+        return None
+    return None if differences({**said.fingerprint, "units": job.units}, fingerprint(job)) else said.units
+
+
+def check_partial(out: str | Path) -> Place:
     """Return the partial folder of `out`, or raise `InputError` where something else stands there."""
     folder = partial_path(out)
     with system_errors(folder, "reading"):
-        other = (folder.exists() or folder.is_symlink()) and not is_partial(folder)
+        other = exists(folder) and not is_partial(folder)
     if other:
         raise InputError(f"{folder} stands where the unfinished cube would, and is none: move it or use another name")
     return folder
 
 
-def is_partial(partial: Path) -> bool:
+def is_partial(partial: Place) -> bool:
     """Tell whether there is a folder that holds nothing but parts of a job, or nothing."""
-    return partial.is_dir() and all(
-        item.name in (_JOB, _FRAMES) or _PIECE.fullmatch(item.name) or _HIDDEN.fullmatch(item.name)
-        for item in partial.iterdir()
+    return is_folder(partial) and all(
+        name in (_JOB, _FRAMES) or _PIECE.fullmatch(name) or _HIDDEN.fullmatch(name) for name in names_in(partial)
     )
 
 
@@ -207,7 +237,10 @@ def discard_partial(out: str | Path) -> None:
         raise InputError(f"there is no unfinished cube {folder} to remove: check the name")
     _empty(folder)
     with system_errors(folder, "removing"):
-        folder.rmdir()
+        if isinstance(folder, Path):
+            folder.rmdir()  # and not what somebody else has just put there
+        else:
+            remove(folder)
 
 
 def load_job(partial: str | Path) -> Job:
@@ -218,11 +251,11 @@ def load_job(partial: str | Path) -> Job:
     InputError
         Where there is no such folder, no job in it yet, or it is damaged.
     """
-    folder = Path(partial)
-    said = _read_job(folder)
-    arrays = _read_arrays(folder / _FRAMES)
+    folder = place(partial)
+    said, path = _read_job(folder), child(folder, _FRAMES)
+    arrays = _read_arrays(path)
     if arrays is None:
-        raise _damaged(folder / _FRAMES, "it is missing")
+        raise _damaged(path, "it is missing")
     try:
         pictures, weights = arrays["pictures"], arrays["weights"]
         geometry = {name: arrays[name] for name in _GEOMETRY}
@@ -235,10 +268,10 @@ def load_job(partial: str | Path) -> Job:
             **{name: getattr(said, name) for name in _PLAIN},
         )
     except (ValueError, IndexError, KeyError) as error:
-        raise _damaged(folder / _FRAMES, str(error)) from error
+        raise _damaged(path, str(error)) from error
     changed = differences({**said.fingerprint, "lightcube": version("lightcube")}, fingerprint(job))
     if changed:
-        raise _damaged(folder / _FRAMES, "; ".join(changed))
+        raise _damaged(path, "; ".join(changed))
     return job
 
 
@@ -246,10 +279,10 @@ def load_job(partial: str | Path) -> Job:
 _PLAIN = ("method", "lamp", "lamp_power", "hold", "black", "iterations", "dtype", "units", "provenance")
 
 
-def _write_job(folder: Path, job: Job) -> None:
+def _write_job(folder: Place, job: Job) -> None:
     frames, grid = job.frames, job.grid
     geometry = {name: getattr(frames.views, name) for name in _GEOMETRY}
-    _write_arrays(folder / _FRAMES, {"pictures": frames.pictures, "weights": frames.weight, **geometry})
+    _write_arrays(child(folder, _FRAMES), {"pictures": frames.pictures, "weights": frames.weight, **geometry})
     document = {
         "format_version": FORMAT_VERSION,
         "written_by": f"lightcube {version('lightcube')}",
@@ -262,17 +295,18 @@ def _write_job(folder: Path, job: Job) -> None:
         "enough_db": None if np.isinf(job.enough_db) else job.enough_db,
         **{name: plain(getattr(job, name)) for name in _PLAIN},
     }
-    with _written(folder / _JOB) as file:
+    with _written(child(folder, _JOB)) as file:
         file.write(json.dumps(document, indent=1).encode())
 
 
-def _read_job(folder: Path) -> _JobJson:
-    path = folder / _JOB
-    if not folder.is_dir():
+def _read_job(folder: Place) -> _JobJson:
+    path = child(folder, _JOB)
+    if not is_folder(folder):
         raise InputError(f"there is no unfinished cube {folder}: give a folder that ends with {PARTIAL_SUFFIX}")
     try:
         with system_errors(path, "reading"):
-            document = json.loads(path.read_bytes()) if path.exists() else None
+            data = read_bytes(path)
+        document = None if data is None else json.loads(data)
         if document is None:
             raise InputError(f"{folder} has nothing of a cube in it yet: start again without it")
         if isinstance(document, Mapping) and document.get("format_version", FORMAT_VERSION) != FORMAT_VERSION:
@@ -285,7 +319,7 @@ def _read_job(folder: Path) -> _JobJson:
         raise _damaged(path, f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from error
 
 
-def _is_of(folder: Path, job: Job) -> bool:
+def _is_of(folder: Place, job: Job) -> bool:
     """Whether the folder was begun for this job."""
     try:
         return not differences(_read_job(folder).fingerprint, fingerprint(job))
@@ -293,29 +327,29 @@ def _is_of(folder: Path, job: Job) -> bool:
         return False
 
 
-def _empty(folder: Path) -> None:
+def _empty(folder: Place) -> None:
     """Remove all that stands in a partial folder, the job last: no piece is ever there without it."""
     with system_errors(folder, "removing"):
-        for item in sorted(folder.iterdir(), key=lambda item: item.name == _JOB):
-            item.unlink(missing_ok=True)
+        for name in sorted(names_in(folder), key=lambda name: name == _JOB):
+            remove(child(folder, name))
 
 
 def _key(said: Fingerprint) -> str:
     return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
 
 
-def _write_arrays(path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
+def _write_arrays(path: Place, arrays: Mapping[str, NDArray[Any]]) -> None:
     with _written(path) as file:
         np.savez(file, allow_pickle=False, **arrays)
 
 
-def _read_arrays(path: Path) -> dict[str, NDArray[Any]] | None:
+def _read_arrays(path: Place) -> dict[str, NDArray[Any]] | None:
     """All arrays of a file, or None where there is none."""
     try:
         with (
             system_errors(path, "reading"),
             suppress(FileNotFoundError),
-            path.open("rb") as file,
+            _opened(path) as file,
             np.load(file, allow_pickle=False) as archive,
         ):
             return {name: archive[name] for name in archive.files}
@@ -325,9 +359,24 @@ def _read_arrays(path: Path) -> dict[str, NDArray[Any]] | None:
     return None
 
 
+def _opened(path: Place) -> IO[bytes]:
+    """Open a file; what is at a URL is fetched first."""
+    if isinstance(path, Path):
+        return path.open("rb")
+    data = read_bytes(path)
+    if data is None:
+        raise FileNotFoundError
+    return io.BytesIO(data)
+
+
 @contextmanager
-def _written(path: Path) -> Iterator[IO[bytes]]:
+def _written(path: Place) -> Iterator[IO[bytes]]:
     """Yield a file that gets the name `path`, in place of what had it before, once it is whole and on the disk."""
+    if not isinstance(path, Path):
+        buffer = io.BytesIO()
+        yield buffer
+        write_whole(path, buffer.getvalue())
+        return
     fresh = path.with_name(f".{path.name}-{uuid4().hex}")
     with system_errors(path, "writing"):
         try:
@@ -341,7 +390,7 @@ def _written(path: Path) -> Iterator[IO[bytes]]:
             raise
 
 
-def _damaged(path: Path, what: str) -> InputError:
-    if path.name in (_JOB, _FRAMES):
+def _damaged(path: Place, what: str) -> InputError:
+    if name_of(path) in (_JOB, _FRAMES):
         return InputError(f"{path} is damaged ({what}): remove the folder and start again")
     return InputError(f"{path} is damaged ({what}): remove it, and that piece is computed again")
