@@ -66,14 +66,14 @@ def some_job(**options: Any) -> Job:
 
 @pytest.fixture(autouse=True)
 def few_coarse_passes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lightcube.pieces.COARSE_PASSES", 5)
+    monkeypatch.setattr("lightcube.job.COARSE_PASSES", 5)
 
 
 @contextmanager
 def scheduler(folder: Path, workers: int = 2, deadly: str = "", more: str = "") -> Iterator[str]:
     """A scheduler and its workers, all of them processes."""
     preload = folder / "slow.py"
-    preload.write_text(f"DEADLY = {deadly!r}\n{SLOW}\npieces.COARSE_PASSES = 5\n{more}")
+    preload.write_text(f"DEADLY = {deadly!r}\n{SLOW}\nfrom lightcube import job\njob.COARSE_PASSES = 5\n{more}")
     told = folder / "scheduler.json"
     common = ("--dashboard-address", "127.0.0.1:0", "--scheduler-file", str(told))
     begin = "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0"

@@ -174,7 +174,7 @@ def test_what_was_killed_goes_on_to_the_same_bits(options: dict[str, Any], monke
     monkeypatch.setattr("lightcube.pieces.FIRST_CHECKPOINT_S", 0.0)
     monkeypatch.setattr("lightcube.pieces.CHECKPOINT_S", 0.0)
     monkeypatch.setattr("lightcube.pieces._PATIENCE", 0.0)
-    monkeypatch.setattr("lightcube.pieces.COARSE_PASSES", 9)
+    monkeypatch.setattr("lightcube.job.COARSE_PASSES", 9)
     made = job(**options)
     straight = run(made)
     store, kills = Forgetful(lambda name, iteration: iteration % 3 != 1), 0
@@ -199,7 +199,7 @@ def test_what_was_killed_goes_on_to_the_same_bits(options: dict[str, Any], monke
 
 @pytest.mark.parametrize("options", [{}, RAISED, LEVEL], ids=str)
 def test_what_was_stopped_goes_on_to_the_same_bits(options: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lightcube.pieces.COARSE_PASSES", 9)
+    monkeypatch.setattr("lightcube.job.COARSE_PASSES", 9)
     made, store = job(**options), MemoryStore()
     straight = run(made)
     for _ in range(40):
@@ -349,9 +349,15 @@ def test_time_is_measured_on_a_smaller_cube(method: str, monkeypatch: pytest.Mon
     assert needs.seconds_a_pass(made) == pytest.approx(0.25 * products / fewer[0] + 0.75 * numbers / fewer[1])
 
 
+def test_a_look_takes_no_more_passes_at_smaller_sizes() -> None:
+    assert job(iterations=30).coarse_passes == 30
+    assert job(iterations=1000).coarse_passes == 100
+    assert job(method="sirt", lamp_power=1.0, iterations=None).coarse_passes == 100
+
+
 def test_passes_count_the_coarse_ones_by_their_work() -> None:
     assert needs.expected_passes(job(iterations=7)) == 7
-    assert needs.expected_passes(job(**RAISED, iterations=7)) == pytest.approx(7 + 100 / 8)
+    assert needs.expected_passes(job(**RAISED, iterations=7)) == pytest.approx(7 + 7 / 8)
     assert needs.expected_passes(job(method="sirt", iterations=None)) == 100
     assert needs.expected_passes(job(method="row-reduction", iterations=None)) is None
 

@@ -31,8 +31,9 @@ __all__ = ["run"]
 
 #: The command line, with coarse passes and checkpoints that suit a small cube.
 PROGRAM = """
-from lightcube import conditioning, needs, pieces, prediction
-pieces.COARSE_PASSES, pieces.FIRST_CHECKPOINT_S, pieces.CHECKPOINT_S, pieces._PATIENCE = 20, 0.0, 0.0, 0.0
+from lightcube import conditioning, job, needs, pieces, prediction
+job.COARSE_PASSES = 20
+pieces.FIRST_CHECKPOINT_S = pieces.CHECKPOINT_S = pieces._PATIENCE = 0.0
 needs.PROGRAM, prediction.PASSES = 0, 1
 conditioning._PASSES = conditioning._WALKS = conditioning._SWAPS = 1
 from lightcube.cli import main

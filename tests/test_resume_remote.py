@@ -23,6 +23,11 @@ __all__ = ["bucket", "remote", "run", "s3"]
 SMALL = ("--shape", "6,8,7", "--frame-width", "0.7", "--hold", "0", "--iterations", "5")
 
 
+@pytest.fixture(autouse=True)
+def few_coarse_passes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lightcube.pieces.COARSE_PASSES", 3)
+
+
 def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     pictures = np.random.default_rng(0).uniform(0.1, 1, (3, 6, 5, 3)).astype(np.float32)
     photographs, out = io.write_pictures(f"{remote}/photographs", pictures), f"{remote}/a.zarr"
@@ -52,7 +57,7 @@ def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch
 
 
 def test_units_and_merge_at_a_url(run, remote: str) -> None:  # type: ignore[no-untyped-def]
-    made, out = job(**LEVEL), f"{remote}/a.npz"
+    made, out = job(**LEVEL, iterations=2), f"{remote}/a.npz"
     store = open_partial(out, made)
     assert store.is_empty()
     assert fingerprint(load_job(store.folder)) == fingerprint(made)
@@ -60,14 +65,15 @@ def test_units_and_merge_at_a_url(run, remote: str) -> None:  # type: ignore[no-
         assert solve_piece(made, made.pieces[0], open_partial(out, made))
         assert solve_piece(made, name, open_partial(out, made))
     assert store.names() == set(made.pieces)
-    assert same(merged(made, store), solved(made))
+    whole = solved(made)
+    assert same(merged(made, store), whole)
     assert run("merge", f"{out}.partial").code == 0
-    np.testing.assert_array_equal(load(out).extinction, solved(made).cube.extinction)
+    np.testing.assert_array_equal(load(out).extinction, whole.cube.extinction)
     assert not files_at(f"{out}.partial")
 
 
 def test_what_is_there_is_published_or_replaced(remote: str) -> None:
-    out, made = f"{remote}/a.zarr", job(**LEVEL)
+    out, made = f"{remote}/a.zarr", job(**LEVEL, iterations=2)
     with pytest.raises(InputError, match="there is no unfinished cube"):
         publish(f"{out}.partial")
     store = open_partial(out, made)
@@ -78,7 +84,7 @@ def test_what_is_there_is_published_or_replaced(remote: str) -> None:
     with pytest.warns(UnfinishedCube):
         assert load(out).status == "interrupted"
     assert solve_piece(made, made.pieces[0], open_partial(out, made))
-    other = job(**{**LEVEL, "units": 2})
+    other = job(**{**LEVEL, "units": 2}, iterations=2)
     with pytest.raises(InputError, match="units was 3 and is 2"):
         open_partial(out, other)
     assert io.begun_units(out, other) == 3

@@ -14,7 +14,7 @@ from lightcube.geometry import Grid
 from lightcube.problem import BLACK, Lamp, is_level
 from lightcube.units import Part, halvings, split
 
-#: Passes at each of the coarser sizes.
+#: Passes at each of the coarser sizes at most; no more than of the cube itself.
 COARSE_PASSES = 100
 #: The lower bound of the power of a lamp that is not fixed.
 LAMP_MIN = 1e-4
@@ -78,6 +78,11 @@ class Job:
         return max(halvings(self.grid), int(self.frozen)) if self.method == "display" else 0
 
     @property
+    def coarse_passes(self) -> int:
+        """Passes at each of the coarser sizes."""
+        return min(COARSE_PASSES, self.iterations or COARSE_PASSES)
+
+    @property
     def lamp_bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Lower and upper bound of the lamp powers, each ``(lamps, channels)``."""
         high = np.full((1 if self.lamp == "global" else len(self.frames), self.channels), self.lamp_power)
@@ -116,7 +121,7 @@ def unit_name(unit: int) -> str:
 def shares(job: Job) -> dict[str, float]:
     """Work of each piece in passes of the whole cube; a method that does not tell how many it needs counts as 1."""
     columns = sum(part.columns for part in job.parts)
-    work = {level_name(level): COARSE_PASSES / 8**level for level in range(job.levels, 0, -1)}
+    work = {level_name(level): job.coarse_passes / 8**level for level in range(job.levels, 0, -1)}
     for name, part in zip(job.unit_names, job.parts, strict=True):
         work[name] = (job.iterations or 1) * part.columns / columns
     return work

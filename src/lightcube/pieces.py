@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.coarse import enlarged
-from lightcube.job import COARSE_PASSES, Job, level_name, shares
+from lightcube.job import Job, level_name, shares
 from lightcube.problem import Problem, pose, volume_from_unknowns
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Progress, Result
@@ -123,7 +123,7 @@ def _posed(
             return None
         return problem.unknowns(start_of(job, store, level, problem.part))
 
-    return problem, start, (low, high), COARSE_PASSES if kind == "level" else job.iterations
+    return problem, start, (low, high), job.coarse_passes if kind == "level" else job.iterations
 
 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats:
