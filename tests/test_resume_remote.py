@@ -23,11 +23,6 @@ __all__ = ["bucket", "remote", "run", "s3"]
 SMALL = ("--shape", "6,8,7", "--frame-width", "0.7", "--hold", "0", "--iterations", "5")
 
 
-@pytest.fixture(autouse=True)
-def few_coarse_passes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lightcube.pieces.COARSE_PASSES", 3)
-
-
 def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     pictures = np.random.default_rng(0).uniform(0.1, 1, (3, 6, 5, 3)).astype(np.float32)
     photographs, out = io.write_pictures(f"{remote}/photographs", pictures), f"{remote}/a.zarr"
