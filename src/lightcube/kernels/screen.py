@@ -23,9 +23,9 @@ _SMALL, _TINY = 3e-4, 1e-6
 
 
 @njit(cache=True)
-def _run(columns: int) -> int:
-    """Rows of a run at most."""
-    return max(1, _RUN // columns)
+def _run(rows: int, columns: int) -> int:
+    """Rows of a run at most, where a part has so many of so many columns."""
+    return max(1, min(_RUN // columns, rows))
 
 
 @njit(cache=True)
@@ -40,8 +40,7 @@ def _run_end(view_of_row: Array, row: int, last: int) -> int:
 @njit(cache=True)
 def _repeat(few: Array, many: Array) -> None:
     """Fill `many` with copies of `few`."""
-    for i in range(len(many)):
-        many[i] = few[i % len(few)]
+    many.reshape(-1, len(few))[:] = few
 
 
 @njit(cache=True)
@@ -61,11 +60,12 @@ def descend(
     """
     rows, columns = absorbance.shape
     now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), slopes.reshape(-1)
+    run = _run(rows // _PARTS + 1, columns)
     for part in prange(_PARTS):
-        bright, heavy = np.empty(_run(columns) * columns, now.dtype), np.empty(_run(columns) * columns, now.dtype)
+        bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < last:
-            end = _run_end(view_of_row, row, min(last, row + _run(columns)))
+            end = _run_end(view_of_row, row, min(last, row + run))
             _repeat(lamp[view_of_row[row]], bright)
             for each in range(row, end):
                 heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
@@ -94,24 +94,23 @@ def arrive(
     """
     rows, columns = now.shape
     before, after, aim = last.reshape(-1), now.reshape(-1), wanted.reshape(-1)
-    run = _run(columns) * columns
-    sums, least = np.zeros((_PARTS, run)), np.full((_PARTS, run), np.inf, now.dtype)
+    run = _run(rows // _PARTS + 1, columns)
+    sums, least = np.zeros((_PARTS, run * columns)), np.full((_PARTS, run * columns), np.inf, now.dtype)
     for part in prange(_PARTS):
-        bright, heavy = np.empty(run, now.dtype), np.empty(run, now.dtype)
+        bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, stop = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < stop:
-            end = _run_end(view_of_row, row, min(stop, row + _run(columns)))
+            end = _run_end(view_of_row, row, min(stop, row + run))
             _repeat(lamp[view_of_row[row]], bright)
             for each in range(row, end):
                 heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
             here = slice(row * columns, end * columns)
             _arrive_run(bright, before[here], after[here], aim[here], heavy, curve, sums[part], least[part])
             row = end
-    total, lowest = np.zeros(columns), np.full(columns, np.inf)
-    for part in range(_PARTS):
-        for i in range(run):
-            total[i % columns] += 0.5 * sums[part, i]
-            lowest[i % columns] = min(lowest[i % columns], least[part, i])
+    total = 0.5 * sums.reshape(-1, columns).sum(axis=0)
+    lowest = least.reshape(-1, columns)[0].astype(np.float64)
+    for each in least.reshape(-1, columns):
+        lowest = np.minimum(lowest, each)
     return total, lowest
 
 
@@ -139,11 +138,12 @@ def curvatures(
     """Multiply `values` by the weighted `curvature` that holds while ln light rises by no more than `room`."""
     rows, columns = absorbance.shape
     now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), values.reshape(-1)
+    run = _run(rows // _PARTS + 1, columns)
     for part in prange(_PARTS):
-        bright, heavy = np.empty(_run(columns) * columns, now.dtype), np.empty(_run(columns) * columns, now.dtype)
+        bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < last:
-            end = _run_end(view_of_row, row, min(last, row + _run(columns)))
+            end = _run_end(view_of_row, row, min(last, row + run))
             _repeat(lamp[view_of_row[row]], bright)
             for each in range(row, end):
                 heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
@@ -169,24 +169,22 @@ def _pulls(
     """Write the first and second derivative of the objective by each channel's ln P, for some rows, to `sums`."""
     columns = absorbance.shape[1]
     now, aim = absorbance.reshape(-1), wanted.reshape(-1)
-    run = _run(columns) * columns
-    bright, heavy = np.empty(run, now.dtype), np.empty(run, now.dtype)
-    slopes, bends = np.zeros(run), np.zeros(run)
+    run = _run(len(rows), columns)
+    bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
+    slopes, bends = np.zeros(run * columns), np.zeros(run * columns)
     _repeat(lamp.astype(now.dtype), bright)
     k = 0
     while k < len(rows):
         row, end = rows[k], k + 1
-        while end < len(rows) and end - k < _run(columns) and rows[end] == row + end - k:
+        while end < len(rows) and end - k < run and rows[end] == row + end - k:
             end += 1
         for each in range(end - k):
             heavy[each * columns : (each + 1) * columns] = weights[row + each]
         here = slice(row * columns, (row + end - k) * columns)
         _pull_run(bright, now[here], aim[here], heavy, curve, slopes, bends)
         k = end
-    sums[:] = 0
-    for i in range(run):
-        sums[0, i % len(lamp)] += slopes[i]
-        sums[1, i % len(lamp)] += bends[i]
+    sums[0] = slopes.reshape(-1, len(lamp)).sum(axis=0)
+    sums[1] = bends.reshape(-1, len(lamp)).sum(axis=0)
 
 
 @parallel
