@@ -109,8 +109,8 @@ def arrive(
             row = end
     total = 0.5 * sums.reshape(-1, columns).sum(axis=0)
     lowest = least.reshape(-1, columns)[0].astype(np.float64)
-    for each in least.reshape(-1, columns):
-        lowest = np.minimum(lowest, each)
+    for line in least.reshape(-1, columns):
+        lowest = np.minimum(lowest, line)
     return total, lowest
 
 
