@@ -352,9 +352,14 @@ def test_files_of_a_folder(folder: str) -> None:
     assert not _remote.exists(one)
     assert _remote.names_in(at) == []
     for data in (b"first", b"second"):
-        _remote.write_whole(one, data)
+        with _remote.written(one) as file:
+            file.write(data)
         assert _remote.read_bytes(one) == data
-    _remote.write_whole(_remote.beside(one, "two"), b"")
+    with _remote.written(_remote.beside(one, "two")):
+        pass
+    with pytest.raises(ZeroDivisionError), _remote.written(one) as file:
+        file.write(1 // 0 * b"third")
+    assert _remote.read_bytes(one) == data
     assert _remote.names_in(at) == ["one [1].npz", "two"]
     assert _remote.is_folder(at)
     assert not _remote.is_folder(one)

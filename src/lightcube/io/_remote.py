@@ -5,6 +5,7 @@ before they are read, and sent when they are whole. A folder is not sent in one 
 mark, and whoever finds the mark takes the folder for unfinished.
 """
 
+import io
 import os
 import re
 import shutil
@@ -13,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 from urllib.request import url2pathname
 from uuid import uuid4
 
@@ -114,8 +115,9 @@ def read_bytes(at: Place) -> bytes | None:
     return None
 
 
-def write_whole(at: Place, data: bytes) -> None:
-    """Put a file in place of what had its name, whole and on the disk, or leave that as it was.
+@contextmanager
+def written(at: Place) -> Iterator[IO[bytes]]:
+    """Yield a file that gets the name `at`, in place of what had it before, once it is whole and on the disk.
 
     The folder that it goes into is there already; where URLs know folders it is made.
 
@@ -125,13 +127,15 @@ def write_whole(at: Place, data: bytes) -> None:
         Where a URL cannot be written. A path raises `OSError`, as all that is done to paths here.
     """
     if not isinstance(at, Path):
+        buffer = io.BytesIO()
+        yield buffer
         with _reaching(at, "writing") as (store, path):
-            _put(store, path, lambda where: store.pipe_file(where, data))
+            _put(store, path, lambda where: store.pipe_file(where, buffer.getvalue()))
         return
     fresh = at.with_name(_hidden(at.name))
     try:
         with fresh.open("xb") as file:
-            file.write(data)
+            yield file
             file.flush()
             os.fsync(file.fileno())
         fresh.replace(at)

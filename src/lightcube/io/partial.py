@@ -8,16 +8,14 @@ hidden name and then renamed: whenever the work is killed, what has a name is wh
 import hashlib
 import io
 import json
-import os
 import re
 import time
 import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 from typing import IO, Annotated, Any, Literal
-from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +37,7 @@ from lightcube.io._remote import (
     place,
     read_bytes,
     remove,
-    write_whole,
+    written,
 )
 from lightcube.job import Fingerprint, Job, differences, fingerprint
 from lightcube.problem import Lamp
@@ -295,7 +293,8 @@ def _write_job(folder: Place, job: Job) -> None:
         "enough_db": None if np.isinf(job.enough_db) else job.enough_db,
         **{name: plain(getattr(job, name)) for name in _PLAIN},
     }
-    with _written(child(folder, _JOB)) as file:
+    at = child(folder, _JOB)
+    with system_errors(at, "writing"), written(at) as file:
         file.write(json.dumps(document, indent=1).encode())
 
 
@@ -339,7 +338,7 @@ def _key(said: Fingerprint) -> str:
 
 
 def _write_arrays(path: Place, arrays: Mapping[str, NDArray[Any]]) -> None:
-    with _written(path) as file:
+    with system_errors(path, "writing"), written(path) as file:
         np.savez(file, allow_pickle=False, **arrays)
 
 
@@ -367,27 +366,6 @@ def _opened(path: Place) -> IO[bytes]:
     if data is None:
         raise FileNotFoundError
     return io.BytesIO(data)
-
-
-@contextmanager
-def _written(path: Place) -> Iterator[IO[bytes]]:
-    """Yield a file that gets the name `path`, in place of what had it before, once it is whole and on the disk."""
-    if not isinstance(path, Path):
-        buffer = io.BytesIO()
-        yield buffer
-        write_whole(path, buffer.getvalue())
-        return
-    fresh = path.with_name(f".{path.name}-{uuid4().hex}")
-    with system_errors(path, "writing"):
-        try:
-            with fresh.open("xb") as file:
-                yield file
-                file.flush()
-                os.fsync(file.fileno())
-            fresh.replace(path)
-        except BaseException:
-            fresh.unlink(missing_ok=True)
-            raise
 
 
 def _damaged(path: Place, what: str) -> InputError:

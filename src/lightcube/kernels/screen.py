@@ -29,18 +29,31 @@ def _run(rows: int, columns: int) -> int:
 
 
 @njit(cache=True)
-def _run_end(view_of_row: Array, row: int, last: int) -> int:
-    """Return the row after those from `row` on, before `last`, that belong to the same view."""
-    end = row + 1
-    while end < last and view_of_row[end] == view_of_row[row]:
-        end += 1
-    return end
-
-
-@njit(cache=True)
 def _repeat(few: Array, many: Array) -> None:
     """Fill `many` with copies of `few`."""
     many.reshape(-1, len(few))[:] = few
+
+
+@njit(cache=True)
+def _flatten(weights: Array, row: int, end: int, heavy: Array) -> None:
+    """Write rows of `weights`, in whatever memory they lie, to `heavy`, one after the other."""
+    columns = weights.shape[1]
+    for each in range(row, end):
+        heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
+
+
+@njit(cache=True)
+def _next_run(lamp: Array, view_of_row: Array, weights: Array, row: int, last: int, bright: Array, heavy: Array) -> int:
+    """Prepare the run of rows from `row` on, of one view and before `last`, that fits; return the row after it.
+
+    Its ln P goes to `bright` and its weights to `heavy`, a number for each entry.
+    """
+    end, last = row + 1, min(last, row + len(bright) // weights.shape[1])
+    while end < last and view_of_row[end] == view_of_row[row]:
+        end += 1
+    _repeat(lamp[view_of_row[row]], bright)
+    _flatten(weights, row, end, heavy)
+    return end
 
 
 @njit(cache=True)
@@ -65,10 +78,7 @@ def descend(
         bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < last:
-            end = _run_end(view_of_row, row, min(last, row + run))
-            _repeat(lamp[view_of_row[row]], bright)
-            for each in range(row, end):
-                heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
+            end = _next_run(lamp, view_of_row, weights, row, last, bright, heavy)
             here = slice(row * columns, end * columns)
             _descend_run(bright, now[here], aim[here], heavy, curve, out[here])
             row = end
@@ -100,10 +110,7 @@ def arrive(
         bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, stop = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < stop:
-            end = _run_end(view_of_row, row, min(stop, row + run))
-            _repeat(lamp[view_of_row[row]], bright)
-            for each in range(row, end):
-                heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
+            end = _next_run(lamp, view_of_row, weights, row, stop, bright, heavy)
             here = slice(row * columns, end * columns)
             _arrive_run(bright, before[here], after[here], aim[here], heavy, curve, sums[part], least[part])
             row = end
@@ -143,10 +150,7 @@ def curvatures(
         bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < last:
-            end = _run_end(view_of_row, row, min(last, row + run))
-            _repeat(lamp[view_of_row[row]], bright)
-            for each in range(row, end):
-                heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
+            end = _next_run(lamp, view_of_row, weights, row, last, bright, heavy)
             here = slice(row * columns, end * columns)
             _curve_run(bright, now[here], aim[here], heavy, curve, room, out[here])
             row = end
@@ -178,8 +182,7 @@ def _pulls(
         row, end = rows[k], k + 1
         while end < len(rows) and end - k < run and rows[end] == row + end - k:
             end += 1
-        for each in range(end - k):
-            heavy[each * columns : (each + 1) * columns] = weights[row + each]
+        _flatten(weights, row, row + end - k, heavy)
         here = slice(row * columns, (row + end - k) * columns)
         _pull_run(bright, now[here], aim[here], heavy, curve, slopes, bends)
         k = end
