@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 Floats = NDArray[np.floating]
-#: Bytes that a processor reads at a time.
-_LINE = 64
+#: Bytes that a processor reads at a time: a cache line.
+LINE = 64
 
 
 def empty(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
     """An array like numpy's, but begun at a whole cache line: the kernels' vectors then do not straddle two."""
     size = math.prod(shape) * np.dtype(dtype).itemsize
-    room = np.empty(size + _LINE, np.uint8)
-    start = -room.ctypes.data % _LINE
+    room = np.empty(size + LINE, np.uint8)
+    start = -room.ctypes.data % LINE
     return room[start : start + size].view(dtype).reshape(shape)
 
 

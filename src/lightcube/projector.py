@@ -13,7 +13,7 @@ from lightcube.errors import InputError
 from lightcube.geometry import PARALLEL, Grid, Views
 from lightcube.kernels import projection
 from lightcube.kernels.beam import max_pieces
-from lightcube.layout import empty
+from lightcube.layout import LINE, empty
 
 Floats = NDArray[np.floating[Any]]
 
@@ -74,7 +74,8 @@ class Projector:
         x = self._checked(x, self.shape[1])
         channels = x.shape[1]
         b = empty((self.shape[0] // self._stacked, self._stacked * channels), x.dtype)
-        projection.forward(self._beams, self._width, *self._plane(), x.reshape(self._voxels, -1), b, channels, _tasks())
+        rows = self._in_lines(x.reshape(self._voxels, -1))
+        projection.forward(self._beams, self._width, *self._plane(), rows, b, channels, _tasks())
         return b.reshape(self.shape[0], channels)
 
     def adjoint(self, b: Floats) -> Floats:
@@ -82,8 +83,8 @@ class Projector:
         b = self._checked(b, self.shape[0])
         channels = b.shape[1]
         x = empty((self._voxels, self.shape[1] // self._voxels * channels), b.dtype)
-        stacked = b.reshape(-1, self._stacked * channels)
-        projection.adjoint(self._beams, self._width, *self._plane(), stacked, x, channels, _tasks())
+        rows = self._in_lines(b.reshape(-1, self._stacked * channels))
+        projection.adjoint(self._beams, self._width, *self._plane(), rows, x, channels, _tasks())
         return x.reshape(self.shape[1], channels)
 
     def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -129,6 +130,18 @@ class Projector:
     @property
     def _voxels(self) -> int:
         return self.grid.shape[1] * self.grid.shape[2]
+
+    def _in_lines(self, rows: Floats) -> Floats:
+        """Rows that each begin at a whole cache line, longer ones if need be: they are quicker to add up.
+
+        With a raised lamp parts of rows are added up, from anywhere on.
+        """
+        length = -(-rows.shape[1] * rows.itemsize // LINE) * LINE // rows.itemsize
+        if length == rows.shape[1] or not self._level:
+            return rows
+        longer = empty((len(rows), length), rows.dtype)
+        projection.copy_rows(rows, longer)
+        return longer
 
     def _plane(self) -> tuple[int, int, float]:
         """What the kernels want to know of the grid: nx, ny, voxel side."""

@@ -3,7 +3,7 @@
 ``x`` is ``(ny * nx, slices * channels)`` and ``b`` is ``(beams, rows * channels)``. Beam ``view * width + column``
 starts at ``beams[view, 0] + column * beams[view, 1]`` and runs along ``beams[view, 2]`` (x, y, z in voxel sides) for
 the lowest picture row; row ``j`` is the same beam ``j`` voxels higher. So a piece in slice ``level`` joins column
-``i`` of ``b`` to column ``i + level * channels`` of ``x``.
+``i`` of ``b`` to column ``i + level * channels`` of ``x``. Where beams are level, rows of the source may be longer.
 
 Both directions go tile by tile of voxels and group by group of views: a tile's columns, and those of the beams
 through it, stay in the cache while their few pieces, traced once for all columns, are used. A task owns a part of its
@@ -279,6 +279,13 @@ def _by_voxel(
     for voxel in range(len(voxel_ends) - 1, 0, -1):
         voxel_ends[voxel] = voxel_ends[voxel - 1]
     voxel_ends[0] = 0
+
+
+@parallel
+def copy_rows(source: Array, target: Array) -> None:
+    """Write the rows of `source` to the beginnings of those of `target`, which may be longer."""
+    for row in prange(len(source)):
+        target[row, : source.shape[1]] = source[row]
 
 
 @njit(cache=True)
