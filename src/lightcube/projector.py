@@ -1,19 +1,21 @@
 """The matrix A: how much of each voxel each beam runs through."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import LinearOperator
 
 from lightcube.errors import InputError
 from lightcube.geometry import PARALLEL, Grid, Views
 from lightcube.kernels import projection
 from lightcube.kernels.beam import max_pieces
 from lightcube.layout import LINE, empty
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import LinearOperator
 
 Floats = NDArray[np.floating[Any]]
 
@@ -116,8 +118,10 @@ class Projector:
         entries = (np.broadcast_to(lengths, shape)[inside], (equations[inside], unknowns[inside]))
         return csr_array(entries, shape=self.shape)
 
-    def as_linear_operator(self, dtype: type[np.floating[Any]] = np.float64) -> LinearOperator[Any]:
+    def as_linear_operator(self, dtype: type[np.floating[Any]] = np.float64) -> "LinearOperator[Any]":
         """Return the matrix as scipy's iterative solvers want it."""
+        from scipy.sparse.linalg import LinearOperator
+
         return LinearOperator(
             self.shape,
             matvec=lambda x: self.forward(np.asarray(x, dtype).reshape(-1, 1)),

@@ -5,8 +5,8 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import av
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
@@ -14,6 +14,9 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.io._containers import is_cut_short
 from lightcube.io._files import system_errors
+
+if TYPE_CHECKING:
+    import av
 
 #: ``(row, column, 3 or 4)`` in uint8 or uint16; a fourth channel is the opacity.
 Levels = NDArray[np.uint8] | NDArray[np.uint16]
@@ -145,6 +148,8 @@ def _deep_colour(path: Path, image: Image.Image) -> bool:
 
 def _deep(path: Path, image: Image.Image) -> Levels:
     """Levels of a PNG or TIFF with 16 bits in several channels, upright."""
+    import av
+
     image.load()  # for its checks of the whole file and its metadata; a TIFF loses its orientation here, so look again
     with Image.open(path) as again:
         orientation = again.getexif().get(_ORIENTATION) or image.getexif().get(_ORIENTATION, 1)
@@ -153,7 +158,7 @@ def _deep(path: Path, image: Image.Image) -> Levels:
     return _upright(video_levels(frame), orientation)
 
 
-def video_levels(frame: av.VideoFrame) -> Levels:
+def video_levels(frame: "av.VideoFrame") -> Levels:
     """Levels of a decoded video frame, with as many bits and channels as it has."""
     deep = max(part.bits for part in frame.format.components) > 8
     alpha = any(part.is_alpha for part in frame.format.components)

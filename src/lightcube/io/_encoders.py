@@ -7,14 +7,16 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import chain
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
-import av
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
+
+if TYPE_CHECKING:
+    import av
 
 Levels = NDArray[np.uint8]
 
@@ -57,10 +59,9 @@ def encode_mp4(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
     first = next(all_pictures)
     codec = _MP4_COMMON if _is_doubled(first) else _MP4
 
-    def frames() -> Iterator[av.VideoFrame]:
+    def frames() -> Iterator["av.VideoFrame"]:
         for picture in chain([first], all_pictures):
-            rgb = av.VideoFrame.from_ndarray(picture, format="rgb24")
-            frame = rgb.reformat(format=codec.pixels, dst_colorspace=_BT709, dst_color_range=_NARROW)
+            frame = _rgb_frame(picture).reformat(format=codec.pixels, dst_colorspace=_BT709, dst_color_range=_NARROW)
             frame.colorspace, frame.color_range = _BT709, _NARROW
             yield frame
 
@@ -77,12 +78,12 @@ def _is_doubled(picture: Levels) -> bool:
 
 def encode_webm(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
     """VP9 in RGB, lossless."""
-    _encode(path, (av.VideoFrame.from_ndarray(picture, format="rgb24") for picture in pictures), fps, _WEBM)
+    _encode(path, map(_rgb_frame, pictures), fps, _WEBM)
 
 
 def encode_apng(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
     """Animated PNG, lossless, looping."""
-    _encode(path, (av.VideoFrame.from_ndarray(picture, format="rgb24") for picture in pictures), fps, _APNG)
+    _encode(path, map(_rgb_frame, pictures), fps, _APNG)
 
 
 def encode_gif(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
@@ -147,8 +148,10 @@ def _write_chunk(file: io.BufferedWriter, name: bytes, data: bytes) -> None:
     file.write(name + len(data).to_bytes(4, "little") + data)
 
 
-def _encode(path: Path, frames: Iterator[av.VideoFrame], fps: Fraction, codec: _Codec) -> None:
+def _encode(path: Path, frames: Iterator["av.VideoFrame"], fps: Fraction, codec: _Codec) -> None:
     """Encode `frames` into one video stream."""
+    import av
+
     stream = None
     with av.open(str(path), "w", format=codec.container, options=codec.container_options) as container:
         for frame in frames:
@@ -164,8 +167,17 @@ def _encode(path: Path, frames: Iterator[av.VideoFrame], fps: Fraction, codec: _
             container.mux(stream.encode())
 
 
-def _palette_frame(index: Levels, palette: Levels) -> av.VideoFrame:
+def _rgb_frame(picture: Levels) -> "av.VideoFrame":
+    """A picture ``(row, column, 3)``."""
+    import av
+
+    return av.VideoFrame.from_ndarray(picture, format="rgb24")
+
+
+def _palette_frame(index: Levels, palette: Levels) -> "av.VideoFrame":
     """Indices ``(row, column)`` into a palette ``(256, 4)`` of opacity, red, green, blue."""
+    import av
+
     return av.VideoFrame.from_ndarray((index, palette), format="pal8")  # type: ignore[arg-type]  # PyAV wants a pair
 
 

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import av
 import numpy as np
 
 from lightcube.errors import InputError
@@ -20,6 +19,8 @@ def read_video(path: Path, budget: Budget, take: Take) -> None:
     InputError
         Where the file is damaged or cut short, or has no video in it.
     """
+    import av
+
     with decoding(path):
         refuse_cut_short(path)
         with path.open("rb") as file, av.open(file, "r", options={"format_whitelist": _FORMATS}) as container:

@@ -8,7 +8,6 @@ from fractions import Fraction
 from pathlib import Path, PurePath
 from typing import TypeVar
 
-import av
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
@@ -119,8 +118,10 @@ def write_pictures(
     with written_whole(at, overwrite=overwrite, replaceable=_is_frames_folder) as fresh:
         try:
             writer(fresh, _checked(pictures, count, int(scale)), job, clipped)
-        except av.error.FFmpegError as error:
-            if isinstance(error, OSError):
+        except Exception as error:
+            from av.error import FFmpegError
+
+            if isinstance(error, OSError) or not isinstance(error, FFmpegError):
                 raise
             raise InputError(
                 f"{path} cannot be encoded ({error.strerror}): try another suffix, fewer or smaller pictures"

@@ -58,7 +58,7 @@ Easing = Literal["linear", "ease-in", "ease-out", "ease-in-out", "smooth", "step
 
 
 class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 class Key(_Table):
