@@ -76,7 +76,9 @@ class Projector:
         x = self._checked(x, self.shape[1])
         channels = x.shape[1]
         b = empty((self.shape[0] // self._stacked, self._stacked * channels), x.dtype)
-        rows = self._in_lines(x.reshape(self._voxels, -1))
+        rows = x.reshape(self._voxels, -1)
+        if len(b) >= len(rows):  # else it does not pay
+            rows = self._in_lines(rows)
         projection.forward(self._beams, self._width, *self._plane(), rows, b, channels, _tasks())
         return b.reshape(self.shape[0], channels)
 
