@@ -18,6 +18,7 @@ from lightcube.frames import Frames
 from lightcube.geometry import Grid, spread_angles, turntable
 from lightcube.io import open_partial
 from lightcube.job import Job, differences, fingerprint, shares
+from lightcube.layout import columns_from_volume
 from lightcube.pieces import Step, solve_piece
 from lightcube.problem import is_level, pose
 from lightcube.solution import Solution, merged
@@ -295,6 +296,13 @@ def test_memory_grows_with_the_cube_the_pictures_and_the_matrix() -> None:
     assert needed("display", Grid((8, 8, 8)), (16, 16), 64) > 4 * small
     assert needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4) > small
     assert needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4, 35.0) > 2 * small
+
+
+@pytest.mark.parametrize("kind", [LEVEL, RAISED], ids=["level", "raised"])
+def test_a_cube_is_cast_from_where_it_lies(kind: dict[str, Any]) -> None:
+    """Scoring a large cube must not take the memory of a second one."""
+    extinction = run(job(**kind)).cube.extinction
+    assert np.shares_memory(columns_from_volume(extinction), extinction)
 
 
 @pytest.mark.skipif(INTERPRETED, reason="interpreted kernels hold arrays of their own, and take their time")

@@ -21,7 +21,7 @@ class Cube:
     Parameters
     ----------
     extinction
-        ``(channel, z, y, x)`` float32 in 1/mm, at least 0.
+        ``(channel, z, y, x)`` float32 in 1/mm, at least 0; its axes may lie in memory in any order.
     grid
         Shape ``(nz, ny, nx)`` and voxel side.
     views
@@ -63,7 +63,7 @@ class Cube:
     hold_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        extinction = np.ascontiguousarray(self.extinction, dtype=np.float32)
+        extinction = np.asarray(self.extinction, dtype=np.float32)
         if extinction.ndim != 4 or extinction.shape[1:] != self.grid.shape or not extinction.shape[0]:
             raise InputError(
                 f"extinction has shape {extinction.shape}, not (channels, {', '.join(map(str, self.grid.shape))})"

@@ -31,8 +31,14 @@ def copied(array: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
     return copy
 
 
+def clear_volume(shape: tuple[int, int, int], channels: int) -> NDArray[np.float32]:
+    """Zeros ``(channel, z, y, x)`` in the order of the columns, so that `columns_from_volume` need not copy them."""
+    nz, ny, nx = shape
+    return np.zeros((ny, nx, nz, channels), np.float32).transpose(3, 2, 0, 1)
+
+
 def columns_from_volume(volume: Floats) -> Floats:
-    """``(channel, z, y, x)`` to a contiguous ``(y * x, z * channel)``."""
+    """``(channel, z, y, x)`` to a contiguous ``(y * x, z * channel)``, the same memory where it is in that order."""
     channels, nz, ny, nx = volume.shape
     return np.ascontiguousarray(volume.transpose(2, 3, 1, 0).reshape(ny * nx, nz * channels))
 

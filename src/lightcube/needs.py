@@ -78,7 +78,7 @@ def memory_needed(
         half, small = coarse_shape(grid.shape, 1), (-(-rows // 2), -(-columns // 2))
         level = pictures / 4 + _solver(method, half, small, views * angles, channels * size, raised)
         needed = max(needed + size * channels * (math.prod(half) + math.prod(grid.shape) * share), level)
-    merging = cube * (1.25 + size / 4 * share) + pictures / 4
+    merging = cube * (1 + max(0.25, size / 2 * share)) + pictures / 4
     return int(PROGRAM + pictures + max(needed, merging))
 
 

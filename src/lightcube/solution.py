@@ -13,6 +13,7 @@ from lightcube.cube import Cube
 from lightcube.fitting import targets
 from lightcube.geometry import held
 from lightcube.job import Job, level_name
+from lightcube.layout import clear_volume
 from lightcube.pieces import POWERS
 from lightcube.problem import volume_from_unknowns
 from lightcube.store import Arrays, Store
@@ -62,7 +63,7 @@ class Solution:
 
 def merged(job: Job, store: Store) -> Solution:
     """Put together what a store has of a job: units, checkpoints of others, for the rest the start, enlarged."""
-    extinction = np.zeros((job.channels, *job.grid.shape), np.float32)
+    extinction = clear_volume(job.grid.shape, job.channels)
     powers = _coarse_powers(job, store)
     facts = []
     for name, part in zip(job.unit_names, job.parts, strict=True):
