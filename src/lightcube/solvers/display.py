@@ -79,7 +79,7 @@ def display_values(
     Returns
     -------
     `Result` with ``residuals`` = the objective after each iteration, each of which is one pass, and
-    ``lower_bound``, below which no `x` and no lamp can bring the objective (two passes).
+    ``lower_bound``, below which no `x` and no lamp can bring the objective (three passes).
 
     References
     ----------
@@ -317,7 +317,13 @@ class _Screen:
         per_view = np.stack([np.sum(pull[rows], axis=0, dtype=np.float64) for rows in rows_of_view])
         per_lamp = per_view.reshape(len(self.low), -1, self.low.shape[1]).sum(axis=1)
         least += float(np.sum(np.minimum(per_lamp * self.low, per_lamp * self.high)))
-        return max(0.0, *(part * least - self._conjugates(part * pull) for part in (1.0, 0.85, 0.7, 0.5, 0.3)))
+        bound = 0.0
+        for part in (0.3, 0.5, 0.7, 0.85, 1.0):  # concave, and 0 at 0: once it falls, it falls on
+            reached = part * least - self._conjugates(part * pull)
+            if reached <= bound:
+                break
+            bound = reached
+        return bound
 
     def _make_feasible(self, A: Operator, pull: Floats) -> None:
         """Lower `pull`, along the beams through the unknowns where ``A'pull`` is above 0, until it is nowhere."""
