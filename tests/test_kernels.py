@@ -13,7 +13,7 @@ from numba import njit
 
 from lightcube import layout
 from lightcube.geometry import Grid, turntable
-from lightcube.kernels import exponential, rows
+from lightcube.kernels import exponential, rows, threads
 from lightcube.kernels.projection import GROUP, TILE
 from lightcube.projector import Projector, dot_test
 from tests import plain
@@ -145,8 +145,8 @@ print(total.hexdigest())
 def test_results_are_the_same_for_any_number_of_threads() -> None:
     """Seven threads on any machine: numba takes as many as it is told to."""
     found = set()
-    for threads in (1, 2, 7):
-        told = {**os.environ, "NUMBA_NUM_THREADS": str(threads)}
+    for count in (1, 2, 7):
+        told = {**os.environ, "NUMBA_NUM_THREADS": str(count)}
         run = subprocess.run([sys.executable, "-c", _HASHES], env=told, capture_output=True, text=True, check=True)
         found.add(run.stdout)
     assert len(found) == 1
@@ -177,3 +177,16 @@ def test_cubes_may_be_solved_at_the_same_time_in_one_process() -> None:
     told = {**os.environ, "NUMBA_THREADING_LAYER": "workqueue", "NUMBA_NUM_THREADS": "2"}
     run = subprocess.run([sys.executable, "-c", _AT_ONCE], env=told, capture_output=True, text=True, check=False)
     assert run.stdout == "True\n", run.stderr
+
+
+def test_ctrl_c_in_a_kernel_is_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In compiled code it comes out as a `SystemError` of a `SystemError` of it."""
+
+    def interrupted() -> None:
+        inner = SystemError("returned a result with an exception set")
+        inner.__cause__ = KeyboardInterrupt()
+        raise SystemError("returned a result with an exception set") from inner
+
+    monkeypatch.setattr(threads, "njit", lambda **options: lambda kernel: kernel)
+    with pytest.raises(KeyboardInterrupt):
+        threads.parallel(interrupted)()

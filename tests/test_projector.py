@@ -35,6 +35,17 @@ def test_agrees_with_plain_boxes(shape: tuple[int, int, int], elevation: float) 
     )
 
 
+@pytest.mark.parametrize("turns", [3, 40])
+def test_long_rows_agree_with_the_sparse_matrix(turns: int) -> None:
+    """Rows of 131 numbers are copied to begin at cache lines, those of the voxels where there are many beams."""
+    grid = Grid((1, 5, 7), voxel_mm=0.7)
+    matrix = Projector(grid, turntable(grid, np.linspace(0, 300, turns)))
+    x = np.random.default_rng(3).random((matrix.shape[1], 131)).astype(np.float32)
+    b = np.random.default_rng(4).random((matrix.shape[0], 131)).astype(np.float32)
+    assert np.allclose(matrix.forward(x), matrix.to_sparse() @ x, rtol=1e-5, atol=1e-5)
+    assert np.allclose(matrix.adjoint(b), matrix.to_sparse().T @ b, rtol=1e-5, atol=1e-5)
+
+
 @pytest.mark.parametrize("elevation", [0.0, 35.0])
 @pytest.mark.parametrize(("rows", "columns"), [(1, 4), (2, 3), (3, 6), (4, 5), (3, 1)])
 def test_windows_of_any_size_agree_with_plain_boxes(rows: int, columns: int, elevation: float) -> None:

@@ -143,9 +143,10 @@ def solve(
         if scheduler is None
         else cluster.run(job, scheduler, store, as_json=as_json)
     ):
-        err.print(f"interrupted: {store.folder} holds what was reached; the same command goes on; to publish that, use")
-        err.print(f"  lightcube publish {store.folder}")
-        raise typer.Exit(130)
+        raise _Stopped(
+            f"interrupted: {store.folder} holds what was reached; the same command goes on; to publish that, use\n"
+            f"  lightcube publish {store.folder}"
+        )
     if which is None:
         _finish(job, store, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
     else:
@@ -319,6 +320,14 @@ def demo_command(
         demo.run(output)
 
 
+#: The exit code after Ctrl-C.
+_INTERRUPTED = 130
+
+
+class _Stopped(Exception):  # noqa: N818 - nothing is wrong
+    """Ctrl-C, where something is kept: says what."""
+
+
 def main() -> None:
     """Run the command line: exit code 0, 2 for what the user can mend, 130 for Ctrl-C."""
     prepare()
@@ -326,16 +335,17 @@ def main() -> None:
     try:
         with plain_warnings():
             code = app(args=sys.argv[1:] or ["--help"], standalone_mode=False)
+        if code == _INTERRUPTED:  # what typer makes of Ctrl-C
+            err.print("interrupted: no file was finished")
     except InputError as error:
         err.print(f"lightcube: {error}")
         code = 2
-    except typer.Exit as stop:
-        code = stop.exit_code
-        if isinstance(stop.__context__, KeyboardInterrupt):
-            err.print("interrupted: no file was finished")
+    except _Stopped as stop:
+        err.print(stop)
+        code = _INTERRUPTED
     except (KeyboardInterrupt, typer.Abort):
         err.print("interrupted: no file was finished")
-        code = 130
+        code = _INTERRUPTED
     except typer.TyperException as error:
         err.print(f"lightcube: {error.format_message()}".replace("Value error, ", ""))
         code = 2

@@ -14,6 +14,8 @@ from numpy.typing import DTypeLike, NDArray
 Floats = NDArray[np.floating]
 #: Bytes that a processor reads at a time: a cache line.
 LINE = 64
+#: Rows of fewer lines are not worth a longer copy.
+_LEAST_LINES = 8
 
 
 def empty(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
@@ -29,6 +31,11 @@ def copied(array: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
     copy = empty(array.shape, array.dtype if dtype is None else dtype)
     copy[...] = array
     return copy
+
+
+def is_worth_lines(row: float) -> bool:
+    """Whether rows of so many bytes are quicker to add up from a copy in which each begins at a whole line."""
+    return row % LINE != 0 and row >= _LEAST_LINES * LINE
 
 
 def clear_volume(shape: tuple[int, int, int], channels: int) -> NDArray[np.float32]:

@@ -10,7 +10,7 @@ import numpy as np
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, held
 from lightcube.job import Job, shares
-from lightcube.layout import LINE
+from lightcube.layout import is_worth_lines
 from lightcube.problem import Problem, is_level, pose
 from lightcube.solvers import METHODS
 from lightcube.units import coarse_shape, coarser, most_units, split
@@ -95,7 +95,7 @@ def _solver(
     rows, columns = picture_shape
     nz, ny, nx = shape
     equations = views * columns * (1 if elevation is None else rows)
-    if elevation is None and method not in _SPARSE and nz * depth % LINE:
+    if elevation is None and method not in _SPARSE and is_worth_lines(nz * depth):
         beams += 1  # a product's copy with whole lines
     arrays = depth * (unknowns * nz * ny * nx + beams * views * rows * columns) + _EQUATION * equations
     if method not in _SPARSE:

@@ -12,7 +12,7 @@ from lightcube.errors import InputError
 from lightcube.geometry import PARALLEL, Grid, Views
 from lightcube.kernels import projection
 from lightcube.kernels.beam import max_pieces
-from lightcube.layout import LINE, empty
+from lightcube.layout import LINE, empty, is_worth_lines
 
 if TYPE_CHECKING:
     from scipy.sparse.linalg import LinearOperator
@@ -142,9 +142,10 @@ class Projector:
 
         With a raised lamp parts of rows are added up, from anywhere on.
         """
-        length = -(-rows.shape[1] * rows.itemsize // LINE) * LINE // rows.itemsize
-        if length == rows.shape[1] or not self._level:
+        size = rows.shape[1] * rows.itemsize
+        if not (self._level and is_worth_lines(size)):
             return rows
+        length = -(-size // LINE) * LINE // rows.itemsize
         longer = empty((len(rows), length), rows.dtype)
         projection.copy_rows(rows, longer)
         return longer

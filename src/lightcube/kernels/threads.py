@@ -22,6 +22,14 @@ def parallel(kernel: Kernel) -> Kernel:
     @functools.wraps(kernel)
     def call(*arguments: object) -> object:
         with _one_at_a_time:
-            return compiled(*arguments)
+            try:
+                return compiled(*arguments)
+            except SystemError as error:  # what numba makes of Ctrl-C
+                cause: BaseException | None = error
+                while isinstance(cause, SystemError):
+                    cause = cause.__cause__
+                if isinstance(cause, KeyboardInterrupt):
+                    raise cause from None
+                raise
 
     return call  # type: ignore[return-value]
