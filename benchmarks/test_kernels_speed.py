@@ -15,15 +15,31 @@ import pytest
 from lightcube.bench.products import columns_of, projector
 from lightcube.cube import Cube
 from lightcube.forward import player
-from lightcube.geometry import Grid, turntable
+from lightcube.geometry import Grid, Views, spread_angles, turntable
+from lightcube.projector import Projector
 
-N, VIEWS = 96, 96
+N, VIEWS, ANY_VIEWS = 96, 96, 24
 
 
 @pytest.mark.parametrize("elevation", [0.0, 35.0])
 @pytest.mark.parametrize("direction", ["forward", "adjoint"])
 def test_product(benchmark: Callable[..., Any], direction: str, elevation: float) -> None:
     matrix = projector(N, VIEWS, elevation)
+    rows = matrix.shape[1] if direction == "forward" else matrix.shape[0]
+    given = np.random.default_rng(0).random((rows, columns_of(matrix)), dtype=np.float32)
+    result = benchmark(getattr(matrix, direction), given)
+    assert np.all(np.isfinite(result))
+
+
+@pytest.mark.parametrize("point", [False, True])
+@pytest.mark.parametrize("direction", ["forward", "adjoint"])
+def test_product_of_any_rays(benchmark: Callable[..., Any], direction: str, point: bool) -> None:
+    """Screens behind the cube that lean, in parallel light or before lamps three cubes away."""
+    grid = Grid((N, N, N))
+    table = turntable(grid, spread_angles(ANY_VIEWS, elevation=35.0), elevation=35.0, picture_shape=(N, N))
+    light = table.lamps[:, :3]
+    lamps = np.column_stack([-3 * N * light, np.ones(len(table))]) if point else table.lamps
+    matrix = Projector(grid, Views(lamps, N * light, table.column_steps, table.row_steps - 0.3 * light, (N, N)))
     rows = matrix.shape[1] if direction == "forward" else matrix.shape[0]
     given = np.random.default_rng(0).random((rows, columns_of(matrix)), dtype=np.float32)
     result = benchmark(getattr(matrix, direction), given)

@@ -12,22 +12,32 @@ from lightcube.geometry import Grid, Views
 Array = NDArray[np.floating[Any]]
 
 
-def beam_of_pixel(views: Views, view: int, row: int, column: int) -> tuple[Array, Array]:
-    """A point on the beam of a pixel, and its direction, in mm, from the definition of `Views`."""
+def beam_of_pixel(views: Views, view: int, row: int, column: int) -> tuple[Array, Array, float, float]:
+    """The pixel, the way light comes to it (a unit vector), and from where to where its beam runs along it, in mm.
+
+    From the definition of `Views`: parallel light runs all along the line, a point lamp's from the lamp to the pixel.
+    """
     rows, columns = views.picture_shape
     point = (
         views.origins[view]
         + (column - (columns - 1) / 2) * views.column_steps[view]
         + (row - (rows - 1) / 2) * views.row_steps[view]
     )
-    direction = views.lamps[view, :3]
-    return point, direction / np.linalg.norm(direction)
+    if views.lamps[view, 3] == 0:
+        direction = views.lamps[view, :3]
+        return point, direction / np.linalg.norm(direction), -math.inf, math.inf
+    way = point - views.lamps[view, :3]
+    length = float(np.linalg.norm(way))
+    return point, way / length if length > 0 else np.array([1.0, 0, 0]), -length, 0.0
 
 
-def lengths_of_beam(grid: Grid, point: Array, direction: Array) -> Array:
-    """Length (mm) of the endless beam in each voxel, ``(z, y, x)``: every voxel is a box, clipped on its own.
+def lengths_of_beam(
+    grid: Grid, point: Array, direction: Array, first: float = -math.inf, last: float = math.inf
+) -> Array:
+    """Length (mm) of the beam in each voxel, ``(z, y, x)``: every voxel is a box, clipped on its own.
 
-    A beam along a face (within 1e-9 voxel) is replaced by beams half a voxel to either side, of half weight.
+    The beam is ``point + t direction`` with ``first <= t <= last``. One along a face (within 1e-9 voxel) is replaced by
+    beams half a voxel to either side, of half weight.
     """
     side = grid.voxel_mm
     corner = -0.5 * side * np.array(grid.shape[::-1])
@@ -39,13 +49,13 @@ def lengths_of_beam(grid: Grid, point: Array, direction: Array) -> Array:
     lengths = np.zeros(grid.shape)
     beams = list(itertools.product(*choices))
     for place in beams:
-        lengths += _clipped(grid, corner + side * np.array(place), direction, corner) / len(beams)
+        lengths += _clipped(grid, corner + side * np.array(place), direction, corner, first, last) / len(beams)
     return lengths
 
 
-def _clipped(grid: Grid, point: Array, direction: Array, corner: Array) -> Array:
-    enter = np.full(grid.shape, -np.inf)
-    leave = np.full(grid.shape, np.inf)
+def _clipped(grid: Grid, point: Array, direction: Array, corner: Array, first: float, last: float) -> Array:
+    enter = np.full(grid.shape, first)
+    leave = np.full(grid.shape, last)
     for axis in range(3):
         counts = [1, 1, 1]
         counts[2 - axis] = grid.shape[2 - axis]
@@ -55,10 +65,18 @@ def _clipped(grid: Grid, point: Array, direction: Array, corner: Array) -> Array
             outside = ~((low < point[axis]) & (point[axis] < high))
             enter = np.where(outside, np.inf, enter)
         else:
-            first, second = (low - point[axis]) / direction[axis], (high - point[axis]) / direction[axis]
-            enter = np.maximum(enter, np.minimum(first, second))
-            leave = np.minimum(leave, np.maximum(first, second))
+            one, other = (low - point[axis]) / direction[axis], (high - point[axis]) / direction[axis]
+            enter = np.maximum(enter, np.minimum(one, other))
+            leave = np.minimum(leave, np.maximum(one, other))
     return np.maximum(leave - enter, 0)
+
+
+def matrix(grid: Grid, views: Views) -> Array:
+    """The matrix of all voxels: equations ``(view, column, row bottom-up)``, unknowns ``(y, x, z)``."""
+    rows, columns = views.picture_shape
+    pixels = itertools.product(range(len(views)), range(columns), reversed(range(rows)))
+    lengths = [lengths_of_beam(grid, *beam_of_pixel(views, view, row, column)) for view, column, row in pixels]
+    return np.stack([each.transpose(1, 2, 0).ravel() for each in lengths])
 
 
 def absorbance_pictures(grid: Grid, views: Views, extinction: Array) -> Array:

@@ -5,11 +5,21 @@ from lightcube.conditioning import best_order
 from lightcube.consistency import check
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.fitting import fit
-from lightcube.forward import cast, lamp_at, play, player, views_at
+from lightcube.fitting import fit, fit_to_stage
+from lightcube.forward import cast, exposures_at, lamp_at, play, player, views_at
 from lightcube.frames import Frames, Pictures
 from lightcube.geometry import Grid, Views, spread_angles, turntable
-from lightcube.io import load, publish, read_pictures, read_scene, save, write_pictures
+from lightcube.io import (
+    load,
+    publish,
+    read_pictures,
+    read_scene,
+    read_stage,
+    read_stage_frames,
+    save,
+    write_pictures,
+)
+from lightcube.lighting import Lighting, sampled
 from lightcube.metrics import score
 from lightcube.planning import Plan, plan
 from lightcube.prediction import Prediction, predict
@@ -19,6 +29,7 @@ from lightcube.scene.tracer import scene_frames, scene_views
 from lightcube.solution import Solution
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
+from lightcube.stage import Lamp, Screen, Shot, Stage, exposures
 
 __all__ = [
     "METHODS",
@@ -26,19 +37,27 @@ __all__ = [
     "Frames",
     "Grid",
     "InputError",
+    "Lamp",
+    "Lighting",
     "Pictures",
     "Plan",
     "Prediction",
     "Projector",
     "Result",
     "Scene",
+    "Screen",
+    "Shot",
     "Solution",
+    "Stage",
     "Views",
     "best_order",
     "cast",
     "check",
     "dot_test",
+    "exposures",
+    "exposures_at",
     "fit",
+    "fit_to_stage",
     "lamp_at",
     "load",
     "plan",
@@ -48,6 +67,9 @@ __all__ = [
     "publish",
     "read_pictures",
     "read_scene",
+    "read_stage",
+    "read_stage_frames",
+    "sampled",
     "save",
     "scene_frames",
     "scene_views",

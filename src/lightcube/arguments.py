@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lightcube import forward
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.geometry import Views, check_angles
+from lightcube.geometry import check_angles
 
 #: Voxels along the longest side of a cube, unless something else is said.
 DEFAULT_N = 128
@@ -72,13 +72,13 @@ def play_angles(
     if stops + (angles is not None) + turn > 1:
         raise InputError("--stops, --angles, and --from, --to and --count are three ways to say the same: use one")
     if stops:
-        return cube.views.angles
+        return cube.angles
     if angles is not None:
         return check_angles(numbers(angles, "--angles"))
     first, last, pictures = (
         start or 0.0,
         360.0 if end is None else end,
-        max(120, 2 * len(cube.views)) if count is None else count,
+        max(120, 2 * len(cube.names)) if count is None else count,
     )
     if pictures < 1:
         raise InputError(f"--count {pictures}: give at least 1 picture")
@@ -87,9 +87,9 @@ def play_angles(
     return forward.turn(cube, pictures, first, last)
 
 
-def movie_scale(output: str, views: Views) -> int:
+def movie_scale(output: str, rows: int) -> int:
     """An even scale that makes a movie at least 256 pixels high; single pictures and numbers stay as they are."""
-    return 1 if PurePath(output).suffix in ("", ".npy") else 2 * -(-128 // views.picture_shape[0])
+    return 1 if PurePath(output).suffix in ("", ".npy", ".png") else 2 * -(-128 // rows) if rows < 256 else 1
 
 
 def short(value: object) -> str:

@@ -17,6 +17,7 @@ from lightcube.problem import BLACK, Lamp, is_level
 from lightcube.solution import Solution, merged
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Solver
+from lightcube.stacked import is_stacked
 from lightcube.store import MemoryStore, Store
 from lightcube.units import most_units
 
@@ -154,6 +155,8 @@ def make_job(
     """Check what `solve` is asked for, and leave nothing open; parameters and errors as there."""
     kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations, black)
     check_frames(frames, grid)
+    if frames.lighting is not None and (lamp == "fixed" or lamp_power is not None or lamp_max is not None):
+        raise InputError("the powers of a stage's lamps are said on the stage: leave out those given beside it")
     job = Job(
         frames=frames,
         grid=grid,
@@ -182,7 +185,9 @@ def find_method(name: str) -> Solver:
 
 
 def check_frames(frames: Frames, grid: Grid) -> None:
-    """Raise `InputError` where a picture is larger than the grid's screen."""
+    """Raise `InputError` where a picture is larger than the grid's screen; other screens are as large as they are."""
+    if frames.lighting is not None or not is_stacked(grid, frames.views):
+        return
     rows, columns = frames.views.picture_shape
     most = [raster_shape(grid, elevation) for elevation in set(frames.views.elevations.tolist())]
     most_rows, most_columns = min(most)

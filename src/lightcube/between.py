@@ -12,6 +12,7 @@ from lightcube.errors import InputError
 from lightcube.forward import cast, lamp_at
 from lightcube.frames import Frames
 from lightcube.geometry import turn_period, turned
+from lightcube.lighting import turned_by
 from lightcube.metrics import check_same_views, psnr, ssim
 from lightcube.transfer import encode
 
@@ -81,6 +82,8 @@ def curve(cube: Cube, frames: Frames, steps: int = 8) -> Curve:
     if steps < 1:
         raise InputError(f"a curve needs at least 1 step from one frame to the next, not {steps}")
     check_same_views(cube, frames)
+    if cube.lighting is not None:
+        raise InputError("this cube was made on a stage: score it without --between, and play it to see in between")
     if len(np.unique(cube.views.elevations)) > 1:
         raise InputError("this cube was made with lamps at several elevations: there is nothing between its stops")
     period = turn_period(cube.views)
@@ -213,13 +216,16 @@ DISTURBANCES = {
 
 def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float32]]:
     """Yield what the screen shows at each stop of a disturbed set-up, ``(row, column, channel)``, linear light."""
-    views = turned(cube.views, disturbance.turn_deg)
+    if cube.lighting is None:
+        views = turned(cube.views, disturbance.turn_deg)
+    else:
+        views = turned_by(cube.views, cube.lighting, disturbance.turn_deg)
     # In the cube's own frame it is the screen that moves, the other way; its columns and rows are one voxel apart.
     shift = disturbance.up_voxels * views.row_steps - disturbance.right_voxels * views.column_steps
     views = replace(views, origins=views.origins + shift)
     if disturbance.levels:
         cube = replace(cube, extinction=_rounded(cube.extinction, disturbance.levels))
-    for picture in cast(cube, views, cube.powers * (1 + disturbance.lamp)):
+    for picture in cast(cube, views, cube.powers * (1 + disturbance.lamp), cube.lighting):
         yield picture + np.float32(disturbance.black)
 
 

@@ -2,18 +2,32 @@
 
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
-from lightcube import arguments, between, cluster, demo, forward, io, metrics, plots, reports, running, solving
-from lightcube.cli_options import FRAMES, Options, one_by_one
-from lightcube.console import err, json_document, json_line, out, plain_warnings, prepare, progress
+from lightcube import (
+    arguments,
+    between,
+    cli_play,
+    cli_stage,
+    cluster,
+    demo,
+    forward,
+    io,
+    metrics,
+    plots,
+    reports,
+    running,
+    solving,
+    staging,
+)
+from lightcube.cli_options import FPS, FRAMES, JSON, OUT, OVERWRITE, Options, one_by_one
+from lightcube.console import done, err, json_document, json_line, out, plain_warnings, prepare, progress
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import check_fit, fit_to_views, frames_from_targets
@@ -21,7 +35,7 @@ from lightcube.frames import Frames
 from lightcube.job import Job
 from lightcube.needs import job_memory
 from lightcube.scene.tracer import scene_frames, scene_views
-from lightcube.sheet import beside_targets, contact_sheet
+from lightcube.sheet import contact_sheet
 from lightcube.solution import merged
 
 app = typer.Typer(
@@ -32,11 +46,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     help="Pictures in, a cube of coloured shadows out.",
 )
-
-OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
-OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
-JSON = typer.Option("--json", help="Print JSON for machines.")
-FPS = typer.Option("--fps", help="Pictures per second of a movie.")
 
 
 @app.command()
@@ -68,13 +77,16 @@ def trace(
         made = scene_frames(described, views, grid, callback=advance)
     io.write_pictures(output, made.pictures, fps=fps, views=views, overwrite=overwrite)
     rows, columns = views.picture_shape
-    _done(as_json, f"{len(views)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(views))
+    done(as_json, f"{len(views)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(views))
 
 
 @app.command()
 @one_by_one
 def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
     """Say before solving what can be known: what contradicts itself, how full the cube is, how good it will be."""
+    if io.is_stage(frames):
+        cli_stage.checked(io.read_stage(frames, transfer=options.transfer)[0], as_json=as_json)
+        return
     options = solving.settled(options)
     with err.status("rehearsing"):
         prepared = solving.prepare(frames, options)
@@ -118,23 +130,20 @@ def solve(
     which, units = (None, None) if unit is None else arguments.unit(unit)
     budget = None if memory is None else arguments.memory(memory)
     workers = 1 if scheduler is None else cluster.count_workers(scheduler)
-    options = solving.settled(options)
-    with err.status("rehearsing"):
-        prepared = solving.prepare(frames, options)
-    job = solving.job(prepared, options, memory=budget, units=units)
+    job, said = _asked(frames, options, budget, units)
     if units is None:
         job = solving.divided(job, output, workers, budget)
     if dry_run:
         with err.status("timing a smaller cube"):
             needs = solving.needs(job)
-        _done(as_json, reports.needed(needs), **needs)
+        done(as_json, reports.needed(needs), **needs)
         return
     if scheduler in (None, cluster.LOCAL):
         solving.check_memory(job_memory(job) * min(workers, job.units))
     if not as_json:
-        for line in [*solving.in_short(prepared, options), *solving.what_to_change(prepared, options)]:
+        for line in said():
             err.print(line)
-    del prepared  # pictures as they were read
+    del said  # pictures as they were read
     began = time.monotonic()
     store = io.open_partial(output, job, overwrite=overwrite)
     pieces = job.pieces if which is None else job.pieces_of(which - 1)
@@ -150,7 +159,7 @@ def solve(
     if which is None:
         _finish(job, store, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
     else:
-        _done(as_json, f"unit {which} of {units} is in {store.folder}", out=str(store.folder), unit=which, units=units)
+        done(as_json, f"unit {which} of {units} is in {store.folder}", out=str(store.folder), unit=which, units=units)
 
 
 @app.command()
@@ -172,50 +181,7 @@ def merge(
     _finish(job, store, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
 
 
-@app.command()
-def play(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
-    output: Annotated[str, OUT],
-    angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
-    start: Annotated[float | None, typer.Option("--from", help="First angle in degrees.  [default: 0]")] = None,
-    end: Annotated[float | None, typer.Option("--to", help="Where the turn ends, in degrees.  [default: 360]")] = None,
-    count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120 or more]")] = None,
-    stops: Annotated[bool, typer.Option("--stops", help="Play just the views that the cube was made for.")] = False,
-    scale: Annotated[
-        int | None, typer.Option(help="Enlarge each pixel to a square of so many.  [default: movies about 256 high]")
-    ] = None,
-    target: Annotated[
-        bool, typer.Option("--target", help="Put the wanted picture of the nearest stop to the right.")
-    ] = False,
-    no_mask: Annotated[bool, typer.Option("--no-mask", help="Show the whole screen, not the picture window.")] = False,
-    fps: Annotated[float, FPS] = 25.0,
-    overwrite: Annotated[bool, OVERWRITE] = False,
-    as_json: Annotated[bool, JSON] = False,
-) -> None:
-    """Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix."""
-    io.check_pictures_target(output, overwrite=overwrite)
-    if target and no_mask:
-        raise InputError("--target shows the picture window: leave out --no-mask")
-    loaded = io.load(cube)
-    turned = arguments.play_angles(loaded, angles, start, end, count, stops=stops)
-    views = forward.views_at(loaded, turned, whole_screen=no_mask) if not stops or no_mask else loaded.views
-    powers = loaded.powers if stops else forward.lamp_at(loaded, turned)
-    with progress("playing", as_json=as_json) as advance:
-        pictures = forward.cast(loaded, views, powers)
-        if target:
-            pictures = beside_targets(pictures, frames_from_targets(loaded), turned)
-        io.write_pictures(
-            output,
-            _counted(pictures, len(views), advance),
-            count=len(views),
-            transfer=loaded.transfer,
-            fps=fps,
-            scale=arguments.movie_scale(output, views) if scale is None else scale,
-            views=None if target else views,
-            names=loaded.names if stops else None,
-            overwrite=overwrite,
-        )
-    _done(as_json, f"{len(views)} pictures in {output}", out=str(output), frames=len(views))
+app.command()(cli_play.play)
 
 
 @app.command()
@@ -308,6 +274,9 @@ def bench(
         out.print("\n".join(markdown(found)))
 
 
+app.add_typer(cli_stage.app, name="stage")
+
+
 @app.command("demo")
 def demo_command(
     output: Annotated[Path, typer.Option("-o", "--out", help="Folder for what the demo makes.")] = Path("out"),
@@ -358,11 +327,16 @@ def main() -> None:
     sys.exit(code or 0)
 
 
-def _done(as_json: bool, sentence: str, **fields: object) -> None:
-    if as_json:
-        json_line("result", **fields)
-    else:
-        out.print(sentence)
+def _asked(frames: str, options: Options, memory: int | None, units: int | None) -> tuple[Job, Callable[[], list[str]]]:
+    """The job that `solve` is asked for, and a function that makes what is to be said of it."""
+    if io.is_stage(frames):
+        stage, wanted = staging.read(frames, options)
+        return staging.job(stage, wanted, options, memory=memory, units=units), lambda: staging.in_short(stage, wanted)
+    options = solving.settled(options)
+    with err.status("rehearsing"):
+        prepared = solving.prepare(frames, options)
+    job = solving.job(prepared, options, memory=memory, units=units)
+    return job, lambda: [*solving.in_short(prepared, options), *solving.what_to_change(prepared, options)]
 
 
 def _finish(
@@ -380,16 +354,10 @@ def _finish(
         reports.solved(solution, scores, output, seconds)
 
 
-def _counted(
-    pictures: Iterable[NDArray[np.float32]], count: int, advance: Callable[..., None]
-) -> Iterator[NDArray[np.float32]]:
-    for number, picture in enumerate(pictures, 1):
-        yield picture
-        advance(number, count)
-
-
 def _refitted(cube: Cube, frames: str) -> Frames:
     """Pictures as `solve` fitted them to the cube, in its order."""
+    if io.is_stage(frames):
+        return staging.wanted(frames, cube)
     pictures = io.read_pictures(frames, transfer=cube.transfer)
     order = cube.provenance.get("order", range(len(pictures)))
     if len(order) == len(pictures):

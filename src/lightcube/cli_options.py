@@ -16,7 +16,12 @@ from lightcube.transfer import Transfer
 
 Arrangement = Literal["given", "best"]
 
-FRAMES = Annotated[str, typer.Argument(help="A folder of pictures, an animated image or a video.")]
+FRAMES = Annotated[str, typer.Argument(help="A folder of pictures, an animated image, a video, or a stage (TOML).")]
+
+OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
+OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
+JSON = typer.Option("--json", help="Print JSON for machines.")
+FPS = typer.Option("--fps", help="Pictures per second of a movie.")
 
 
 @dataclass(frozen=True)
@@ -78,6 +83,12 @@ class Options:
         float | None, typer.Option(help="Largest extinction of the material, 1/mm; default none.")
     ] = None
     transfer: Annotated[Transfer, typer.Option(help="How picture values become linear light.")] = "srgb"
+    lamp_samples: Annotated[
+        int, typer.Option(help="Points at which a stage's lamps of a size are sampled, for soft shadows.", min=1)
+    ] = 1
+    pixel_samples: Annotated[
+        int, typer.Option(help="Points along a side that a stage's pixels are averaged over.", min=1)
+    ] = 1
 
     @property
     def power(self) -> float:

@@ -1,6 +1,7 @@
 """The same problem at half the size, and back: where a large cube starts from."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,7 @@ def halved(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
         part = weight[view, ..., None]
         np.divide(light, part, out=pictures[view], where=part > 0)
     halves = Views(views.lamps, views.origins, 2 * views.column_steps, 2 * views.row_steps, shape)
-    return Frames(pictures, halves, weight, frames.names, frames.transfer), small
+    return replace(frames, pictures=pictures, views=halves, weights=weight), small
 
 
 def enlarged(volume: Array, shape: tuple[int, int, int], slices: slice | None = None) -> Array:

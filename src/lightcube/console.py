@@ -118,3 +118,11 @@ def prepare() -> None:
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, stop)
+
+
+def done(as_json: bool, sentence: str, **fields: object) -> None:
+    """Say what a command has made: a sentence, or a line of JSON."""
+    if as_json:
+        json_line("result", **fields)
+    else:
+        out.print(sentence)

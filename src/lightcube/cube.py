@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.geometry import Grid, Views
+from lightcube.lighting import Lighting
 from lightcube.transfer import Transfer
 
 Status = Literal["complete", "interrupted"]
@@ -27,12 +28,13 @@ class Cube:
     views
         Lamp and screen of each picture the cube was made for.
     lamp_powers
-        ``(view, channel)`` float64 above 0, linear light, 1 = the paper's white lamp; default all 1.
+        ``(view, channel)`` float64 above 0, linear light, 1 = the paper's white lamp; default all 1. On a stage one for
+        each picture and lamp, in the order of ``lighting.pairs``.
     targets
-        The wanted pictures as 8-bit display levels ``(view, row, column, channel + 1)``; the last channel is
+        The wanted pictures as 8-bit display levels ``(picture, row, column, channel + 1)``; the last channel is
         the weight (0 = don't care, 255 = full). None where the cube was not made from pictures.
     names
-        One name per view.
+        One name per picture.
     transfer
         How display values follow from linear light.
     scores
@@ -41,6 +43,8 @@ class Cube:
         How the cube was made: method, options, version of this package.
     hold_deg
         Degrees on either side of its stop over which a picture was asked to stand; the lamp does not change there.
+    lighting
+        Which views make which picture on a stage; None = each view is a picture.
     status
         ``"complete"``, or ``"interrupted"`` where the solver was stopped early.
 
@@ -61,6 +65,7 @@ class Cube:
     provenance: Mapping[str, Any] = field(default_factory=dict)
     status: Status = "complete"
     hold_deg: float = 0.0
+    lighting: Lighting | None = None
 
     def __post_init__(self) -> None:
         extinction = np.asarray(self.extinction, dtype=np.float32)
@@ -72,17 +77,22 @@ class Cube:
             raise InputError(
                 "extinction holds negative or non-finite numbers: every voxel needs a finite value of at least 0"
             )
-        shape = (len(self.views), len(extinction))
+        pictures, lamps = len(self.views), len(self.views)
+        if self.lighting is not None:
+            pictures, lamps = self.lighting.pictures, len(self.lighting.pairs)
+            if len(self.lighting.picture) != len(self.views) or self.lighting.share.shape[1] != len(extinction):
+                raise InputError(f"a lighting of {len(self.lighting.picture)} views does not fit {len(self.views)}")
+        shape = (lamps, len(extinction))
         powers = np.ones(shape) if self.lamp_powers is None else np.array(self.lamp_powers, dtype=np.float64)
         if powers.shape != shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):
             raise InputError(f"lamp powers must be positive finite numbers of shape {shape}, not {powers.shape}")
         if self.targets is not None:
-            wanted = (len(self.views), *self.views.picture_shape, len(extinction) + 1)
+            wanted = (pictures, *self.views.picture_shape, len(extinction) + 1)
             if self.targets.shape != wanted or self.targets.dtype != np.uint8:
                 raise InputError(f"targets must be 8-bit numbers of shape {wanted}, not {self.targets.shape}")
-        names = self.names or tuple(str(i + 1) for i in range(len(self.views)))
-        if len(names) != len(self.views):
-            raise InputError(f"{len(self.views)} views have {len(names)} names: give one name per view")
+        names = self.names or tuple(str(i + 1) for i in range(pictures))
+        if len(names) != pictures:
+            raise InputError(f"{pictures} views have {len(names)} names: give one name per view")
         if self.status not in get_args(Status):
             raise InputError(f"a cube's status is one of {', '.join(get_args(Status))}, not {self.status!r}")
         if not 0 <= self.hold_deg <= 180:
@@ -93,10 +103,15 @@ class Cube:
 
     @property
     def powers(self) -> NDArray[np.float64]:
-        """The lamp powers, ``(view, channel)``, never None."""
+        """The lamp powers, never None."""
         assert self.lamp_powers is not None  # noqa: S101 - __post_init__ filled it
         return self.lamp_powers
 
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Turntable angle of each picture's stop, degrees."""
+        return self.views.angles if self.lighting is None else self.lighting.angle
+
     def __repr__(self) -> str:
         nz, ny, nx = self.grid.shape
-        return f"<light cube of {nz} x {ny} x {nx} voxels for {len(self.views)} views, {self.status}>"
+        return f"<light cube of {nz} x {ny} x {nx} voxels for {len(self.names)} pictures, {self.status}>"

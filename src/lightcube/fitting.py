@@ -2,6 +2,7 @@
 
 import math
 from collections import Counter
+from collections.abc import Sequence
 from typing import Literal, get_args
 
 import numpy as np
@@ -12,6 +13,7 @@ from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.frames import Frames, Pictures
 from lightcube.geometry import Grid, Views, check_angles, check_elevation, picture_shape, spread_angles, turntable
+from lightcube.lighting import Lighting
 from lightcube.transfer import from_uint8, to_uint8
 
 Fit = Literal["crop", "pad", "stretch"]
@@ -107,13 +109,32 @@ def fit_to_views(pictures: Pictures, views: Views, fit: Fit = "crop") -> Frames:
         raise InputError(f"{len(pictures)} pictures for {len(views)} views: give one picture per view")
     mode, shape = check_fit(fit), views.picture_shape
     fitted = np.ones((len(pictures), *shape, 3), np.float32)
-    weights = np.ones((len(pictures), *shape), np.float32)
+    weights = np.zeros((len(pictures), *shape), np.float32)
     for image, frame, weight in zip(pictures.images, fitted, weights, strict=True):
-        inside = _inside(image.shape[:2], shape, mode)
-        frame[inside] = _resample(image, frame[inside].shape[:2], _source_box(image.shape[:2], shape, mode))
-        weight[...] = 0
-        weight[inside] = 1
+        _fill(frame, weight, image, mode)
     return Frames(fitted, views, weights, pictures.names, pictures.transfer)
+
+
+def fit_to_stage(pictures: Pictures, views: Views, lighting: Lighting, fits: Sequence[Fit]) -> Frames:
+    """Fit pictures to the screens of a stage, each in the way of its own, as `fit` does.
+
+    What lies beside a picture's screen (`Lighting.window`) is white and don't care (weight 0).
+
+    Raises
+    ------
+    InputError
+        Where there is not one picture, and one way to fit it, for each picture of the lighting.
+    """
+    if not len(pictures) == len(fits) == lighting.pictures:
+        raise InputError(
+            f"{len(pictures)} pictures and {len(fits)} ways to fit them for {lighting.pictures} on the stage: "
+            "give one of each"
+        )
+    fitted = np.ones((len(pictures), *views.picture_shape, 3), np.float32)
+    weights = np.zeros(fitted.shape[:3], np.float32)
+    for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, lighting.window, fits, strict=True)):
+        _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way))
+    return Frames(fitted, views, weights, pictures.names, pictures.transfer, lighting)
 
 
 def fit_report(pictures: Pictures, frames: Frames, fit: Fit = "crop") -> str:
@@ -152,7 +173,7 @@ def frames_from_targets(cube: Cube) -> Frames:
         raise InputError("this cube was not made from pictures, so it has no targets: give the frames themselves")
     pictures = from_uint8(cube.targets[..., :-1], cube.transfer)
     weights = cube.targets[..., -1].astype(np.float32) / np.float32(255)
-    return Frames(pictures, cube.views, weights, cube.names, cube.transfer)
+    return Frames(pictures, cube.views, weights, cube.names, cube.transfer, cube.lighting)
 
 
 def _angles(pictures: Pictures, angles: ArrayLike | None, span: float | None, elevation: float) -> NDArray[np.float64]:
@@ -191,6 +212,14 @@ def _inside(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[
         rest = min(max(2 * round((whole - part * scale) / 2), 0), 2 * math.ceil(whole / 2) - 2)
         spans.append(slice(rest // 2, whole - rest // 2))
     return spans[0], spans[1]
+
+
+def _fill(frame: Picture, weight: Picture, image: Picture, mode: Fit) -> None:
+    """Put `image` into `frame`, and 1 into `weight` where it lies."""
+    size, shape = image.shape[:2], (frame.shape[0], frame.shape[1])
+    inside = _inside(size, shape, mode)
+    frame[inside] = _resample(image, frame[inside].shape[:2], _source_box(size, shape, mode))
+    weight[inside] = 1
 
 
 def _resample(image: Picture, shape: tuple[int, ...], box: tuple[float, float, float, float]) -> Picture:

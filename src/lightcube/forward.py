@@ -11,6 +11,7 @@ from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.geometry import Views, check_angles, smallest_gap, turn_period, turntable
 from lightcube.layout import columns_from_volume, pictures_from_columns
+from lightcube.lighting import Lighting, falling_light, turned_by
 from lightcube.projector import Projector
 
 #: Views that are computed together: enough for all threads, few enough to bound memory.
@@ -26,6 +27,8 @@ def views_at(cube: Cube, angles: ArrayLike, *, whole_screen: bool = False) -> Vi
         Show the whole shadow and its surroundings instead of the picture window.
     """
     elevations = np.unique(cube.views.elevations)
+    if cube.lighting is not None:
+        raise InputError("this cube was made on a stage, whose lamps and screens stand anywhere: play it as it is")
     if len(elevations) > 1:
         raise InputError("this cube was made with lamps at several elevations: play its own stops instead")
     if whole_screen:
@@ -60,8 +63,8 @@ def turn(cube: Cube, count: int, start: float = 0.0, end: float = 360.0) -> NDAr
     With level light a stop is passed twice, half a turn apart. Where stops are nearer to each other than the angles,
     some are left out.
     """
-    stops = cube.views.angles
-    if np.all(cube.views.elevations == 0):
+    stops = cube.angles
+    if cube.lighting is None and np.all(cube.views.elevations == 0):
         stops = np.concatenate([stops, stops + 180])
     laps = 360.0 * np.arange(math.floor(min(start, end) / 360) - 1, math.ceil(max(start, end) / 360) + 1)
     passed = (stops[:, None] + laps).ravel()
@@ -81,27 +84,76 @@ def lamp_at(cube: Cube, angles: ArrayLike) -> NDArray[np.float64]:
     turn shows the mirror image, after half a turn, unless stops half a turn apart have powers of their own.
     """
     stops = cube.views.angles
-    wanted = check_angles(angles)
-    period = turn_period(cube.views)
-    logs = np.log(cube.powers)
+    return _powers_between(cube, check_angles(angles), stops, np.log(cube.powers), turn_period(cube.views))
+
+
+def _powers_between(
+    cube: Cube, angles: NDArray[np.float64], stops: NDArray[np.float64], logs: NDArray[np.float64], period: float
+) -> NDArray[np.float64]:
+    """Power at each of the angles, ``(angles, channels)``, from ln P at the stops, constant over the cube's hold."""
     # just short of the middle between two stops, so that the ends of their holds keep their order
     hold = min(cube.hold_deg, smallest_gap(stops, period) / 2 - 1e-6)
     if hold > 0:
         stops, logs = np.concatenate([stops - hold, stops + hold]), np.concatenate([logs, logs])
-    return np.exp(np.stack([np.interp(wanted, stops, column, period=period) for column in logs.T], axis=1))
+    return np.exp(np.stack([np.interp(angles, stops, column, period=period) for column in logs.T], axis=1))
 
 
-def cast(cube: Cube, views: Views, lamp_powers: NDArray[np.float64]) -> Iterator[NDArray[np.float32]]:
-    """Yield what the screen shows in each view, ``(row, column, channel)`` float32 linear light, never clipped.
+def exposures_at(cube: Cube, angles: ArrayLike) -> tuple[Views, Lighting, NDArray[np.float64]]:
+    """Views, lighting and lamp powers of all screens of a cube's stage at any turntable angles (degrees).
+
+    The pictures of an angle follow each other, one for each screen in the order of ``lighting.screen_names``. A screen
+    is lit as at its stop that is nearest; the power of each of its lamps is linear in ln P between the stops at which
+    that lamp shines on that screen, constant where a stop's picture is held, and repeats after a whole turn.
+    """
+    lighting = stage_of(cube)
+    turned, screens = check_angles(angles), np.unique(lighting.screen)
+    shown = [_nearest(lighting, screen, angle) for angle in turned for screen in screens]
+    moved, kept = lighting.take(shown)
+    off = np.repeat(turned, len(screens)) - lighting.angle[shown]
+    views = turned_by(cube.views.take(kept), moved, off[moved.picture])
+    moved = replace(moved, angle=np.repeat(turned, len(screens)))
+    logs = np.log(cube.powers)
+    powers = np.empty((len(moved.pairs), logs.shape[1]))
+    for row, (picture, lamp) in enumerate(moved.pairs):
+        lit = (lighting.pairs[:, 1] == lamp) & (lighting.screen[lighting.pairs[:, 0]] == moved.screen[picture])
+        stops = lighting.angle[lighting.pairs[lit, 0]]
+        powers[row] = _powers_between(cube, moved.angle[[picture]], stops, logs[lit], 360.0)[0]
+    return views, moved, powers
+
+
+def stage_of(cube: Cube) -> Lighting:
+    """The lighting of a cube that was made on a stage; `InputError` where it was made on a turntable alone."""
+    if cube.lighting is None:
+        raise InputError("this cube was not made on a stage: it has one lamp and one screen, so play it without")
+    return cube.lighting
+
+
+def _nearest(lighting: Lighting, screen: int, angle: float) -> int:
+    """The picture of a screen whose stop is nearest to an angle."""
+    away = np.abs(np.remainder(angle - lighting.angle + 180, 360) - 180)
+    return int(np.argmin(np.where(lighting.screen == screen, away, np.inf)))
+
+
+def cast(
+    cube: Cube, views: Views, lamp_powers: NDArray[np.float64], lighting: Lighting | None = None
+) -> Iterator[NDArray[np.float32]]:
+    """Yield what the screen shows in each picture, ``(row, column, channel)`` float32 linear light, never clipped.
 
     Parameters
     ----------
     views
-        Lamp and screen of each picture.
+        Lamps and screens.
     lamp_powers
         ``(views, channels)``; a beam that misses the cube shows the lamp's power.
+    lighting
+        Which views make which picture, the lamp powers being those of its pairs; None = each view is a picture.
+        Pixels that are not on the screen are black.
     """
-    yield from _cast(columns_from_volume(cube.extinction), cube, views, lamp_powers)
+    columns = columns_from_volume(cube.extinction)
+    if lighting is None:
+        yield from _cast(columns, cube, views, lamp_powers)
+    else:
+        yield from _cast_sums(columns, cube, views, lamp_powers, lighting)
 
 
 def play(cube: Cube, angles: ArrayLike | None = None, *, whole_screen: bool = False) -> NDArray[np.float32]:
@@ -110,9 +162,10 @@ def play(cube: Cube, angles: ArrayLike | None = None, *, whole_screen: bool = Fa
     Parameters
     ----------
     angles
-        Turntable angles in degrees; None = the views that the cube was made for.
+        Turntable angles in degrees; None = the pictures that the cube was made for. On a stage with several screens
+        the pictures of an angle follow each other (`exposures_at`).
     whole_screen
-        Show the whole shadow and its surroundings instead of the picture window.
+        Show the whole shadow and its surroundings instead of the picture window; a stage's screens are whole anyway.
     """
     return player(cube, whole_screen=whole_screen)(angles)
 
@@ -128,6 +181,8 @@ def player(cube: Cube, *, whole_screen: bool = False) -> Callable[[ArrayLike | N
         Show the whole shadow and its surroundings instead of the picture window.
     """
     columns = columns_from_volume(cube.extinction)
+    if cube.lighting is not None:
+        return _stage_player(columns, cube, cube.lighting)
 
     def show(angles: ArrayLike | None) -> NDArray[np.float32]:
         turned = cube.views.angles if angles is None else check_angles(angles)
@@ -137,6 +192,38 @@ def player(cube: Cube, *, whole_screen: bool = False) -> Callable[[ArrayLike | N
         return np.stack(list(_cast(columns, cube, views, powers)))
 
     return show
+
+
+def _stage_player(
+    columns: NDArray[np.floating], cube: Cube, lighting: Lighting
+) -> Callable[[ArrayLike | None], NDArray[np.float32]]:
+    def show(angles: ArrayLike | None) -> NDArray[np.float32]:
+        shown = (cube.views, lighting, cube.powers) if angles is None else exposures_at(cube, angles)
+        return np.stack(list(_cast_sums(columns, cube, shown[0], shown[2], shown[1])))
+
+    return show
+
+
+def _cast_sums(
+    columns: NDArray[np.floating], cube: Cube, views: Views, lamp_powers: NDArray[np.float64], lighting: Lighting
+) -> Iterator[NDArray[np.float32]]:
+    """Yield what `cast` does with a lighting, picture by picture, and a few views of it at a time."""
+    light, shadow = falling_light(views, lighting)
+    powers = (lamp_powers[lighting.pair] * lighting.share).astype(np.float32)
+    inside = lighting.inside(views.picture_shape)
+    starts = lighting.starts
+    for picture in range(lighting.pictures):
+        total = np.zeros((*views.picture_shape, powers.shape[1]), np.float32)
+        for first in range(starts[picture], starts[picture + 1], _BATCH):
+            batch = range(first, min(first + _BATCH, starts[picture + 1]))
+            heard = np.repeat(inside[picture][None], len(batch), axis=0)
+            matrix = Projector(cube.grid, views.take(batch), heard)
+            absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
+            lines = absorbance.reshape(len(batch) * views.picture_shape[1], -1)
+            absorbed = pictures_from_columns(lines, views.picture_shape, powers.shape[1])
+            for view, each in zip(batch, absorbed, strict=True):
+                total += powers[view] * light[view][..., None] * (1 + shadow[view][..., None] * np.expm1(-each))
+        yield total * inside[picture][..., None]
 
 
 def _cast(

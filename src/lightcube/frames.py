@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.geometry import Views, check_angles
+from lightcube.lighting import Lighting
 from lightcube.transfer import Transfer
 
 
@@ -49,7 +50,7 @@ class Pictures:
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Pictures wanted on the screen, one per view.
+    """Pictures wanted on the screen: one per view, or as a stage's lighting puts views together.
 
     Parameters
     ----------
@@ -63,6 +64,8 @@ class Frames:
         One name per picture; default ``"1"``, ``"2"``, …
     transfer
         How display values follow from linear light, for whoever shows or scores the pictures.
+    lighting
+        Which views make which picture, where they do not do so one by one.
 
     Raises
     ------
@@ -75,14 +78,20 @@ class Frames:
     weights: NDArray[np.float32] | None = None
     names: tuple[str, ...] = ()
     transfer: Transfer = "srgb"
+    lighting: Lighting | None = None
 
     def __post_init__(self) -> None:
         pictures = np.ascontiguousarray(self.pictures, dtype=np.float32)
-        expected = (len(self.views), *self.views.picture_shape)
+        if self.lighting is not None and len(self.lighting.picture) != len(self.views):
+            raise InputError(f"a lighting of {len(self.lighting.picture)} views does not fit {len(self.views)}")
+        count = len(self.views) if self.lighting is None else self.lighting.pictures
+        expected = (count, *self.views.picture_shape)
         if pictures.ndim != 4 or pictures.shape[:3] != expected:
             raise InputError(
                 f"pictures of shape {pictures.shape} do not fit the views, which want {expected} and a channel"
             )
+        if self.lighting is not None and self.lighting.share.shape[1] != pictures.shape[3]:
+            raise InputError(f"a lighting of {self.lighting.share.shape[1]} colours does not fit {pictures.shape[3]}")
         names = self.names or tuple(str(i + 1) for i in range(len(pictures)))
         if len(names) != len(pictures):
             raise InputError(f"{len(pictures)} pictures have {len(names)} names: give one name per picture")
@@ -112,13 +121,20 @@ class Frames:
         assert self.weights is not None  # noqa: S101 - __post_init__ filled it
         return self.weights
 
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Turntable angle of each picture's stop, degrees."""
+        return self.views.angles if self.lighting is None else self.lighting.angle
+
     def take(self, indices: list[int] | NDArray[np.integer] | slice) -> "Frames":
         """Return some of the frames, in the order of `indices`."""
-        chosen = range(len(self))[indices] if isinstance(indices, slice) else indices
+        chosen = list(range(len(self))[indices] if isinstance(indices, slice) else indices)
+        lighting, views = (None, chosen) if self.lighting is None else self.lighting.take(chosen)
         return replace(
             self,
-            pictures=self.pictures[indices],
-            views=self.views.take(indices),
-            weights=self.weight[indices],
+            pictures=self.pictures[chosen],
+            views=self.views.take(views),
+            weights=self.weight[chosen],
             names=tuple(self.names[i] for i in chosen),
+            lighting=lighting,
         )

@@ -232,6 +232,16 @@ def _cos_sin(degrees: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     return np.choose(index, [cos, -sin, -cos, sin]), np.choose(index, [sin, cos, -sin, -cos])
 
 
+def rotations(axis: ArrayLike, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
+    """``(n, 3, 3)``: rotations counter-clockwise about `axis` by each of the angles (O. Rodrigues, 1840)."""
+    unit = np.asarray(axis, np.float64) / np.linalg.norm(axis)
+    cos, sin = (each[:, None, None] for each in _cos_sin(degrees))
+    x, y, z = unit
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    along = np.outer(unit, unit)
+    return np.asarray(cos * (np.eye(3) - along) + sin * cross + along, np.float64)
+
+
 def turntable(
     grid: Grid, angles: ArrayLike, *, elevation: float = 0.0, picture_shape: tuple[int, int] | None = None
 ) -> Views:
@@ -317,14 +327,24 @@ def held(views: Views, hold_deg: float, grid: Grid) -> Views:
     InputError
         Where `hold_deg` is negative, or wider than half the way to the nearest other stop.
     """
+    offsets = hold_offsets(hold_deg, widest_hold(views), dense_step(grid))
+    return turned(views.take(np.repeat(np.arange(len(views)), len(offsets))), np.tile(offsets, len(views)))
+
+
+def hold_offsets(hold_deg: float, most: float, step: float) -> NDArray[np.float64]:
+    """Degrees off its stop at which a picture is asked for, 0 in the middle, at most `step` apart.
+
+    Raises
+    ------
+    InputError
+        Where `hold_deg` is negative, or wider than `most`.
+    """
     if not hold_deg >= 0:
         raise InputError(f"a hold must be a number of degrees of at least 0, not {hold_deg:g}")
-    most = widest_hold(views)
     if hold_deg > most + 1e-9:
         most = math.floor(most * 1000) / 1000
         raise InputError(
             f"a hold of {hold_deg:g} degrees is wider than half the way to the next stop: use at most {most:g}"
         )
-    aside = max(math.ceil(hold_deg / dense_step(grid) - 1e-9), int(hold_deg > 0))
-    offsets = np.linspace(-hold_deg, hold_deg, 2 * aside + 1)
-    return turned(views.take(np.repeat(np.arange(len(views)), len(offsets))), np.tile(offsets, len(views)))
+    aside = max(math.ceil(hold_deg / step - 1e-9), int(hold_deg > 0))
+    return np.linspace(-hold_deg, hold_deg, 2 * aside + 1)

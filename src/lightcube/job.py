@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from importlib.metadata import version
 from typing import Any
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from lightcube.frames import Frames
 from lightcube.geometry import Grid
+from lightcube.lighting import Lighting
 from lightcube.problem import BLACK, Lamp, is_level
 from lightcube.units import Part, halvings, split
 
@@ -84,7 +85,14 @@ class Job:
 
     @property
     def lamp_bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Lower and upper bound of the lamp powers, each ``(lamps, channels)``."""
+        """Lower and upper bound of the lamp powers, each ``(lamps, channels)``; a stage's lamps have their own."""
+        lighting = self.frames.lighting
+        if lighting is not None:
+            lamps = np.arange(len(lighting.most)) if self.lamp == "global" else lighting.pairs[:, 1]
+            low, high = (
+                np.repeat(bound[lamps, None], self.channels, axis=1) for bound in (lighting.least, lighting.most)
+            )
+            return low, high
         high = np.full((1 if self.lamp == "global" else len(self.frames), self.channels), self.lamp_power)
         return (high if self.lamp == "fixed" else np.full_like(high, LAMP_MIN)), high
 
@@ -138,6 +146,7 @@ def fingerprint(job: Job) -> Fingerprint:
         "weights": _checksum(frames.weight),
         "names": hashlib.sha256("\0".join(frames.names).encode()).hexdigest(),
         "angles and screens": _checksum(*geometry),
+        "lamps": None if frames.lighting is None else _checksum(*_arrays(frames.lighting)),
         "voxels": f"{nz} x {ny} x {nx}",
         "voxel side": job.grid.voxel_mm,
         "transfer": frames.transfer,
@@ -163,11 +172,16 @@ def differences(old: Fingerprint, new: Fingerprint) -> list[str]:
     ]
 
 
-_CHECKSUMS = ("pictures", "weights", "names", "angles and screens")
+_CHECKSUMS = ("pictures", "weights", "names", "angles and screens", "lamps")
 
 
 def _said(value: str | float | None) -> str:
     return "none" if value is None else f"{value:.9g}" if isinstance(value, float) else str(value)
+
+
+def _arrays(lighting: Lighting) -> list[NDArray[Any]]:
+    """All of a lighting as arrays."""
+    return [np.asarray(getattr(lighting, each.name)) for each in fields(lighting)]
 
 
 def _checksum(*arrays: NDArray[Any]) -> str:

@@ -77,7 +77,7 @@ def score(cube: Cube, frames: Frames | None = None) -> dict[str, Any]:
     """
     wanted = frames_from_targets(cube) if frames is None else frames
     check_same_views(cube, wanted)
-    return score_pictures(cast(cube, cube.views, cube.powers), wanted)
+    return score_pictures(cast(cube, cube.views, cube.powers, cube.lighting), wanted)
 
 
 def score_pictures(shown: Iterable[NDArray[np.float32]], frames: Frames) -> dict[str, Any]:
@@ -88,7 +88,7 @@ def score_pictures(shown: Iterable[NDArray[np.float32]], frames: Frames) -> dict
         views.append(
             {
                 "name": frames.names[index],
-                "angle": float(frames.views.angles[index]),
+                "angle": float(frames.angles[index]),
                 "psnr": psnr(*pair),
                 "ssim": ssim(*pair),
                 "delta_e": delta_e(*pair),
@@ -123,7 +123,8 @@ def mean_psnr(
 def check_same_views(cube: Cube, frames: Frames) -> None:
     """Raise `InputError` unless the frames are as many and as large as the cube's own pictures."""
     given, made_for = (
-        f"{len(views)} of {'{} x {}'.format(*views.picture_shape)}" for views in (frames.views, cube.views)
+        f"{count} of {'{} x {}'.format(*views.picture_shape)}"
+        for count, views in ((len(frames), frames.views), (len(cube.names), cube.views))
     )
     if given != made_for:
         raise InputError(
@@ -141,9 +142,9 @@ def facts(cube: Cube) -> dict[str, Any]:
         "size_mm": " x ".join(f"{length:g}" for length in cube.grid.size_mm),
         "voxel_mm": cube.grid.voxel_mm,
         "views": len(cube.views),
+        "pictures": len(cube.names),
         "picture": f"{columns} x {rows} pixels",
-        "angles": [float(angle) for angle in cube.views.angles],
-        "elevation": sorted({float(elevation) for elevation in cube.views.elevations}),
+        **_where(cube),
         "lamp_power": [float(cube.powers.min()), float(cube.powers.max())],
         "extinction_mean": float(cube.extinction.mean()),
         "extinction_max": float(cube.extinction.max()),
@@ -153,3 +154,12 @@ def facts(cube: Cube) -> dict[str, Any]:
         **{name: value for name, value in cube.scores.items() if name != "views"},
         **{f"made_with_{name}": value for name, value in cube.provenance.items()},
     }
+
+
+def _where(cube: Cube) -> dict[str, Any]:
+    """Where a cube's lamps and screens stand, by name."""
+    angles = {"angles": [float(angle) for angle in cube.angles]}
+    if cube.lighting is None:
+        return angles | {"elevation": sorted({float(elevation) for elevation in cube.views.elevations})}
+    screens = [cube.lighting.screen_names[screen] for screen in cube.lighting.screen]
+    return angles | {"lamps": list(cube.lighting.lamp_names), "screens": screens}

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from lightcube.frames import Frames
-from lightcube.geometry import Grid, held
+from lightcube.geometry import Grid
 from lightcube.job import Job, shares
 from lightcube.layout import is_worth_lines
-from lightcube.problem import Problem, is_level, pose
+from lightcube.problem import Problem, held_views, is_level, pose
 from lightcube.solvers import METHODS
 from lightcube.units import coarse_shape, coarser, most_units, split
 
@@ -32,6 +32,8 @@ ARRAYS = {
 _EQUATION = 36
 #: Bytes for each voxel that a beam runs through, where the method holds the matrix (measured).
 _ENTRY = 40
+#: Degrees of elevation that stand for beams that are not level in other ways.
+_ANY = 35.0
 #: Methods that hold the matrix.
 _SPARSE = ("gauss-seidel", "row-reduction")
 #: The time of a pass is measured where it has about so many multiply-adds, over so many passes.
@@ -109,13 +111,14 @@ def _solver(
 def job_memory(job: Job) -> int:
     """`memory_needed` of a job."""
     views = job.frames.views
+    steepest = float(np.max(np.abs(views.elevations)))
     return memory_needed(
         job.method,
         job.grid,
         views.picture_shape,
         len(views),
-        float(np.max(np.abs(views.elevations))),
-        angles=len(held(views, job.hold, job.grid)) // len(views),
+        0.0 if is_level(job.grid, views) else steepest or _ANY,
+        angles=len(held_views(job.frames, job.hold, job.grid)[0]) // len(views),
         levels=job.levels,
         units=job.units,
         channels=job.channels,
@@ -161,6 +164,7 @@ def seconds_a_pass(job: Job) -> float:
         iterations=_TIMED,
         callback=lambda progress: marks.append(time.perf_counter()),
         transfer=frames.transfer,
+        mixture=problem.mixture,
     )
     if len(marks) < 2:
         return 0.0
@@ -175,9 +179,10 @@ def seconds_a_pass(job: Job) -> float:
 def _seconds_of_products(problem: Problem) -> float:
     """The least that one product in either direction has taken."""
     times = []
+    beams = np.ones((problem.matrix.shape[0], problem.light.shape[1]), problem.light.dtype)
     for _ in range(3):
         began = time.perf_counter()
-        problem.matrix.forward(problem.matrix.adjoint(problem.light))
+        problem.matrix.forward(problem.matrix.adjoint(beams))
         times.append(time.perf_counter() - began)
     return min(times)
 
@@ -185,5 +190,5 @@ def _seconds_of_products(problem: Problem) -> float:
 def _work(job: Job, frames: Frames, grid: Grid) -> tuple[float, float]:
     """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
     rows, columns = frames.views.picture_shape
-    pixels = len(held(frames.views, job.hold, grid)) * rows * columns * job.channels
+    pixels = len(held_views(frames, job.hold, grid)[0]) * rows * columns * job.channels
     return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)

@@ -83,6 +83,7 @@ def solve_piece(
     problem, start, bounds, iterations = _posed(job, name, store)
     state = _handed(store.state(name))
     watch = _Watch(job, name, problem, store, callback, checkpoints=checkpoints)
+    options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
     result = METHODS[job.method](
         problem.matrix,
         problem.light,
@@ -94,7 +95,8 @@ def solve_piece(
         callback=watch,
         transfer=job.frames.transfer,
         state=state,
-        **({} if iterations is None else {"iterations": iterations}),
+        mixture=problem.mixture,
+        **options,
     )
     if watch.stopped:
         return False
@@ -227,7 +229,6 @@ class _Watch:
             return Step(0, self._most, done, progress.residual, None, window)
 
         def shown() -> NDArray[np.float32]:
-            powers = np.broadcast_to(progress.lamp_powers, (self._problem.stops, self._problem.channels))
-            return self._problem.shown(progress.absorbance, powers)
+            return self._problem.shown(progress.absorbance, progress.lamp_powers)
 
         return Step(progress.iteration, progress.iterations, done, progress.residual, shown, window)

@@ -1,6 +1,7 @@
 """Contact sheets: wanted, shown and the difference of every view, as one picture."""
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
         top = _GAP + _LINE + place // per_line * cell_height
         label = f"{frames.names[view]}"[:16]
         draw.text((left, top), label, _INK, font)
-        draw.text((left, top + _LINE - 3), f"{frames.views.angles[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
+        draw.text((left, top + _LINE - 3), f"{frames.angles[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
         for index, picture in enumerate(_triple(shown[view], frames, int(view))):
             tile = Image.fromarray(picture).resize((columns * scale, rows * scale), Image.Resampling.NEAREST)
             sheet.paste(tile, (left, top + 2 * _LINE + index * (rows * scale + 2)))
@@ -74,8 +75,19 @@ def beside_targets(
     Pictures are in linear light; `angles` are theirs, in degrees. Pixels that nobody cares about are grey.
     """
     for picture, angle in zip(shown, angles, strict=True):
-        apart = np.abs(np.remainder(frames.views.angles - angle + 180, 360) - 180)
+        apart = np.abs(np.remainder(frames.angles - angle + 180, 360) - 180)
         nearest = int(np.argmin(apart))
         wanted = np.where(frames.weight[nearest][..., None] > 0, frames.pictures[nearest], np.float32(0.2))
         gap = np.zeros((len(picture), 2, picture.shape[2]), np.float32)
         yield np.concatenate([picture, gap, wanted], axis=1)
+
+
+def beside_each_other(pictures: list[NDArray[np.float32]], windows: NDArray[np.integer[Any]]) -> NDArray[np.float32]:
+    """One picture of several, each cut to its window ``(rows, columns)`` from its upper left, with black gaps."""
+    cut = [picture[:rows, :columns] for picture, (rows, columns) in zip(pictures, windows, strict=True)]
+    high, gap = max(len(picture) for picture in cut), 2
+    padded = [
+        np.pad(picture, ((high - len(picture), 0), (0, gap if number + 1 < len(cut) else 0), (0, 0)))
+        for number, picture in enumerate(cut)
+    ]
+    return np.concatenate(padded, axis=1)

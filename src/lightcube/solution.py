@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from lightcube.coarse import enlarged
 from lightcube.cube import Cube
 from lightcube.fitting import targets
-from lightcube.geometry import held
 from lightcube.job import Job, level_name
 from lightcube.layout import clear_volume
 from lightcube.pieces import POWERS
-from lightcube.problem import volume_from_unknowns
+from lightcube.problem import held_views, volume_from_unknowns
 from lightcube.store import Arrays, Store
 from lightcube.units import Part, coarse_shape
 
@@ -78,17 +77,27 @@ def merged(job: Job, store: Store) -> Solution:
         extinction=extinction,
         grid=job.grid,
         views=job.frames.views,
-        lamp_powers=np.array(np.broadcast_to(powers, (len(job.frames), job.channels)), np.float64),
+        lamp_powers=_of_pictures(job, powers),
         targets=targets(job.frames),
         names=job.frames.names,
         transfer=job.frames.transfer,
         status="complete" if complete else "interrupted",
         hold_deg=float(job.hold),
+        lighting=job.frames.lighting,
         provenance=_made_with(job) | made,
     )
     undetermined = sum(int(each.get("undetermined", 0)) for each in facts)
     bound = sum(bounds) if complete and len(bounds) == len(facts) else None
     return Solution(cube, residuals, rejected, undetermined, stop_reason, bound)
+
+
+def _of_pictures(job: Job, powers: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The powers of each picture's lamps, as a cube keeps them, from those that the job solves for."""
+    if job.lamp != "global":
+        return powers
+    if job.frames.lighting is None:
+        return np.repeat(powers, len(job.frames), axis=0)
+    return powers[job.frames.lighting.pairs[:, 1]]
 
 
 def _place(
@@ -159,7 +168,7 @@ def _made_with(job: Job) -> dict[str, Any]:
         "lamp_power" if job.lamp == "fixed" else "lamp_max": float(job.lamp_power),
         "max_extinction": None if np.isinf(job.max_extinction) else float(job.max_extinction),
         "black": float(job.black),
-        "angles_per_view": len(held(job.frames.views, job.hold, job.grid)) // len(job.frames),
+        "angles_per_view": len(held_views(job.frames, job.hold, job.grid)[0]) // len(job.frames.views),
         "units": job.units,
         **job.provenance,
     }

@@ -48,6 +48,8 @@ def settled(options: Options) -> Options:
         raise InputError(f"--quality is for method display: use --iterations with method {options.method}")
     if options.paper:
         options = _as_in_the_paper(options)
+    if max(options.lamp_samples, options.pixel_samples) > 1:
+        raise InputError("--lamp-samples and --pixel-samples are for a stage: describe lamp and screen in a stage file")
     kind = backward.check_options(options.method, **options.lamps, iterations=options.iterations)
     return replace(options, lamp=kind)
 
@@ -132,11 +134,16 @@ def job(prepared: Prepared, options: Options, *, memory: int | None = None, unit
     )
     needed = job_memory(made)
     if memory is not None and needed > memory:
-        raise InputError(
-            f"this needs {needed / 1e9:.3g} GB of memory at least, more than --memory {memory / 1e9:.3g}GB allows: "
-            "allow more, or use a smaller cube, or fewer or smaller pictures"
-        )
+        raise too_much(needed, memory)
     return made
+
+
+def too_much(needed: int, memory: int) -> InputError:
+    """The error of a job that needs more bytes than --memory allows."""
+    return InputError(
+        f"this needs {needed / 1e9:.3g} GB of memory at least, more than --memory {memory / 1e9:.3g}GB allows: "
+        "allow more, or use a smaller cube, or fewer or smaller pictures"
+    )
 
 
 def divided(made: Job, output: str, workers: int, memory: int | None = None) -> Job:

@@ -9,6 +9,7 @@ from lightcube.bench.clock import seconds, threads
 from lightcube.geometry import Grid, spread_angles, turntable
 from lightcube.kernels import projection
 from lightcube.projector import Projector
+from lightcube.stacked import StackedBeams
 
 #: Colours of the cube and its pictures.
 CHANNELS = 3
@@ -58,11 +59,11 @@ def traced(
     matrix: Projector, first: int = 0, last: int | None = None
 ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float32]]:
     """Where each beam's pieces begin, and their voxels, levels and lengths, for the lowest row of some views."""
-    beams = matrix._beams[first:last]
+    stacked = StackedBeams(matrix.grid, matrix.views.take(slice(first, last)))
     width = matrix.views.picture_shape[1]
     _, ny, nx = matrix.grid.shape
-    where = (beams, width, nx, ny, matrix.grid.voxel_mm, matrix._rise)
-    offsets = np.zeros(len(beams) * width + 1, np.int64)
+    where = (stacked.beams, width, nx, ny, matrix.grid.voxel_mm, stacked.rise)
+    offsets = np.zeros(len(stacked.beams) * width + 1, np.int64)
     none = np.empty(0, np.int32)
     projection.trace_all(*where, offsets, none, none, np.empty(0, np.float32))
     pieces = int(offsets[-1])

@@ -1,6 +1,7 @@
 """Reading and writing files, by suffix."""
 
 from lightcube.io.cubes import UnfinishedCube, check_cube_target, load, publish, save
+from lightcube.io.drawings import check_drawing_target, write_drawing
 from lightcube.io.figures import check_figure_target, write_figure
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures, check_pictures_target, write_pictures
@@ -17,6 +18,7 @@ from lightcube.io.partial import (
 from lightcube.io.pictures import TransparentPictures, read_pictures
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.sheets import check_sheet_target, write_json, write_sheet
+from lightcube.io.stages import is_stage, read_stage, read_stage_frames
 
 __all__ = [
     "ClippedPictures",
@@ -25,12 +27,14 @@ __all__ = [
     "UnfinishedCube",
     "begun_units",
     "check_cube_target",
+    "check_drawing_target",
     "check_figure_target",
     "check_partial",
     "check_pictures_target",
     "check_sheet_target",
     "discard_partial",
     "free_memory",
+    "is_stage",
     "load",
     "load_job",
     "open_partial",
@@ -39,8 +43,11 @@ __all__ = [
     "published_path",
     "read_pictures",
     "read_scene",
+    "read_stage",
+    "read_stage_frames",
     "save",
     "scene_names",
+    "write_drawing",
     "write_figure",
     "write_json",
     "write_pictures",

@@ -13,10 +13,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from lightcube.cube import Cube, Status
 from lightcube.errors import InputError
 from lightcube.geometry import Grid, Views
+from lightcube.io._lighting import LightingJson, lighting_to_json
 from lightcube.transfer import Transfer
 
 #: Of the files that this version writes; it reads all versions up to this one.
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Strict = ConfigDict(extra="forbid", strict=True)
@@ -39,7 +40,7 @@ class _CubeJson(BaseModel):
 
     model_config = _Strict
 
-    format_version: Literal[1]
+    format_version: Literal[1, 2]
     written_by: str
     extinction_unit: Literal["1/mm"]
     voxel_mm: Annotated[_Number, Field(gt=0)]
@@ -49,6 +50,7 @@ class _CubeJson(BaseModel):
     transfer: Transfer
     status: Status
     hold_deg: Annotated[_Number, Field(ge=0, le=180)] = 0.0
+    lighting: LightingJson | None = None
     scores: dict[str, Any]
     provenance: dict[str, Any]
 
@@ -57,7 +59,7 @@ def to_json(cube: Cube) -> dict[str, Any]:
     """`cube` without its arrays as plain JSON values; every number comes back bit for bit."""
     views = cube.views
     return {
-        "format_version": FORMAT_VERSION,
+        "format_version": 1 if cube.lighting is None else 2,  # so that an older version reads what it can
         "written_by": f"lightcube {version('lightcube')}",
         "extinction_unit": "1/mm",
         "voxel_mm": cube.grid.voxel_mm,
@@ -72,6 +74,7 @@ def to_json(cube: Cube) -> dict[str, Any]:
         "hold_deg": float(cube.hold_deg),
         "scores": plain(cube.scores),
         "provenance": plain(cube.provenance),
+        **({} if cube.lighting is None else {"lighting": lighting_to_json(cube.lighting)}),
     }
 
 
@@ -115,6 +118,7 @@ def from_json(path: Path, document: object, extinction: NDArray[np.float32], tar
             said.provenance,
             said.status,
             said.hold_deg,
+            None if said.lighting is None else said.lighting.lighting(),
         )
     except ValueError as error:  # InputError among them
         raise damaged(path, str(error)) from error

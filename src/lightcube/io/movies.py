@@ -70,8 +70,8 @@ def write_pictures(
     Parameters
     ----------
     path
-        ``.mp4`` (H.264, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256 colours for all
-        pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no
+        ``.png`` for a single picture, ``.mp4`` (H.264, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256
+        colours for all pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no
         suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given. It may be a URL.
     pictures
         ``(view, row, column, 3)``, or one ``(row, column, 3)`` after the other, in linear light, 1 = white.
@@ -195,6 +195,14 @@ def _write_folder(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _
         (path / VIEWS_FILE).write_bytes(job.views.encode("utf-8", errors="replace"))
 
 
+def _write_png(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
+    """A single picture."""
+    if job.count > 1:
+        raise InputError(f"a .png holds one picture, not {job.count}: give a folder (no suffix), or another suffix")
+    for levels in _levels(pictures, job.transfer, clipped):
+        Image.fromarray(levels).save(path, format="PNG")
+
+
 def _write_npy(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
     """NumPy's own format, one picture after the other."""
     with path.open("wb") as file:
@@ -217,4 +225,5 @@ _WRITERS = {
     ".webp": _movie(_encoders.encode_webp),
     ".apng": _movie(_encoders.encode_apng),
     ".npy": _write_npy,
+    ".png": _write_png,
 }

@@ -25,6 +25,7 @@ from lightcube.errors import InputError
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, Views
 from lightcube.io._files import system_errors
+from lightcube.io._lighting import LightingJson, lighting_to_json
 from lightcube.io._metadata import plain
 from lightcube.io._remote import (
     Place,
@@ -70,6 +71,7 @@ class _JobJson(BaseModel):
     voxel_mm: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     names: list[str]
     transfer: Transfer
+    lighting: LightingJson | None = None
     method: str
     lamp: Lamp
     lamp_power: Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -258,8 +260,9 @@ def load_job(partial: str | Path) -> Job:
         pictures, weights = arrays["pictures"], arrays["weights"]
         geometry = {name: arrays[name] for name in _GEOMETRY}
         views = Views(**geometry, picture_shape=(pictures.shape[1], pictures.shape[2]))
+        lighting = None if said.lighting is None else said.lighting.lighting()
         job = Job(
-            frames=Frames(pictures, views, weights, tuple(said.names), said.transfer),
+            frames=Frames(pictures, views, weights, tuple(said.names), said.transfer, lighting),
             grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),
             max_extinction=np.inf if said.max_extinction is None else said.max_extinction,
             enough_db=np.inf if said.enough_db is None else said.enough_db,
@@ -289,6 +292,7 @@ def _write_job(folder: Place, job: Job) -> None:
         "voxel_mm": grid.voxel_mm,
         "names": list(frames.names),
         "transfer": frames.transfer,
+        "lighting": lighting_to_json(frames.lighting),
         "max_extinction": None if np.isinf(job.max_extinction) else job.max_extinction,
         "enough_db": None if np.isinf(job.enough_db) else job.enough_db,
         **{name: plain(getattr(job, name)) for name in _PLAIN},

@@ -28,7 +28,7 @@ class TransparentPictures(UserWarning):
     """Some pictures that were read are not opaque, and were put on white."""
 
 
-def read_pictures(path: str | Path, *, transfer: Transfer = "srgb") -> Pictures:
+def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int = 2) -> Pictures:
     """Read pictures in linear light.
 
     Parameters
@@ -39,6 +39,8 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb") -> Pictures:
         pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken. It may be a URL.
     transfer
         How display values become linear light.
+    least
+        How many pictures there must be: a cube on a turntable needs two.
 
     Returns
     -------
@@ -53,12 +55,12 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb") -> Pictures:
     Raises
     ------
     InputError
-        Where there is nothing to read, a file is damaged or of another kind, there is only one picture, they
+        Where there is nothing to read, a file is damaged or of another kind, there are too few pictures, they
         would not fit into half of the machine's memory, or `views.toml` has a fault.
     """
     transfer = check_transfer(transfer)
     with fetched(place(path), _is_wanted) as local:
-        pictures, transparent = _read(local, transfer)
+        pictures, transparent = _read(local, transfer, least)
     if transparent:
         warnings.warn(
             f"{transparent} of {len(pictures)} pictures in {path} are partly transparent: they were put on white",
@@ -73,7 +75,7 @@ def _is_wanted(name: str) -> bool:
     return name == VIEWS_FILE or (Path(name).suffix.lower() in PICTURE_SUFFIXES and not name.startswith("."))
 
 
-def _read(path: Path, transfer: Transfer) -> tuple[Pictures, int]:
+def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
     """Pictures, and how many of them are not opaque."""
     with system_errors(path, "reading"):
         there, is_folder = path.exists(), path.is_dir()
@@ -98,10 +100,11 @@ def _read(path: Path, transfer: Transfer) -> tuple[Pictures, int]:
         names = views.names or tuple(file.stem for file in files)
     else:
         suffix_entry(path, _READERS, "pictures")(path, Budget(), take)
-        names = tuple(str(index + 1) for index in range(len(images)))
-    if len(images) < 2:
+        names = tuple(str(index + 1) for index in range(len(images))) if len(images) > 1 else (path.stem,)
+    if len(images) < least:
         held = "one picture" if images else "no picture"
-        raise InputError(f"{path} holds {held}, and a cube needs at least two: add more")
+        needed = "a cube needs at least two: add more" if least > 1 else "one at least is needed: give another"
+        raise InputError(f"{path} holds {held}, and {needed}")
     return Pictures(tuple(images), names, views.angles, views.elevation, transfer), transparent
 
 

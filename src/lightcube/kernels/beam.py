@@ -30,7 +30,7 @@ def max_pieces(nx: int, ny: int, rise: int) -> int:
 
 
 @njit(cache=True, inline="always")
-def _crossings(p: float, d: float, n: int) -> tuple[float, float]:
+def crossings(p: float, d: float, n: int) -> tuple[float, float]:
     """Path parameters at which ``p + t d`` enters and leaves ``[0, n]``; empty (inf, -inf) where it misses."""
     if abs(d) < PARALLEL:
         if 0.0 < p < n:
@@ -43,7 +43,7 @@ def _crossings(p: float, d: float, n: int) -> tuple[float, float]:
 
 
 @njit(cache=True, inline="always")
-def _faces(p: float, d: float, i: int) -> tuple[int, float, float]:
+def faces(p: float, d: float, i: int) -> tuple[int, float, float]:
     """Which way a beam in cell `i` of one axis goes on, the path parameter of the next face, and from face to face."""
     if abs(d) < PARALLEL:
         return 0, np.inf, np.inf
@@ -73,8 +73,8 @@ def _trace_off_faces(
 
     Free of branches that depend on the numbers: which face comes next cannot be foretold.
     """
-    x_in, x_out = _crossings(px, dx, nx)
-    y_in, y_out = _crossings(py, dy, ny)
+    x_in, x_out = crossings(px, dx, nx)
+    y_in, y_out = crossings(py, dy, ny)
     t = max(x_in, y_in)
     end = min(x_out, y_out)
     if not t < end:
@@ -82,9 +82,9 @@ def _trace_off_faces(
     ix = min(max(math.floor(px + t * dx), 0), nx - 1)
     iy = min(max(math.floor(py + t * dy), 0), ny - 1)
     iz = math.floor(pz + t * dz)
-    x_way, tx, x_gap = _faces(px, dx, ix)
-    y_way, ty, y_gap = _faces(py, dy, iy)
-    z_way, tz, z_gap = _faces(pz, dz, iz)
+    x_way, tx, x_gap = faces(px, dx, ix)
+    y_way, ty, y_gap = faces(py, dy, iy)
+    z_way, tz, z_gap = faces(pz, dz, iz)
     while t < end:
         stop = min(min(tx, ty), min(tz, end))
         places[count] = ix * strides[0] + iy * strides[1]
@@ -103,7 +103,7 @@ def _trace_off_faces(
 
 
 @njit(cache=True, inline="always")
-def _on_face(p: float, d: float) -> bool:
+def on_face(p: float, d: float) -> bool:
     """Whether a beam runs along a face of this axis."""
     return abs(d) < PARALLEL and abs(p - round(p)) <= ON_FACE
 
@@ -132,7 +132,7 @@ def trace_beam(
     along a face is split into equal beams half a voxel to either side, which have the same lengths as the voxels that
     touch the face. There must be room for one more piece than `max_pieces`.
     """
-    on_x, on_y, on_z = _on_face(px, dx), _on_face(py, dy), _on_face(pz, dz)
+    on_x, on_y, on_z = on_face(px, dx), on_face(py, dy), on_face(pz, dz)
     for sx in range(2 if on_x else 1):
         for sy in range(2 if on_y else 1):
             for sz in range(2 if on_z else 1):

@@ -25,9 +25,10 @@ Elevation = Annotated[float, Field(strict=True, gt=-89.999, lt=89.999, allow_inf
 Count = Annotated[int, Field(strict=True, ge=1, le=100_000)]
 Pixels = Annotated[int, Field(strict=True, ge=1, le=8192)]
 Point = tuple[Number, Number, Number]
+Line = Annotated[str, Field(min_length=1, pattern=r"^[^\x00-\x1f\x7f]*\S[^\x00-\x1f\x7f]*$")]
 
 
-def _colour(value: Any) -> Any:
+def hex_colour(value: Any) -> Any:
     """``"#rgb"`` or ``"#rrggbb"`` to three numbers; anything else as it is, for the next check."""
     if not isinstance(value, str):
         return value
@@ -50,7 +51,7 @@ def _direction(value: Point) -> Point:
     return value
 
 
-Colour = Annotated[tuple[Fraction, Fraction, Fraction], BeforeValidator(_colour)]
+Colour = Annotated[tuple[Fraction, Fraction, Fraction], BeforeValidator(hex_colour)]
 Light = Annotated[Colour, BeforeValidator(_three)]
 Scale = Annotated[tuple[AtLeastZero, AtLeastZero, AtLeastZero], BeforeValidator(_three)]
 Direction = Annotated[Point, AfterValidator(_direction)]
@@ -207,7 +208,7 @@ class Text(_Shape):
     """Letters that read along x and stand along z, `depth` thick along y, capitals `height` high, centred."""
 
     type: Literal["text"]
-    text: Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[^\x00-\x1f\x7f]*\S[^\x00-\x1f\x7f]*$")]
+    text: Annotated[Line, Field(max_length=64)]
     height: Positive
     depth: Positive
 
@@ -357,10 +358,10 @@ def parse(data: Mapping[str, Any], name: str = "scene") -> SceneFile:
     try:
         return SceneFile.model_validate(data)
     except ValidationError as error:
-        raise InputError(f"{name}: {_sentence(error.errors(include_url=False)[0])}") from None
+        raise InputError(f"{name}: {sentence(error.errors(include_url=False)[0])}") from None
 
 
-def _sentence(problem: ErrorDetails) -> str:
+def sentence(problem: ErrorDetails) -> str:
     """``key.path: what is allowed`` of one of pydantic's findings."""
     path = _path(problem["loc"])
     kind, context = problem["type"], problem.get("ctx", {})
@@ -395,6 +396,7 @@ _MESSAGES = {
     "int_type": "must be a whole number",
     "bool_type": "must be true or false",
     "string_type": "must be a text",
+    "string_too_long": "is too long",
     "string_pattern_mismatch": "must be one line with something to see in it",
 }
 

@@ -11,7 +11,7 @@ from numpy.typing import DTypeLike, NDArray
 from lightcube.errors import InputError
 from lightcube.layout import copied
 from lightcube.solvers._absorbance import absorbance_wanted
-from lightcube.solvers.contract import Floats, Operator, State
+from lightcube.solvers.contract import Floats, Mixture, Operator, State
 
 
 @dataclass(frozen=True)
@@ -154,11 +154,14 @@ def linear_problem(
     lamp_bounds: tuple[Floats, Floats] | None,
     x0: Floats | None,
     bounds: tuple[float, float],
+    mixture: Mixture | None = None,
 ) -> LinearProblem:
     """Check what `method` was given and take logarithms; `InputError` names what cannot be used.
 
     The parameters are those of `lightcube.solvers.contract.Solver`.
     """
+    if mixture is not None:
+        raise InputError(f"method {method} takes logarithms, and light that adds up has none: use method display")
     check_shapes(A, B)
     views = check_views(view_of_row, A.shape[0])
     lamp_powers, strongest = check_lamp(lamp_bounds, views)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: A column has converged once the gradient that the bounds leave is this part of ``A.T W b``, in the 2-norm.
@@ -28,6 +28,7 @@ def cgls(
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
     state: State | None = None,
+    mixture: Mixture | None = None,
 ) -> Result:
     """Minimise ``sum_i w_i (b - A x)_i^2`` within the bounds, ``b = ln P - ln B``, each column with its own steps.
 
@@ -53,7 +54,7 @@ def cgls(
     A. Bjorck, Numerical Methods for Least Squares Problems (1996), 7.4; J. J. More, G. Toraldo, SIAM J. Optim. 1
     (1991); Z. Dostal, J. Schoberl, Comput. Optim. Appl. 30 (2005), for weighing the two parts of the gradient.
     """
-    problem = linear_problem("cgls", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
+    problem = linear_problem("cgls", A, B, weights, view_of_row, lamp_bounds, x0, bounds, mixture)
     iterations = check_iterations(iterations)
     b, w, x, dtype = problem.b, problem.weights, problem.x, B.dtype
     d = A.adjoint(w * A.forward(np.ones((A.shape[1], 1), dtype)))

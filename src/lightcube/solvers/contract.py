@@ -35,6 +35,31 @@ class Operator(Protocol):
         """The same matrix, float64, for methods that need single rows."""
 
 
+@dataclass(frozen=True, eq=False)
+class Mixture:
+    """Views that add up to pictures: the equations of a view follow each other, and so do the views of a picture.
+
+    A picture shows the sum over its views of ``P share light (1 - shadow (1 - e^-(A x)))``.
+
+    Parameters
+    ----------
+    starts
+        ``(pictures + 1,)``: the views of picture p are those from ``starts[p]`` to before ``starts[p + 1]``.
+    lamp
+        ``(views,)``: which of the lamp powers P each view has.
+    share
+        ``(views, channels)`` of at least 0.
+    light, shadow
+        ``(views, pixels)``, of at least 0 and in [0, 1]: a view's pixels in the order of its equations and columns.
+    """
+
+    starts: NDArray[np.intp]
+    lamp: NDArray[np.intp]
+    share: NDArray[np.float64]
+    light: Floats
+    shadow: Floats
+
+
 @dataclass(frozen=True)
 class Progress:
     """Where a running solver stands; arrays are the solver's own: look while it waits, do not write, copy to keep."""
@@ -121,6 +146,9 @@ class Solver(Protocol):
         What `Progress.state` gave after some iteration of the same problem: go on from there instead of from `x0`.
         The result is the same, bit for bit, as that of a run that never stopped, history included. Arrays beyond
         those that the method keeps are ignored, none is written to.
+    mixture
+        Where several views add up to a picture: `B` and `weights` then have the equations of the pictures,
+        `view_of_row` is not needed, and `lamp_bounds` is ``(lamps, channels)``. Only methods that reckon in light can.
     """
 
     def __call__(  # noqa: D102
@@ -137,4 +165,5 @@ class Solver(Protocol):
         callback: Callback | None = None,
         transfer: Transfer = "srgb",
         state: State | None = None,
+        mixture: Mixture | None = None,
     ) -> Result: ...

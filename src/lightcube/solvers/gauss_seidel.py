@@ -11,7 +11,7 @@ from lightcube.kernels.row_action import sweep
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: A column has settled once a sweep changes it by at most this part of its largest number.
@@ -37,6 +37,7 @@ def gauss_seidel(
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
     state: State | None = None,
+    mixture: Mixture | None = None,
 ) -> Result:
     """Solve ``A x = b``, ``b = ln P - ln B``, by row actions within the bounds, throwing out what is inconsistent.
 
@@ -71,7 +72,7 @@ def gauss_seidel(
     ----------
     S. Kaczmarz, Bull. Acad. Polon. Sci. A35 (1937); Y. Censor, SIAM Review 23 (1981), for relaxation and least squares.
     """
-    problem = linear_problem("gauss-seidel", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
+    problem = linear_problem("gauss-seidel", A, B, weights, view_of_row, lamp_bounds, x0, bounds, mixture)
     iterations = check_iterations(iterations)
     x, dtype = problem.x, B.dtype
     rows = _Rows.of(A, dtype)

@@ -11,7 +11,7 @@ from scipy.sparse import csr_array, eye_array, hstack
 from lightcube.errors import InputError
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: The largest matrix, in equations times unknowns.
@@ -40,6 +40,7 @@ def row_reduction(
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
     state: State | None = None,
+    mixture: Mixture | None = None,
 ) -> Result:
     """Solve ``A x = b``, ``b = ln P - ln B``, by Gauss-Jordan elimination in float64, for small cubes.
 
@@ -80,7 +81,7 @@ def row_reduction(
             f"method row-reduction takes at most {LARGEST} numbers (equations times unknowns), not "
             f"{A.shape[0]} x {A.shape[1]}: use a smaller cube, or method gauss-seidel, sirt, cgls or display"
         )
-    problem = linear_problem("row-reduction", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
+    problem = linear_problem("row-reduction", A, B, weights, view_of_row, lamp_bounds, x0, bounds, mixture)
     check_iterations(iterations)
     columns = B.shape[1]
     x = problem.x

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lightcube.solvers._checks import check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
 from lightcube.transfer import Transfer
 
 #: A column has converged once a step is shorter than this part of its right-hand side (both in the method's norms).
@@ -27,6 +27,7 @@ def sirt(
     callback: Callback | None = None,
     transfer: Transfer = "srgb",
     state: State | None = None,
+    mixture: Mixture | None = None,
 ) -> Result:
     """Minimise ``sum_i w_i / r_i * (b - A x)_i^2`` within the bounds, ``b = ln P - ln B`` and ``r`` the row sums of A.
 
@@ -48,7 +49,7 @@ def sirt(
     P. Gilbert, J. Theor. Biol. 36 (1972); A. van der Sluis, H. A. van der Vorst, Linear Algebra Appl. 130 (1990);
     B. O'Donoghue, E. Candes, Found. Comput. Math. 15 (2015), for the restart.
     """
-    problem = linear_problem("sirt", A, B, weights, view_of_row, lamp_bounds, x0, bounds)
+    problem = linear_problem("sirt", A, B, weights, view_of_row, lamp_bounds, x0, bounds, mixture)
     iterations = check_iterations(iterations)
     b, x, columns = problem.b, problem.x, (B.shape[1],)
     row_weights = problem.weights * _inverse(A.forward(np.ones((A.shape[1], 1), B.dtype)))

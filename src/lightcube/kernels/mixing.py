@@ -1,0 +1,274 @@
+"""Light of several views that adds up on the screen, and the two-sided residual of the sum.
+
+``absorbance`` is ``(views, entries)``: picture p is made by views ``starts[p]`` to before ``starts[p + 1]``. Entry i
+of view v shows ``l = P g (1 - a + a e^-absorbance)``, with ``P = powers[v, i % channels]``, ``g = light[v, k]`` and
+``a = shadow[v, k]`` for ``k = i // channels``; the screen shows ``e^u``, the sum. So ``du/d absorbance = -s`` with
+``s`` the part of all light that P g a e^-absorbance makes up, and the second derivatives of u are ``diag(s) - s s'``. A
+convex function f of u has then, by absorbance, a second derivative of at most ``diag(s (f'' sum(s) + max(f', 0)))``,
+and where f' pulls, ``min(s, 2 s (1 - s))`` takes the place of s (sums of rows of the matrix). Results do not depend on
+the number of threads.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from lightcube.kernels.display import Curve, curvature, pull, residual
+from lightcube.kernels.exponential import exp
+from lightcube.kernels.threads import parallel
+
+Array = NDArray[Any]
+
+#: Numbers that a task keeps of its run's views, and parts that the entries of a picture are divided into at most.
+_KEPT, _PARTS = 16384, 16
+#: Light is scaled by at most e to this, so that neither it nor its inverse leaves the range of float32.
+_MOST = 60.0
+#: The least part of all light that a view counts as in bounds on curvature, relative to its part without a cube.
+_LEAST_PART = 0.2
+
+
+class Mixture(NamedTuple):
+    """Which views make which picture, and how strong; see the module."""
+
+    starts: Array
+    powers: Array
+    light: Array
+    shadow: Array
+
+
+@njit(cache=True)
+def _runs(mixture: Mixture, entries: int, columns: int) -> tuple[int, int, int]:
+    """Most views of a picture, entries of a run (whole rows), and parts of a picture."""
+    most = 1
+    for picture in range(len(mixture.starts) - 1):
+        most = max(most, mixture.starts[picture + 1] - mixture.starts[picture])
+    rows = entries // columns
+    run = max(1, min(_KEPT // (most * columns), rows))
+    return most, run * columns, min(_PARTS, (rows + run - 1) // run)
+
+
+@njit(cache=True)
+def _part(part: int, parts: int, entries: int, columns: int) -> tuple[int, int]:
+    """First entry of a part of a picture, and one after its last; parts are whole rows."""
+    rows = entries // columns
+    return part * rows // parts * columns, (part + 1) * rows // parts * columns
+
+
+@njit(cache=True)
+def _split(mixture: Mixture, view: int, start: int, count: int, clear: Array, dark: Array) -> None:
+    """Write the light of a view, without a cube, that no cube absorbs (`clear`), and that which one can (`dark`)."""
+    channels = mixture.powers.shape[1]
+    for k in range(count // channels):
+        at = start // channels + k
+        for c in range(channels):
+            full = mixture.powers[view, c] * mixture.light[view, at]
+            dark[k * channels + c] = full * mixture.shadow[view, at]
+            clear[k * channels + c] = full - dark[k * channels + c]
+
+
+@njit(cache=True)
+def _shine(
+    mixture: Mixture, picture: int, absorbance: Array, start: int, end: int, lit: Array, cast: Array, u: Array
+) -> None:
+    """Write the parts of all light that each view makes (`lit`), those that absorb (`cast`), and ln light (`u`)."""
+    first, last = mixture.starts[picture], mixture.starts[picture + 1]
+    count = end - start
+    least = np.full(count, absorbance.dtype.type(np.inf))
+    whole = np.zeros(count, absorbance.dtype)
+    for v in range(first, last):
+        for i in range(count):
+            least[i] = min(least[i], absorbance[v, start + i])
+    for v in range(first, last):
+        clear = lit[v - first]
+        _split(mixture, v, start, count, clear, cast[v - first])
+        for i in range(count):
+            whole[i] += clear[i]
+    most = absorbance.dtype.type(_MOST)
+    for i in range(count):  # where some light is not absorbed, the sum cannot fall to nothing
+        least[i] = min(least[i], most) if whole[i] > 0 else least[i]
+        whole[i] = 0
+    for v in range(first, last):
+        clear, dark = lit[v - first], cast[v - first]
+        for i in range(count):
+            dark[i] *= exp(least[i] - absorbance[v, start + i])
+            clear[i] = clear[i] * exp(least[i]) + dark[i]
+            whole[i] += clear[i]
+    tiny = absorbance.dtype.type(1e-30)
+    for i in range(count):
+        whole[i] = max(whole[i], tiny)
+        u[i] = math.log(whole[i]) - least[i]
+        whole[i] = 1 / whole[i]
+    for j in range(last - first):
+        for i in range(count):
+            lit[j, i] *= whole[i]
+            cast[j, i] *= whole[i]
+
+
+@njit(cache=True)
+def _bare(mixture: Mixture, picture: int, start: int, end: int, inverse: Array) -> None:
+    """Write 1 over the light without a cube."""
+    channels = mixture.powers.shape[1]
+    inverse[:] = 0
+    for v in range(mixture.starts[picture], mixture.starts[picture + 1]):
+        for i in range(end - start):
+            inverse[i] += mixture.powers[v, i % channels] * mixture.light[v, (start + i) // channels]
+    for i in range(end - start):
+        inverse[i] = 1 / max(inverse[i], inverse.dtype.type(1e-30))
+
+
+@parallel
+def shine(mixture: Mixture, absorbance: Array, columns: int, logs: Array) -> None:
+    """Write ln of the light that the screen shows to `logs`, ``(pictures, entries)``."""
+    pictures, entries = logs.shape
+    most, run, parts = _runs(mixture, entries, columns)
+    for task in prange(pictures * parts):
+        lit, cast = np.empty((most, run), logs.dtype), np.empty((most, run), logs.dtype)
+        begin, stop = _part(task % parts, parts, entries, columns)
+        for start in range(begin, stop, run):
+            end = min(start + run, stop)
+            _shine(mixture, task // parts, absorbance, start, end, lit, cast, logs[task // parts, start:end])
+
+
+@parallel
+def descend(
+    mixture: Mixture, absorbance: Array, columns: int, wanted: Array, weights: Array, curve: Curve, slopes: Array
+) -> None:
+    """Write the derivative of the objective by the absorbance to `slopes`, which may be `absorbance` itself."""
+    pictures, entries = wanted.shape
+    most, run, parts = _runs(mixture, entries, columns)
+    for task in prange(pictures * parts):
+        p = task // parts
+        lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
+        u = np.empty(run, wanted.dtype)
+        begin, stop = _part(task % parts, parts, entries, columns)
+        for start in range(begin, stop, run):
+            end = min(start + run, stop)
+            _shine(mixture, p, absorbance, start, end, lit, cast, u)
+            for i in range(end - start):
+                value, slope = residual(u[i], wanted[p, start + i], curve)
+                u[i] = weights[p, start + i] * value * slope
+            for v in range(mixture.starts[p], mixture.starts[p + 1]):
+                for i in range(end - start):
+                    slopes[v, start + i] = -u[i] * cast[v - mixture.starts[p], i]
+
+
+@parallel
+def arrive(
+    mixture: Mixture, last: Array, now: Array, columns: int, wanted: Array, weights: Array, curve: Curve
+) -> tuple[Array, Array]:
+    """Of each column, the objective at absorbance `now`, and the least absorbance if it changed as much once more."""
+    pictures, entries = wanted.shape
+    most, run, parts = _runs(mixture, entries, columns)
+    sums = np.zeros((pictures * parts, columns))
+    least = np.full((pictures * parts, columns), np.inf)
+    for task in prange(pictures * parts):
+        p = task // parts
+        lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
+        u = np.empty(run, wanted.dtype)
+        begin, stop = _part(task % parts, parts, entries, columns)
+        for start in range(begin, stop, run):
+            end = min(start + run, stop)
+            _shine(mixture, p, now, start, end, lit, cast, u)
+            for i in range(end - start):
+                value, _ = residual(u[i], wanted[p, start + i], curve)
+                sums[task, i % columns] += weights[p, start + i] * value * value
+            for v in range(mixture.starts[p], mixture.starts[p + 1]):
+                for i in range(end - start):
+                    ahead = now[v, start + i] + (now[v, start + i] - last[v, start + i])
+                    least[task, i % columns] = min(least[task, i % columns], float(ahead))
+    lowest = least[0]
+    for line in least:
+        lowest = np.minimum(lowest, line)
+    return 0.5 * sums.sum(axis=0), lowest
+
+
+@parallel
+def curvatures(
+    mixture: Mixture,
+    absorbance: Array,
+    columns: int,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    room: Any,
+    values: Array,
+) -> None:
+    """Multiply `values` by bounds on the weighted second derivatives while ln light rises by no more than `room`.
+
+    The part of a view that absorbs nearly all counts as `_LEAST_PART` of what it is without a cube: where a beam has
+    grown dark among brighter ones, it would have no bound on its way back.
+    """
+    pictures, entries = wanted.shape
+    channels, least = mixture.powers.shape[1], wanted.dtype.type(_LEAST_PART)
+    most, run, parts = _runs(mixture, entries, columns)
+    for task in prange(pictures * parts):
+        p = task // parts
+        lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
+        u, bare = np.empty(run, wanted.dtype), np.empty(run, wanted.dtype)
+        bend = np.empty(run, wanted.dtype)
+        begin, stop = _part(task % parts, parts, entries, columns)
+        for start in range(begin, stop, run):
+            end = min(start + run, stop)
+            _shine(mixture, p, absorbance, start, end, lit, cast, u)
+            _bare(mixture, p, start, end, bare)
+            bend[:] = 0
+            for v in range(mixture.starts[p], mixture.starts[p + 1]):
+                for i in range(end - start):
+                    k, c = (start + i) // channels, i % channels
+                    part = mixture.powers[v, c] * mixture.light[v, k] * mixture.shadow[v, k] * bare[i]
+                    bend[i] += max(cast[v - mixture.starts[p], i], least * part)
+                    cast[v - mixture.starts[p], i] = max(cast[v - mixture.starts[p], i], least * part)
+            for i in range(end - start):
+                at, weight = wanted[p, start + i], weights[p, start + i]
+                brighter = u[i] + room
+                bend[i] *= weight * curvature(brighter, at, curve)
+                u[i] = weight * max(pull(brighter, at, curve)[0], 0)
+            for v in range(mixture.starts[p], mixture.starts[p + 1]):
+                for i in range(end - start):
+                    s = cast[v - mixture.starts[p], i]
+                    values[v, start + i] *= s * bend[i] + min(s, abs(2 * s * (1 - s))) * u[i]
+
+
+@parallel
+def pulls(
+    mixture: Mixture,
+    groups: Array,
+    absorbance: Array,
+    columns: int,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    sums: Array,
+) -> None:
+    """Add the derivatives by ln P of each group of views, and bounds on the second ones, to ``sums[0]``, ``sums[1]``.
+
+    ``groups[v]`` is the group of view v: views of a picture and a lamp follow each other. `sums` is
+    ``(2, parts, groups, channels)`` with 16 parts, to be summed.
+    """
+    pictures, entries = wanted.shape
+    channels = mixture.powers.shape[1]
+    most, run, parts = _runs(mixture, entries, columns)
+    for task in prange(pictures * parts):
+        p, part = task // parts, task % parts
+        lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
+        u, bends, share = np.empty(run, wanted.dtype), np.empty(run, wanted.dtype), np.empty(run, wanted.dtype)
+        begin, stop = _part(part, parts, entries, columns)
+        for start in range(begin, stop, run):
+            end = min(start + run, stop)
+            _shine(mixture, p, absorbance, start, end, lit, cast, u)
+            for i in range(end - start):
+                first, second = pull(u[i], wanted[p, start + i], curve)
+                u[i], bends[i] = weights[p, start + i] * first, weights[p, start + i] * second
+            share[:] = 0
+            for v in range(mixture.starts[p], mixture.starts[p + 1]):
+                share += lit[v - mixture.starts[p]]
+                if v + 1 < mixture.starts[p + 1] and groups[v + 1] == groups[v]:
+                    continue
+                for i in range(end - start):
+                    s, c = min(share[i], 1), i % channels
+                    sums[0, part, groups[v], c] += s * u[i]
+                    sums[1, part, groups[v], c] += s * bends[i] + min(s, 2 * s * (1 - s)) * max(u[i], 0)
+                share[:] = 0

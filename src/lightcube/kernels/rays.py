@@ -1,0 +1,212 @@
+"""Absorbance of rays in any direction from all voxels, and its transpose, for a few columns.
+
+``x`` is ``(ny * nx * nz, columns)`` and ``b`` is ``(views * width * height, columns)``: picture columns from the left,
+rows bottom-up in each. In voxel sides, pixel ``(column, row)`` of a view lies at ``corner + column * right + row * up``
+with ``corner, right, up = screens[view]``. Where ``lamps[view, 3]`` is 0 its ray is the whole line along
+``lamps[view, :3]`` (of length 1), else the stretch from the lamp there to the pixel. ``heard`` says which pixels count:
+the equations of the others are empty.
+
+Forward, each ray gathers what it meets. Backward, each task owns a brick of voxels and walks the rays that meet it,
+view by view: no two threads write the same number, and sums do not depend on how many threads there are.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+from lightcube.kernels.ray import most_pieces, trace_ray
+from lightcube.kernels.threads import parallel
+
+Array = NDArray[Any]
+
+#: Voxels along the side of a brick (measured).
+BRICK = 32
+
+
+@njit(cache=True, inline="always")
+def _ray(
+    lamp: Array, screen: Array, column: int, row: int
+) -> tuple[float, float, float, float, float, float, float, float]:
+    """A point on a pixel's ray, the ray's direction, and from which parameter to which it runs.
+
+    The point is the pixel, for lamps may be far away.
+    """
+    qx = screen[0, 0] + column * screen[1, 0] + row * screen[2, 0]
+    qy = screen[0, 1] + column * screen[1, 1] + row * screen[2, 1]
+    qz = screen[0, 2] + column * screen[1, 2] + row * screen[2, 2]
+    if lamp[3] == 0:
+        return qx, qy, qz, lamp[0], lamp[1], lamp[2], -np.inf, np.inf
+    dx, dy, dz = qx - lamp[0], qy - lamp[1], qz - lamp[2]
+    length = math.sqrt(dx * dx + dy * dy + dz * dz)
+    if length == 0.0:  # the lamp stands on the pixel: there is no way between them
+        return qx, qy, qz, 1.0, 0.0, 0.0, 0.0, 0.0
+    return qx, qy, qz, dx / length, dy / length, dz / length, -length, 0.0
+
+
+@njit(cache=True)
+def trace(
+    lamps: Array,
+    screens: Array,
+    shape: tuple[int, int],
+    index: int,
+    grid: tuple[int, int, int],
+    scale: float,
+    places: Array,
+    weights: Array,
+) -> int:
+    """Trace ray number `index` through the whole grid ``(nz, ny, nx)``; return how many pieces it has."""
+    width, height = shape
+    nz, ny, nx = grid
+    view, pixel = index // (width * height), index % (width * height)
+    px, py, pz, dx, dy, dz, first, last = _ray(lamps[view], screens[view], pixel // height, pixel % height)
+    strides = (nz, nx * nz, 1)
+    return trace_ray(px, py, pz, dx, dy, dz, first, last, nx, ny, nz, scale, strides, places, weights, 0)
+
+
+@njit(cache=True)
+def _gather(x: Array, places: Array, weights: Array, count: int, sums: Array) -> None:
+    """``sums = sum_k weights[k] x[places[k]]``."""
+    if len(sums) == 3:  # the colours of most cubes: in registers
+        red = green = blue = x.dtype.type(0)
+        for k in range(count):
+            place, weight = places[k], weights[k]
+            red += weight * x[place, 0]
+            green += weight * x[place, 1]
+            blue += weight * x[place, 2]
+        sums[0], sums[1], sums[2] = red, green, blue
+    else:
+        sums[:] = 0
+        for k in range(count):
+            for column in range(len(sums)):
+                sums[column] += weights[k] * x[places[k], column]
+
+
+@njit(cache=True)
+def _scatter(x: Array, places: Array, weights: Array, count: int, values: Array) -> None:
+    """``x[places[k]] += weights[k] values``."""
+    if len(values) == 3:
+        red, green, blue = values[0], values[1], values[2]
+        for k in range(count):
+            place, weight = places[k], weights[k]
+            x[place, 0] += weight * red
+            x[place, 1] += weight * green
+            x[place, 2] += weight * blue
+    else:
+        for k in range(count):
+            for column in range(len(values)):
+                x[places[k], column] += weights[k] * values[column]
+
+
+@parallel
+def forward(
+    lamps: Array,
+    screens: Array,
+    shape: tuple[int, int],
+    heard: Array,
+    grid: tuple[int, int, int],
+    scale: float,
+    x: Array,
+    b: Array,
+) -> None:
+    """``b = A x``; every number of `b` is written. `heard`, ``(views * width, height)``, is 0 where none counts."""
+    width, height = shape
+    nz, ny, nx = grid
+    for line in prange(len(lamps) * width):
+        places = np.empty(most_pieces(nx, ny, nz), np.int64)
+        weights = np.empty(len(places), x.dtype)
+        for row in range(height):
+            ray = line * height + row
+            if heard[line, row]:
+                count = trace(lamps, screens, shape, ray, grid, scale, places, weights)
+                _gather(x, places, weights, count, b[ray])
+            else:
+                b[ray] = 0
+
+
+@parallel
+def adjoint(
+    lamps: Array,
+    screens: Array,
+    shadows: Array,
+    shape: tuple[int, int],
+    heard: Array,
+    grid: tuple[int, int, int],
+    scale: float,
+    b: Array,
+    x: Array,
+) -> None:
+    """``x = A.T b``; every number of `x` is written.
+
+    ``shadows[view]`` is the 3 x 4 matrix that takes a point ``(x, y, z, 1)`` to ``(column, row, 1)`` of its shadow
+    times a number, which is above 0 where the point lies between lamp and screen or beyond the screen.
+    """
+    width, height = shape
+    nz, ny, nx = grid
+    across, along = (nx + BRICK - 1) // BRICK, (ny + BRICK - 1) // BRICK
+    for brick in prange(across * along * ((nz + BRICK - 1) // BRICK)):
+        low_x, low_y = brick % across * BRICK, brick // across % along * BRICK
+        low_z = brick // (across * along) * BRICK
+        size_x, size_y, size_z = min(BRICK, nx - low_x), min(BRICK, ny - low_y), min(BRICK, nz - low_z)
+        for y in range(low_y, low_y + size_y):
+            for each in range(low_x, low_x + size_x):
+                first = (y * nx + each) * nz + low_z
+                x[first : first + size_z] = 0
+        places = np.empty(most_pieces(size_x, size_y, size_z), np.int64)
+        weights = np.empty(len(places), x.dtype)
+        origin = (low_y * nx + low_x) * nz + low_z
+        strides = (nz, nx * nz, 1)
+        for view in range(len(lamps)):
+            left, right, bottom, top = _shadow(shadows[view], shape, (low_x, low_y, low_z), (size_x, size_y, size_z))
+            for column in range(left, right):
+                line = view * width + column
+                for row in range(bottom, top):
+                    if not heard[line, row]:
+                        continue
+                    px, py, pz, dx, dy, dz, start, end = _ray(lamps[view], screens[view], column, row)
+                    count = trace_ray(
+                        px - low_x,
+                        py - low_y,
+                        pz - low_z,
+                        dx,
+                        dy,
+                        dz,
+                        start,
+                        end,
+                        size_x,
+                        size_y,
+                        size_z,
+                        scale,
+                        strides,
+                        places,
+                        weights,
+                        0,
+                    )
+                    _scatter(x[origin:], places, weights, count, b[line * height + row])
+
+
+@njit(cache=True)
+def _shadow(
+    shadow: Array, shape: tuple[int, int], low: tuple[int, int, int], size: tuple[int, int, int]
+) -> tuple[int, int, int, int]:
+    """First column, one after the last, and the same of rows, of the pixels whose rays may meet a brick."""
+    left, right, bottom, top = np.inf, -np.inf, np.inf, -np.inf
+    for corner in range(8):
+        x = float(low[0] + (size[0] if corner & 1 else 0))
+        y = float(low[1] + (size[1] if corner & 2 else 0))
+        z = float(low[2] + (size[2] if corner & 4 else 0))
+        far = shadow[2, 0] * x + shadow[2, 1] * y + shadow[2, 2] * z + shadow[2, 3]
+        if far < 1e-9:  # beside or behind the lamp
+            return 0, shape[0], 0, shape[1]
+        column = (shadow[0, 0] * x + shadow[0, 1] * y + shadow[0, 2] * z + shadow[0, 3]) / far
+        row = (shadow[1, 0] * x + shadow[1, 1] * y + shadow[1, 2] * z + shadow[1, 3]) / far
+        left, right, bottom, top = min(left, column), max(right, column), min(bottom, row), max(top, row)
+    most = float(max(shape))
+    return (
+        int(min(max(math.floor(left - 1e-6), 0.0), most)),
+        int(min(max(math.ceil(right + 1e-6) + 1, 0.0), float(shape[0]))),
+        int(min(max(math.floor(bottom - 1e-6), 0.0), most)),
+        int(min(max(math.ceil(top + 1e-6) + 1, 0.0), float(shape[1]))),
+    )

@@ -1,0 +1,103 @@
+"""What `check`, `solve` and `score` do with a stage instead of a folder of pictures."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from lightcube import backward, io
+from lightcube.cli_options import Options
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.frames import Frames
+from lightcube.job import Job
+from lightcube.needs import job_memory
+from lightcube.solving import check_memory, too_much
+from lightcube.stage import Stage
+from lightcube.stage_check import doubtful, facts, impossible
+
+#: Options of which a stage file says what they would say.
+_SAID = ("n", "shape", "size_mm", "frame_width", "fit", "angles", "span", "elevation", "paper", "order", "shift")
+_SAID_OF_LAMPS = ("lamp_power", "lamp_max")
+
+
+def read(path: str, options: Options) -> tuple[Stage, Frames]:
+    """Read a stage and fit its pictures, or raise `InputError` where it cannot be, or an option contradicts it."""
+    for name in (*_SAID, *_SAID_OF_LAMPS):
+        if getattr(options, name) != getattr(Options(), name):
+            raise InputError(f"--{name.replace('_', '-')} says what the stage {path} says too: leave it out")
+    if options.lamp == "fixed":
+        raise InputError(f"--lamp fixed: the stage {path} says which lamps are fixed, by their power: leave it out")
+    samples = {"lamp_samples": options.lamp_samples, "pixel_samples": options.pixel_samples}
+    stage, frames = io.read_stage_frames(path, transfer=options.transfer, **samples)
+    found = impossible(stage)
+    if found:
+        raise InputError(f"{path}: {found[0]}")
+    return stage, frames
+
+
+def job(stage: Stage, frames: Frames, options: Options, *, memory: int | None = None, units: int | None = None) -> Job:
+    """Settle all that decides the cube of a stage; `InputError` where it does not fit into `memory` bytes."""
+    passes: dict[str, Any] = {"iterations": options.iterations}
+    if options.iterations is None and options.method == "display":
+        most, enough = backward.QUALITIES[options.quality or "normal"]
+        passes = {"iterations": most, "enough_db": enough}
+    samples = {name: getattr(options, name) for name in ("lamp_samples", "pixel_samples") if getattr(options, name) > 1}
+    made = backward.make_job(
+        frames,
+        stage.grid,
+        method=options.method,
+        lamp=options.lamp if options.method == "display" else None,
+        max_extinction=options.lamps["max_extinction"],
+        black=options.lamps["black"],
+        hold=options.hold or 0.0,
+        units=units,
+        memory=memory,
+        provenance=samples,
+        **passes,
+    )
+    if memory is not None and job_memory(made) > memory:
+        raise too_much(job_memory(made), memory)
+    check_memory(job_memory(made))
+    return made
+
+
+def in_short(stage: Stage, frames: Frames) -> list[str]:
+    """Lines that `solve` says of a stage before it starts."""
+    nz, ny, nx = stage.grid.shape
+    counts = {
+        "picture": len(frames),
+        "screen": len(stage.screens),
+        "lamp": len(stage.lamps),
+        "stop": len(stage.stops),
+    }
+    said = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items())
+    views = f", {len(frames.views)} views" if len(frames.views) != len(frames) else ""
+    return [f"{said}{views}; cube of {nx} x {ny} x {nz} voxels", *doubtful(stage)]
+
+
+def wanted(path: str, cube: Cube) -> Frames:
+    """The pictures of a stage file, as wanted of a cube that was made on it; `InputError` where it was on another."""
+    made = {name: int(cube.provenance.get(name, 1)) for name in ("lamp_samples", "pixel_samples")}
+    _, frames = io.read_stage_frames(path, transfer=cube.transfer, **made)
+    same = (
+        cube.lighting is not None
+        and frames.lighting is not None
+        and frames.views.picture_shape == (cube.views.picture_shape)
+    )
+    if not (same and len(frames.views) == len(cube.views) and np.allclose(frames.views.lamps, cube.views.lamps)):
+        raise InputError(f"the cube was not made on the stage {path}: give the one it was made on")
+    return replace(frames, views=cube.views, lighting=cube.lighting)
+
+
+def table(stage: Stage) -> list[str]:
+    """What is known of each picture of a stage, as aligned lines."""
+    heads = f"{'picture':>20} {'screen':>12} {'stop':>5} {'angle':>8} {'pixels':>11} {'through cube':>13}"
+    return [f"{heads} {'voxels a pixel':>15}  lamps", *(_line(each) for each in facts(stage)["per_picture"])]
+
+
+def _line(each: dict[str, Any]) -> str:
+    """The line of one picture."""
+    where = f"{each['name'][:20]:>20} {each['screen'][:12]:>12} {each['stop']:>5} {each['angle']:>8.2f}"
+    size = f"{each['columns']:>4} x {each['rows']:<4} {each['beams_in_cube']:>13.0%} {each['pixel_in_voxels']:>15.2f}"
+    return f"{where} {size}  {', '.join(each['lamps'])}"
