@@ -20,7 +20,7 @@ STOREYS = [
     ["backward", "forward", "scene"],
     [
         *("metrics", "between", "consistency", "prediction", "conditioning", "planning", "plots", "sheet"),
-        *("stage_check", "stage_drawing", "standing", "perspective", "room"),
+        *("stage_check", "stage_drawing", "reachable", "standing", "perspective", "room"),
     ],
     ["io"],
     [

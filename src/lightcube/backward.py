@@ -13,7 +13,7 @@ from lightcube.geometry import Grid, raster_shape
 from lightcube.job import LAMP_MIN, Job
 from lightcube.needs import MEMORY, fewest_units
 from lightcube.pieces import Watching, solve_pieces
-from lightcube.problem import BLACK, Lamp, is_level
+from lightcube.problem import BLACK, Lamp
 from lightcube.solution import Solution, merged
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Solver
@@ -171,7 +171,7 @@ def make_job(
         dtype=np.dtype(dtype).name,
         provenance=dict(provenance or {}),
     )
-    most = most_units(grid.shape, job.channels, level=is_level(grid, frames.views))
+    most = most_units(grid.shape, job.channels, level=job.level)
     if units is not None and not 1 <= units <= most:
         raise InputError(f"this cube can be solved in 1 to {most} units, not in {units}: ask for a number between")
     return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)

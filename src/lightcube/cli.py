@@ -85,7 +85,7 @@ def trace(
 def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
     """Say before solving what can be known: what contradicts itself, how full the cube is, how good it will be."""
     if io.is_stage(frames):
-        cli_stage.checked(io.read_stage(frames, transfer=options.transfer)[0], as_json=as_json)
+        cli_stage.checked(*io.read_stage_frames(frames, transfer=options.transfer), as_json=as_json)
         return
     options = solving.settled(options)
     with err.status("rehearsing"):

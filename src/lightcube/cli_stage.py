@@ -7,6 +7,8 @@ import typer
 
 from lightcube import io, staging
 from lightcube.console import err, json_document, out
+from lightcube.frames import Frames
+from lightcube.reachable import sentences
 from lightcube.stage import Stage
 from lightcube.stage_check import doubtful, facts, impossible
 from lightcube.stage_drawing import drawing
@@ -23,7 +25,7 @@ def check(
     stage: STAGE, as_json: Annotated[bool, typer.Option("--json", help="Print JSON for machines.")] = False
 ) -> None:
     """Say what is impossible on a stage, or probably not meant; exit code 2 where anything is impossible."""
-    checked(io.read_stage(stage)[0], as_json=as_json)
+    checked(*io.read_stage_frames(stage), as_json=as_json)
 
 
 @app.command()
@@ -38,13 +40,13 @@ def draw(
     out.print(f"{Path(output)}")
 
 
-def checked(stage: Stage, *, as_json: bool) -> None:
-    """Print what is known of a stage; exit code 2 where something on it is impossible."""
-    wrong = impossible(stage)
+def checked(stage: Stage, frames: Frames, *, as_json: bool) -> None:
+    """Print what is known of a stage and its pictures; exit code 2 where something on it is impossible."""
+    wrong, odd = impossible(stage), [*doubtful(stage), *sentences(frames)]
     if as_json:
-        json_document({**facts(stage), "impossible": wrong, "doubtful": doubtful(stage)})
+        json_document({**facts(stage), "impossible": wrong, "doubtful": odd})
     else:
-        for line in [*staging.table(stage), "", *doubtful(stage)]:
+        for line in [*staging.table(stage), "", *odd]:
             out.print(line)
         for sentence in wrong:
             err.print(f"impossible: {sentence}")

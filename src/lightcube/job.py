@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lightcube.frames import Frames
 from lightcube.geometry import Grid
 from lightcube.lighting import Lighting
-from lightcube.problem import BLACK, Lamp, is_level
+from lightcube.problem import BLACK, Lamp, held_views, is_level
 from lightcube.units import Part, halvings, split
 
 #: Passes at each of the coarser sizes at most; no more than of the cube itself.
@@ -97,9 +97,14 @@ class Job:
         return (high if self.lamp == "fixed" else np.full_like(high, LAMP_MIN)), high
 
     @property
+    def level(self) -> bool:
+        """Whether each slice of the cube casts one row of the pictures by itself, at all angles that are asked for."""
+        return is_level(self.grid, held_views(self.frames, self.hold, self.grid)[0])
+
+    @property
     def parts(self) -> list[Part]:
         """What of the cube each unit solves."""
-        return split(self.grid.shape, self.channels, self.units, level=is_level(self.grid, self.frames.views))
+        return split(self.grid.shape, self.channels, self.units, level=self.level)
 
     @property
     def pieces(self) -> list[str]:

@@ -11,7 +11,7 @@ from lightcube.frames import Frames
 from lightcube.geometry import Grid
 from lightcube.job import Job, shares
 from lightcube.layout import is_worth_lines
-from lightcube.problem import Problem, held_views, is_level, pose
+from lightcube.problem import Problem, held_views, pose
 from lightcube.solvers import METHODS
 from lightcube.units import coarse_shape, coarser, most_units, split
 
@@ -117,7 +117,7 @@ def job_memory(job: Job) -> int:
         job.grid,
         views.picture_shape,
         len(views),
-        0.0 if is_level(job.grid, views) else steepest or _ANY,
+        0.0 if job.level else steepest or _ANY,
         angles=len(held_views(job.frames, job.hold, job.grid)[0]) // len(views),
         levels=job.levels,
         units=job.units,
@@ -128,7 +128,7 @@ def job_memory(job: Job) -> int:
 
 def fewest_units(job: Job, memory: int) -> int:
     """Into how many units to split a job: as few as fit into so many bytes; where none fits, as few as need least."""
-    most = most_units(job.grid.shape, job.channels, level=is_level(job.grid, job.frames.views))
+    most = most_units(job.grid.shape, job.channels, level=job.level)
     needed = [job_memory(replace(job, units=units)) for units in range(1, most + 1)]
     fitting = [units for units, each in enumerate(needed, 1) if each <= memory]
     return fitting[0] if fitting else needed.index(min(needed)) + 1

@@ -13,6 +13,7 @@ from lightcube.lighting import Lighting, falling_light, held_lighting
 from lightcube.projector import Projector
 from lightcube.solvers.contract import Mixture
 from lightcube.solvers.mixed import mixed_light
+from lightcube.stacked import StackedBeams, is_stacked
 from lightcube.transfer import Transfer, decode
 from lightcube.units import Part
 
@@ -118,7 +119,7 @@ def volume_from_unknowns(x: Floats, shape: tuple[int, int, int], channels: int) 
 
 def is_level(grid: Grid, views: Views) -> bool:
     """Tell whether each slice of the cube casts one row of the pictures, by itself."""
-    return Projector(grid, views).level
+    return is_stacked(grid, views) and StackedBeams(grid, views).level
 
 
 def pose(

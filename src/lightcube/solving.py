@@ -17,7 +17,6 @@ from lightcube.job import Job
 from lightcube.needs import expected_passes, job_memory, memory_needed, seconds_a_pass
 from lightcube.planning import Plan, plan
 from lightcube.prediction import Prediction, predict
-from lightcube.problem import is_level
 from lightcube.units import most_units
 
 #: A picture below this PSNR, dB, is hardly recognised.
@@ -148,7 +147,7 @@ def too_much(needed: int, memory: int) -> InputError:
 
 def divided(made: Job, output: str, workers: int, memory: int | None = None) -> Job:
     """A job in units for so many workers, or in as many as its unfinished cube was begun with, if they fit `memory`."""
-    most = most_units(made.grid.shape, made.channels, level=is_level(made.grid, made.frames.views))
+    most = most_units(made.grid.shape, made.channels, level=made.level)
     begun = io.begun_units(output, made)
     if begun is None or (memory is not None and job_memory(replace(made, units=begun)) > memory):
         begun = max(made.units, min(workers, most))

@@ -257,8 +257,8 @@ def _clashes(stage: Stage, lit: list[list[_Beams]], half: Reals) -> Iterator[str
             apart = abs((turned[p] - turned[q] + 180) % 360 - 180)
             if earlier.screen == later.screen and set(earlier.lamps) == set(later.lamps) and apart < 1e-6:
                 yield (
-                    f"{pair} are both wanted on screen {later.screen!r} with the table at {turned[q]:g} degrees and the "
-                    "same lamps: give one of them another screen, stop or lamp"
+                    f"{pair} are both wanted on screen {later.screen!r} with the table at {turned[q]:g} degrees and "
+                    "the same lamps: give one of them another screen, stop or lamp"
                 )
                 break
             share = _shared(lit[p], lit[q], half)

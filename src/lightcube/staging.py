@@ -12,6 +12,7 @@ from lightcube.errors import InputError
 from lightcube.frames import Frames
 from lightcube.job import Job
 from lightcube.needs import job_memory
+from lightcube.reachable import sentences
 from lightcube.solving import check_memory, too_much
 from lightcube.stage import Stage
 from lightcube.stage_check import doubtful, facts, impossible
@@ -73,7 +74,7 @@ def in_short(stage: Stage, frames: Frames) -> list[str]:
     }
     said = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items())
     views = f", {len(frames.views)} views" if len(frames.views) != len(frames) else ""
-    return [f"{said}{views}; cube of {nx} x {ny} x {nz} voxels", *doubtful(stage)]
+    return [f"{said}{views}; cube of {nx} x {ny} x {nz} voxels", *doubtful(stage), *sentences(frames)]
 
 
 def wanted(path: str, cube: Cube) -> Frames:

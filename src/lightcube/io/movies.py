@@ -71,8 +71,8 @@ def write_pictures(
     ----------
     path
         ``.png`` for a single picture, ``.mp4`` (H.264, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256
-        colours for all pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no
-        suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given. It may be a URL.
+        colours for all pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped),
+        or no suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given. It may be a URL.
     pictures
         ``(view, row, column, 3)``, or one ``(row, column, 3)`` after the other, in linear light, 1 = white.
         Only one of them is in memory at a time.
