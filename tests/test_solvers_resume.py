@@ -16,7 +16,7 @@ from lightcube.geometry import Grid, spread_angles, turntable
 from lightcube.kernels import descent, display, momentum, screen
 from lightcube.projector import Projector
 from lightcube.solvers import METHODS
-from lightcube.solvers.contract import Floats, Progress, Result
+from lightcube.solvers.contract import Floats, Mixture, Progress, Result
 from lightcube.solvers.display import display_values
 
 ITERATIONS = 13
@@ -102,6 +102,28 @@ def test_going_on_ends_as_if_it_had_never_stopped(name: str, free: bool, dtype: 
     assert_identical(solve(name, **problem, state={**state, "something else": np.zeros(3)}), expected)
     for key, array in state.items():
         np.testing.assert_array_equal(array, before[key])
+
+
+@every_dtype
+@pytest.mark.parametrize("calls", STOPS[::2])
+def test_sums_of_views_go_on_as_if_they_had_never_stopped(dtype: str, calls: int) -> None:
+    """Two pictures of two views each; one lamp shines in both."""
+    problem = arguments(dtype, free=True)
+    half = len(problem["B"]) // 2
+    light, shadow = np.random.default_rng(6).uniform(0.3, 1, (2, 4, half)).astype(dtype)
+    low, high = (bound[:3] for bound in problem["lamp_bounds"])
+    problem |= {
+        "B": problem["B"][:half] + problem["B"][half:],
+        "weights": problem["weights"][:half],
+        "view_of_row": None,
+        "lamp_bounds": (low, high),
+        "mixture": Mixture(np.array([0, 2, 4]), np.array([0, 1, 0, 2]), np.ones((4, 3)), light, shadow),
+    }
+    expected = solve("display", **problem)
+    state, stopped = state_after("display", calls, **problem)
+    np.testing.assert_array_equal(state["history"], expected.residuals[:calls])
+    assert calls == ITERATIONS or not np.array_equal(stopped.x, expected.x)
+    assert_identical(solve("display", **problem, state=state), expected)
 
 
 @every_case

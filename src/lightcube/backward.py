@@ -11,6 +11,7 @@ from lightcube.errors import InputError
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, raster_shape
 from lightcube.job import LAMP_MIN, Job
+from lightcube.lighting import Lighting
 from lightcube.needs import MEMORY, fewest_units
 from lightcube.pieces import Watching, solve_pieces
 from lightcube.problem import BLACK, Lamp
@@ -155,8 +156,10 @@ def make_job(
     """Check what `solve` is asked for, and leave nothing open; parameters and errors as there."""
     kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations, black)
     check_frames(frames, grid)
-    if frames.lighting is not None and (lamp == "fixed" or lamp_power is not None or lamp_max is not None):
-        raise InputError("the powers of a stage's lamps are said on the stage: leave out those given beside it")
+    if frames.lighting is not None:
+        if lamp == "fixed" or lamp_power is not None or lamp_max is not None:
+            raise InputError("the powers of a stage's lamps are said on the stage: leave out those given beside it")
+        _check_method_on_stage(method, frames.lighting)
     job = Job(
         frames=frames,
         grid=grid,
@@ -175,6 +178,17 @@ def make_job(
     if units is not None and not 1 <= units <= most:
         raise InputError(f"this cube can be solved in 1 to {most} units, not in {units}: ask for a number between")
     return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)
+
+
+def _check_method_on_stage(method: str, lighting: Lighting) -> None:
+    """Raise `InputError` where a method cannot do what a stage asks for."""
+    free = lighting.lamp_names[int(np.argmax(lighting.least < lighting.most))]
+    if method != "display" and np.any(lighting.least < lighting.most):
+        raise InputError(
+            f"method {method} cannot choose the power of lamp {free!r}: give it one, or use method display"
+        )
+    if method != "display" and not lighting.is_plain:
+        raise InputError(f"method {method} takes logarithms, and light that adds up has none: use method display")
 
 
 def find_method(name: str) -> Solver:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lightcube.errors import InputError
-from lightcube.geometry import Views, hold_offsets, rotations, smallest_gap
+from lightcube.geometry import PARALLEL, Views, hold_offsets, rotations, smallest_gap
 
 Reals = NDArray[np.float64]
 
@@ -268,7 +268,7 @@ def falling_light(views: Views, lighting: Lighting) -> tuple[NDArray[np.float32]
             views.origins[v] + along[:, None, None] * views.row_steps[v] + across[None, :, None] * views.column_steps[v]
         )
         ways = pixels - views.lamps[v, :3] if views.lamps[v, 3] else np.broadcast_to(views.lamps[v, :3], pixels.shape)
-        lengths = np.linalg.norm(ways, axis=-1)
+        lengths = np.maximum(np.linalg.norm(ways, axis=-1), PARALLEL)  # a lamp may stand on a pixel
         units = ways / lengths[..., None]
         if asked[0]:
             normal = np.cross(views.column_steps[v], views.row_steps[v])

@@ -94,7 +94,7 @@ def _shine(
         clear, dark = lit[v - first], cast[v - first]
         for i in range(count):
             dark[i] *= exp(least[i] - absorbance[v, start + i])
-            clear[i] = clear[i] * exp(least[i]) + dark[i]
+            clear[i] = clear[i] * exp(min(least[i], most)) + dark[i]
             whole[i] += clear[i]
     tiny = absorbance.dtype.type(1e-30)
     for i in range(count):
