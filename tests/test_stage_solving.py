@@ -1,12 +1,13 @@
 """Cubes for stages: what known ones show comes back, under lamps as they are asked for, and stands as long as asked."""
 
+import math
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from lightcube.backward import solve
+from lightcube.backward import make_job, solve
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.forward import cast, exposures_at, play
@@ -14,6 +15,7 @@ from lightcube.frames import Frames
 from lightcube.geometry import Grid
 from lightcube.lighting import sampled
 from lightcube.metrics import mean_psnr
+from lightcube.needs import job_memory
 from lightcube.problem import pose
 from lightcube.solvers.display import display_values
 from lightcube.stage import Lamp, Screen, Shot, Stage, exposures
@@ -145,3 +147,11 @@ def test_a_level_lamp_that_a_slanted_table_tilts_can_be_held_in_units() -> None:
     _, frames = known(replace(made, shots=made.shots[:1], stops=(0.0,)))
     whole, parts = (solve(frames, GRID, hold=4.0, iterations=4, units=units, lamp="coarse") for units in (1, 3))
     np.testing.assert_allclose(parts.cube.extinction, whole.cube.extinction, rtol=1e-4, atol=1e-6)
+
+
+def test_light_that_adds_up_needs_more_memory() -> None:
+    """Of each pixel of each view: what falls on it, and how strong its shadow is."""
+    aslant = stage("aslant and by the inverse square")
+    plain = replace(aslant, lamps=(BULB,), screens=(WALL,))
+    needed = [job_memory(make_job(known(each)[1], each.grid)) for each in (aslant, plain)]
+    assert needed[0] - needed[1] == 16 * len(aslant.shots) * math.prod(WALL.pixels)

@@ -34,6 +34,8 @@ _EQUATION = 36
 _ENTRY = 40
 #: Degrees of elevation that stand for beams that are not level in other ways.
 _ANY = 35.0
+#: Bytes for each pixel of a view where light adds up: what falls on it, and how strong its shadow is (measured).
+_MIXED = 16
 #: Methods that hold the matrix.
 _SPARSE = ("gauss-seidel", "row-reduction")
 #: The time of a pass is measured where it has about so many multiply-adds, over so many passes.
@@ -110,15 +112,19 @@ def _solver(
 
 def job_memory(job: Job) -> int:
     """`memory_needed` of a job."""
-    views = job.frames.views
+    views, lighting = job.frames.views, job.frames.lighting
     steepest = float(np.max(np.abs(views.elevations)))
-    return memory_needed(
+    angles = len(held_views(job.frames, job.hold, job.grid)[0]) // len(views)
+    mixed = (
+        0 if lighting is None or lighting.is_plain else _MIXED * angles * len(views) * math.prod(views.picture_shape)
+    )
+    return mixed + memory_needed(
         job.method,
         job.grid,
         views.picture_shape,
         len(views),
         0.0 if job.level else steepest or _ANY,
-        angles=len(held_views(job.frames, job.hold, job.grid)[0]) // len(views),
+        angles=angles,
         levels=job.levels,
         units=job.units,
         channels=job.channels,
