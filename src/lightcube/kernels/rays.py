@@ -17,33 +17,31 @@ import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
-from lightcube.kernels.ray import most_pieces, trace_ray
+from lightcube.kernels.ray import Ray, Triple, most_pieces, trace_ray, trace_two
 from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
 #: Voxels along the side of a brick (measured).
 BRICK = 32
+#: Meets nothing, and runs along no face.
+NO_RAY = (0.0, 0.0, 0.0, 0.6, 0.6, 0.5, 0.0, 0.0)
 
 
 @njit(cache=True, inline="always")
-def _ray(
-    lamp: Array, screen: Array, column: int, row: int
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """A point on a pixel's ray, the ray's direction, and from which parameter to which it runs.
-
-    The point is the pixel, for lamps may be far away.
-    """
+def _ray(lamp: Array, screen: Array, column: int, row: int, low: Triple) -> Ray:
+    """The ray of a pixel, seen from the corner `low` of a brick, and from the pixel: lamps may be far away."""
     qx = screen[0, 0] + column * screen[1, 0] + row * screen[2, 0]
     qy = screen[0, 1] + column * screen[1, 1] + row * screen[2, 1]
     qz = screen[0, 2] + column * screen[1, 2] + row * screen[2, 2]
+    px, py, pz = qx - low[0], qy - low[1], qz - low[2]
     if lamp[3] == 0:
-        return qx, qy, qz, lamp[0], lamp[1], lamp[2], -np.inf, np.inf
+        return px, py, pz, lamp[0], lamp[1], lamp[2], -np.inf, np.inf
     dx, dy, dz = qx - lamp[0], qy - lamp[1], qz - lamp[2]
     length = math.sqrt(dx * dx + dy * dy + dz * dz)
     if length == 0.0:  # the lamp stands on the pixel: there is no way between them
-        return qx, qy, qz, 1.0, 0.0, 0.0, 0.0, 0.0
-    return qx, qy, qz, dx / length, dy / length, dz / length, -length, 0.0
+        return NO_RAY
+    return px, py, pz, dx / length, dy / length, dz / length, -length, 0.0
 
 
 @njit(cache=True)
@@ -52,7 +50,7 @@ def trace(
     screens: Array,
     shape: tuple[int, int],
     index: int,
-    grid: tuple[int, int, int],
+    grid: Triple,
     scale: float,
     places: Array,
     weights: Array,
@@ -61,9 +59,32 @@ def trace(
     width, height = shape
     nz, ny, nx = grid
     view, pixel = index // (width * height), index % (width * height)
-    px, py, pz, dx, dy, dz, first, last = _ray(lamps[view], screens[view], pixel // height, pixel % height)
-    strides = (nz, nx * nz, 1)
-    return trace_ray(px, py, pz, dx, dy, dz, first, last, nx, ny, nz, scale, strides, places, weights, 0)
+    ray = _ray(lamps[view], screens[view], pixel // height, pixel % height, (0, 0, 0))
+    return trace_ray(ray, (nx, ny, nz), (nz, nx * nz, 1), scale, places, weights)
+
+
+@njit(cache=True)
+def _trace_rows(
+    lamp: Array,
+    screen: Array,
+    heard: Array,
+    column: int,
+    row: int,
+    top: int,
+    low: Triple,
+    size: Triple,
+    strides: Triple,
+    scale: float,
+    places: Array,
+    weights: Array,
+) -> tuple[int, int]:
+    """Trace the rays of pixels `row` and ``row + 1`` of a column; of those not heard, or from `top` on, nothing.
+
+    Returns how many pieces each has, in the two rows of `places` and `weights`.
+    """
+    ray = _ray(lamp, screen, column, row, low) if heard[row] else NO_RAY
+    other = _ray(lamp, screen, column, row + 1, low) if row + 1 < top and heard[row + 1] else NO_RAY
+    return trace_two(ray, other, size, strides, scale, places, weights)
 
 
 @njit(cache=True)
@@ -106,7 +127,7 @@ def forward(
     screens: Array,
     shape: tuple[int, int],
     heard: Array,
-    grid: tuple[int, int, int],
+    grid: Triple,
     scale: float,
     x: Array,
     b: Array,
@@ -115,15 +136,27 @@ def forward(
     width, height = shape
     nz, ny, nx = grid
     for line in prange(len(lamps) * width):
-        places = np.empty(most_pieces(nx, ny, nz), np.int64)
-        weights = np.empty(len(places), x.dtype)
-        for row in range(height):
-            ray = line * height + row
-            if heard[line, row]:
-                count = trace(lamps, screens, shape, ray, grid, scale, places, weights)
-                _gather(x, places, weights, count, b[ray])
-            else:
-                b[ray] = 0
+        places = np.empty((2, most_pieces(nx, ny, nz)), np.int64)
+        weights = np.empty(places.shape, x.dtype)
+        lamp, screen = lamps[line // width], screens[line // width]
+        for row in range(0, height, 2):
+            counts = _trace_rows(
+                lamp,
+                screen,
+                heard[line],
+                line % width,
+                row,
+                height,
+                (0, 0, 0),
+                (nx, ny, nz),
+                (nz, nx * nz, 1),
+                scale,
+                places,
+                weights,
+            )
+            _gather(x, places[0], weights[0], counts[0], b[line * height + row])
+            if row + 1 < height:
+                _gather(x, places[1], weights[1], counts[1], b[line * height + row + 1])
 
 
 @parallel
@@ -133,7 +166,7 @@ def adjoint(
     shadows: Array,
     shape: tuple[int, int],
     heard: Array,
-    grid: tuple[int, int, int],
+    grid: Triple,
     scale: float,
     b: Array,
     x: Array,
@@ -154,43 +187,36 @@ def adjoint(
             for each in range(low_x, low_x + size_x):
                 first = (y * nx + each) * nz + low_z
                 x[first : first + size_z] = 0
-        places = np.empty(most_pieces(size_x, size_y, size_z), np.int64)
-        weights = np.empty(len(places), x.dtype)
-        origin = (low_y * nx + low_x) * nz + low_z
-        strides = (nz, nx * nz, 1)
+        places = np.empty((2, most_pieces(size_x, size_y, size_z)), np.int64)
+        weights = np.empty(places.shape, x.dtype)
+        brick_x = x[(low_y * nx + low_x) * nz + low_z :]
+        low, size = (low_x, low_y, low_z), (size_x, size_y, size_z)
         for view in range(len(lamps)):
-            left, right, bottom, top = _shadow(shadows[view], shape, (low_x, low_y, low_z), (size_x, size_y, size_z))
+            left, right, bottom, top = _shadow(shadows[view], shape, low, size)
             for column in range(left, right):
                 line = view * width + column
-                for row in range(bottom, top):
-                    if not heard[line, row]:
-                        continue
-                    px, py, pz, dx, dy, dz, start, end = _ray(lamps[view], screens[view], column, row)
-                    count = trace_ray(
-                        px - low_x,
-                        py - low_y,
-                        pz - low_z,
-                        dx,
-                        dy,
-                        dz,
-                        start,
-                        end,
-                        size_x,
-                        size_y,
-                        size_z,
+                for row in range(bottom, top, 2):
+                    counts = _trace_rows(
+                        lamps[view],
+                        screens[view],
+                        heard[line],
+                        column,
+                        row,
+                        top,
+                        low,
+                        size,
+                        (nz, nx * nz, 1),
                         scale,
-                        strides,
                         places,
                         weights,
-                        0,
                     )
-                    _scatter(x[origin:], places, weights, count, b[line * height + row])
+                    for i in range(2):
+                        if counts[i]:
+                            _scatter(brick_x, places[i], weights[i], counts[i], b[line * height + row + i])
 
 
 @njit(cache=True)
-def _shadow(
-    shadow: Array, shape: tuple[int, int], low: tuple[int, int, int], size: tuple[int, int, int]
-) -> tuple[int, int, int, int]:
+def _shadow(shadow: Array, shape: tuple[int, int], low: Triple, size: Triple) -> tuple[int, int, int, int]:
     """First column, one after the last, and the same of rows, of the pixels whose rays may meet a brick."""
     left, right, bottom, top = np.inf, -np.inf, np.inf, -np.inf
     for corner in range(8):
