@@ -132,11 +132,11 @@ def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--n", "8"], "--n says what the stage"),
-        (["--elevation", "0"], "--elevation says what the stage"),
-        (["--lamp-max", "4"], "--lamp-max says what the stage"),
+        (["--n", "8"], "--n is not for a stage"),
+        (["--elevation", "0"], "--elevation is not for a stage"),
+        (["--lamp-max", "4"], "--lamp-max is not for a stage"),
         (["--lamp", "fixed"], "--lamp fixed"),
-        (["--paper"], "--paper says what the stage"),
+        (["--paper"], "--paper is not for a stage"),
         (["--method", "sirt"], "cannot choose the power of lamp 'sun'"),
         (["--hold", "90"], "wider than half the way"),
         (["--lamp-samples", "0"], "lamp-samples"),
@@ -190,3 +190,26 @@ def test_a_turntables_cube_is_no_stages(run, stage: Path) -> None:  # type: igno
     done = run("score", cube, stage)
     assert done.code == 2
     assert "was not made on the stage" in done.err
+
+
+def test_a_lamps_size_that_is_not_minded_is_said(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    stage.write_text(STAGE.replace('name = "sun"', 'name = "sun"\nsize_deg = 2'))
+    for more, said in (((), True), (("--lamp-samples", "2"), False)):
+        done = run("solve", stage, "-o", stage.parent / "cube.zarr", "--iterations", "2", "--overwrite", *more)
+        assert done.code == 0, done.err
+        assert ("size of lamp 'sun' is not minded" in done.err) is said
+
+
+def test_a_cube_before_which_nothing_turns_is_played_once(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    still = STAGE.replace("size_mm = 60\n", "size_mm = 60\nturns = false\n").replace(
+        "stops = [10, 130]", "stops = [10]"
+    )
+    stage.write_text(still.replace('"pictures"', '"pictures/b.png"'))
+    assert run("play", solved(run, stage), "-o", stage.parent / "x.npy", "--screens").code == 0
+    assert len(np.load(stage.parent / "x.npy")) == 1
+
+
+def test_pictures_alone_do_not_say_how_a_stage_is_lit(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("score", solved(run, stage), stage.parent / "pictures")
+    assert done.code == 2
+    assert "made on a stage: give its file" in done.err

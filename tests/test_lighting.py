@@ -358,6 +358,21 @@ def test_between_two_stops_each_lamp_goes_by_equal_factors() -> None:
     assert len(views) == len(lighting.picture)
 
 
+def test_a_screen_without_a_picture_at_the_nearest_stop_is_dark() -> None:
+    lighting = made(TURNED).lighting
+    assert lighting is not None
+    kept, views = lighting.take([1, 2])  # the wall at 20 degrees, the floor at 100
+    whole = made(TURNED)
+    powers = whole.powers[np.isin(lighting.pairs[:, 0], [1, 2])]
+    cube = replace(whole, views=whole.views.take(views), lighting=kept, lamp_powers=powers, names=())
+    own = play(cube)
+    for angle, lit in ((20.0, own[0]), (100.0, own[1])):
+        shown = play(cube, [angle])
+        dark = [not np.any(picture) for picture in shown]
+        assert sorted(dark) == [False, True]
+        np.testing.assert_allclose(shown[dark.index(False)], lit, rtol=1e-4, atol=1e-6)
+
+
 def test_over_a_hold_the_lamps_stay_as_they_are() -> None:
     cube = made(TURNED, hold_deg=8.0)
     for stop, at in ((20.0, 0), (100.0, 3), (250.0, 5)):

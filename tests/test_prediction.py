@@ -234,4 +234,4 @@ def test_what_solve_refuses_is_refused(options: dict[str, Any]) -> None:
 def test_pictures_larger_than_the_screen_are_refused() -> None:
     frames, _ = problem((20, 24, 22), 4, (40, 8))
     with pytest.raises(InputError, match="larger than"):
-        predict(frames, Grid((12, 24, 22)))
+        predict(frames, Grid((12, 24, 22), 2.5))

@@ -9,7 +9,7 @@ from lightcube.cube import Cube
 from lightcube.forward import cast
 from lightcube.frames import Frames
 from lightcube.geometry import Grid
-from lightcube.reachable import least_light, out_of_reach, sentences
+from lightcube.reachable import least_light, out_of_reach, sentences, too_bright
 from lightcube.stage import Lamp, Screen, Shot, Stage, exposures
 
 
@@ -60,7 +60,7 @@ def test_black_beside_white_is_out_of_reach() -> None:
     parts = out_of_reach(replace(frames, pictures=wanted))
     assert parts[0] == pytest.approx(4 * 2 / (6 * 8 * 3), abs=1e-6)  # the lamp has no blue
     assert parts[1] == 0
-    assert "picture '1' is darker" in sentences(replace(frames, pictures=wanted))[0]
+    assert any("picture '1' is darker" in said for said in sentences(replace(frames, pictures=wanted)))
 
 
 def test_without_fading_everything_is_within_reach() -> None:
@@ -68,3 +68,22 @@ def test_without_fading_everything_is_within_reach() -> None:
     wanted = np.zeros_like(frames.pictures)
     wanted[..., 1] = 1
     assert np.all(out_of_reach(replace(frames, pictures=wanted)) == 0)
+
+
+def test_brighter_than_all_lamps_is_out_of_reach() -> None:
+    """The bound is what the lamps show at their largest power where no cube stands."""
+    stage, frames = faded(2)
+    views, lighting = frames.views, frames.lighting
+    assert lighting is not None
+    clear = Cube(
+        np.zeros((3, *stage.grid.shape), np.float32),
+        stage.grid,
+        views,
+        np.repeat(lighting.most[lighting.pairs[:, 1], None], 3, axis=1),
+        lighting=lighting,
+    )
+    most = np.stack(list(cast(clear, views, clear.powers, lighting)))
+    assert np.all(too_bright(replace(frames, pictures=most)) == 0)
+    brighter = most * np.where(np.arange(6) < 2, 1.05, 0.95)[:, None, None].astype(np.float32)
+    assert np.allclose(too_bright(replace(frames, pictures=brighter)), 2 / 6)
+    assert "is brighter than" in sentences(replace(frames, pictures=brighter))[0]

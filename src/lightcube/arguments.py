@@ -75,6 +75,8 @@ def play_angles(
         return cube.angles
     if angles is not None:
         return check_angles(numbers(angles, "--angles"))
+    if cube.lighting is not None and not turn and not np.any(cube.lighting.turning):
+        return cube.angles[:1]  # nothing turns: all angles look alike
     first, last, pictures = (
         start or 0.0,
         360.0 if end is None else end,

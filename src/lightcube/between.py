@@ -83,7 +83,7 @@ def curve(cube: Cube, frames: Frames, steps: int = 8) -> Curve:
         raise InputError(f"a curve needs at least 1 step from one frame to the next, not {steps}")
     check_same_views(cube, frames)
     if cube.lighting is not None:
-        raise InputError("this cube was made on a stage: score it without --between, and play it to see in between")
+        raise InputError("this cube was made on a stage: leave out --between and --plot, and play it to see in between")
     if len(np.unique(cube.views.elevations)) > 1:
         raise InputError("this cube was made with lamps at several elevations: there is nothing between its stops")
     period = turn_period(cube.views)

@@ -358,6 +358,8 @@ def _refitted(cube: Cube, frames: str) -> Frames:
     """Pictures as `solve` fitted them to the cube, in its order."""
     if io.is_stage(frames):
         return staging.wanted(frames, cube)
+    if cube.lighting is not None:
+        raise InputError(f"the cube was made on a stage: give its file instead of {frames}, or nothing")
     pictures = io.read_pictures(frames, transfer=cube.transfer)
     order = cube.provenance.get("order", range(len(pictures)))
     if len(order) == len(pictures):

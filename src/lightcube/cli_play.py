@@ -7,9 +7,9 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from lightcube import arguments, io, playing
+from lightcube import arguments, io, playing, staging
 from lightcube.cli_options import FPS, JSON, OUT, OVERWRITE
-from lightcube.console import done, progress
+from lightcube.console import done, err, progress
 from lightcube.errors import InputError
 
 
@@ -60,6 +60,9 @@ def play(
         show = playing.of_turntable(loaded, turned, stops=stops, target=target, whole_screen=no_mask)
     else:
         show = playing.of_stage(loaded, turned, stops=stops, side_by_side=screens)
+    for sentence in staging.unsampled(loaded.lighting):
+        if not as_json:
+            err.print(sentence)
     with progress("playing", as_json=as_json) as advance:
         io.write_pictures(
             output,

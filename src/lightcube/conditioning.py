@@ -13,7 +13,7 @@ from lightcube import backward
 from lightcube.absorption import absorbance
 from lightcube.errors import InputError
 from lightcube.forward import cast
-from lightcube.frames import Frames
+from lightcube.frames import Frames, check_turntable
 from lightcube.geometry import Grid, Views, raster_shape
 from lightcube.kernels import ordering
 from lightcube.metrics import mean_psnr
@@ -80,6 +80,7 @@ def best_order(frames: Frames, grid: Grid, **lamp: Any) -> Order:
     ``pictures^3`` numbers per tile and colour: from 139 pictures on there is no room for two tiles a side, and the
     tour is all there is beside the given order.
     """
+    check_turntable(frames)
     draft, small = _draft(frames, grid)
     seen = _features(draft, _tiles(1, draft.views.picture_shape)).reshape(len(frames), -1)
     canonical = np.lexsort(seen.T[::-1])

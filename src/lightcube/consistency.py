@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.backward import LAMP_MAX
-from lightcube.frames import Frames
+from lightcube.frames import Frames, check_turntable
 from lightcube.geometry import Grid, Views
 from lightcube.problem import BLACK
 from lightcube.transfer import decode, encode
@@ -48,6 +48,7 @@ def check(frames: Frames, grid: Grid, lamp_max: float = LAMP_MAX) -> dict[str, A
     ``moments``
         See there.
     """
+    check_turntable(frames)
     rows, columns = frames.views.picture_shape
     white, blank = plain_rows(frames)
     return {

@@ -16,6 +16,8 @@ from lightcube.projector import Projector
 
 #: Views that are computed together: enough for all threads, few enough to bound memory.
 _BATCH = 16
+#: Stops nearer to each other than this, in degrees, are one.
+_SAME_STOP = 1e-6
 
 
 def views_at(cube: Cube, angles: ArrayLike, *, whole_screen: bool = False) -> Views:
@@ -101,17 +103,22 @@ def _powers_between(
 def exposures_at(cube: Cube, angles: ArrayLike) -> tuple[Views, Lighting, NDArray[np.float64]]:
     """Views, lighting and lamp powers of all screens of a cube's stage at any turntable angles (degrees).
 
-    The pictures of an angle follow each other, one for each screen in the order of ``lighting.screen_names``. A screen
-    is lit as at its stop that is nearest; the power of each of its lamps is linear in ln P between the stops at which
-    that lamp shines on that screen, constant where a stop's picture is held, and repeats after a whole turn.
+    The pictures of an angle follow each other, one for each screen in the order of ``lighting.screen_names``. The room
+    is lit as at the stop that is nearest: a screen that no picture is wanted on there is dark (its lamps' shares are
+    0). The power of each lamp is linear in ln P between the stops at which it shines on that screen, constant where a
+    stop's picture is held, and repeats after a whole turn.
     """
     lighting = stage_of(cube)
     turned, screens = check_angles(angles), np.unique(lighting.screen)
-    shown = [_nearest(lighting, screen, angle) for angle in turned for screen in screens]
+    away = np.abs(np.remainder(turned[:, None] - lighting.angle + 180, 360) - 180)
+    own = np.where(lighting.screen == screens[:, None, None], away, np.inf)  # (screen, angle, picture)
+    shown = np.argmin(own, axis=2).T.ravel()
+    lit = (np.min(own, axis=2) < np.min(away, axis=1) + _SAME_STOP).T.ravel()
     moved, kept = lighting.take(shown)
     off = np.repeat(turned, len(screens)) - lighting.angle[shown]
     views = turned_by(cube.views.take(kept), moved, off[moved.picture])
-    moved = replace(moved, angle=np.repeat(turned, len(screens)))
+    share = moved.share * lit[moved.picture][:, None]
+    moved = replace(moved, angle=np.repeat(turned, len(screens)), share=share)
     logs = np.log(cube.powers)
     powers = np.empty((len(moved.pairs), logs.shape[1]))
     for row, (picture, lamp) in enumerate(moved.pairs):
@@ -124,14 +131,8 @@ def exposures_at(cube: Cube, angles: ArrayLike) -> tuple[Views, Lighting, NDArra
 def stage_of(cube: Cube) -> Lighting:
     """The lighting of a cube that was made on a stage; `InputError` where it was made on a turntable alone."""
     if cube.lighting is None:
-        raise InputError("this cube was not made on a stage: it has one lamp and one screen, so play it without")
+        raise InputError("this cube was not made on a stage: leave out what is for stages, screens and samples")
     return cube.lighting
-
-
-def _nearest(lighting: Lighting, screen: int, angle: float) -> int:
-    """The picture of a screen whose stop is nearest to an angle."""
-    away = np.abs(np.remainder(angle - lighting.angle + 180, 360) - 180)
-    return int(np.argmin(np.where(lighting.screen == screen, away, np.inf)))
 
 
 def cast(

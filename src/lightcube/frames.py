@@ -138,3 +138,9 @@ class Frames:
             names=tuple(self.names[i] for i in chosen),
             lighting=lighting,
         )
+
+
+def check_turntable(frames: Frames) -> None:
+    """Raise `InputError` where frames are a stage's: what is true of a turntable is not of its lamps and screens."""
+    if frames.lighting is not None:
+        raise InputError("these frames are a stage's, and this is for a turntable with one lamp and one screen")

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from lightcube import backward
 from lightcube.forward import cast
-from lightcube.frames import Frames
+from lightcube.frames import Frames, check_turntable
 from lightcube.geometry import Grid, Views, held, raster_shape, widest_hold
 from lightcube.metrics import BEST_DB, psnr
 from lightcube.problem import BLACK, Lamp
@@ -100,6 +100,7 @@ def predict(
     InputError
         Where `solve` would refuse them.
     """
+    check_turntable(frames)
     options: dict[str, Any] = {"lamp": lamp, "lamp_power": lamp_power, "lamp_max": lamp_max}
     options |= {"max_extinction": max_extinction, "black": black}
     reached, width = rehearse(frames, grid, hold, **options)

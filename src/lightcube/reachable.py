@@ -1,4 +1,4 @@
-"""Which pixels are darker than a shadow that fades with distance can be."""
+"""Which pixels are darker than a shadow that fades with distance can be, or brighter than the lamps."""
 
 from typing import Any
 
@@ -14,6 +14,8 @@ Plane = NDArray[np.floating[Any]]
 _BRIGHT = 32
 #: A pixel is out of reach where it is wanted darker than this part of the least that it can be.
 _SURE = 0.99
+#: Smaller parts of a picture are not worth a sentence.
+_WORTH_SAYING = 0.005
 
 
 def least_light(frames: Frames) -> NDArray[np.float64]:
@@ -58,15 +60,38 @@ def _least(bright: Plane, full: list[Plane], dark: list[Plane]) -> Plane:
 def out_of_reach(frames: Frames) -> NDArray[np.float64]:
     """``(pictures,)``: the part of each picture's colours that no cube and no lamp can make as dark as wanted."""
     certain = (frames.pictures < _SURE * least_light(frames)) & (frames.weight[..., None] > 0)
-    counted = np.sum(frames.weight > 0, axis=(1, 2)) * frames.pictures.shape[-1]
-    return np.asarray(np.sum(certain, axis=(1, 2, 3)) / counted)
+    return np.asarray(np.sum(certain, axis=(1, 2, 3)) / _counted(frames))
+
+
+def too_bright(frames: Frames) -> NDArray[np.float64]:
+    """``(pictures,)``: the part of each picture's colours that all its lamps at their largest power fall short of."""
+    lighting = frames.lighting
+    if lighting is None:
+        return np.zeros(len(frames))
+    light, _ = falling_light(frames.views, lighting)
+    most = np.zeros(frames.pictures.shape)
+    for view, picture in enumerate(lighting.picture):
+        most[picture] += lighting.most[lighting.lamp[view]] * lighting.share[view] * light[view][..., None]
+    certain = (frames.pictures > most / _SURE) & (frames.weight[..., None] > 0)
+    return np.asarray(np.sum(certain, axis=(1, 2, 3)) / _counted(frames))
+
+
+def _counted(frames: Frames) -> NDArray[np.float64]:
+    return np.asarray(np.sum(frames.weight > 0, axis=(1, 2)) * float(frames.pictures.shape[-1]))
 
 
 def sentences(frames: Frames) -> list[str]:
     """One sentence for each picture with colours out of reach."""
+    dark, bright = out_of_reach(frames), too_bright(frames)
+    named = list(zip(frames.names, dark, bright, strict=True))
     return [
+        f"{part:.0%} of picture {name!r} is brighter than its lamps can make it here: give them more power_max, or "
+        "light of all colours"
+        for name, _, part in named
+        if part >= _WORTH_SAYING
+    ] + [
         f"{part:.0%} of picture {name!r} is darker than its shadow can be at this distance: bring the screen nearer, "
         "or give lamp or screen more reach_mm"
-        for name, part in zip(frames.names, out_of_reach(frames), strict=True)
-        if part >= 0.005
+        for name, part, _ in named
+        if part >= _WORTH_SAYING
     ]

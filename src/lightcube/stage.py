@@ -313,6 +313,8 @@ def _check_lamp(lamp: Lamp) -> None:
         )
     _check_least(who, "reach_mm", lamp.reach_mm, 0)
     _check_least(who, "falloff_mm", lamp.falloff_mm, 0)
+    if lamp.falloff_mm > 0 and math.isinf(lamp.reach_mm):
+        raise InputError(f"{who}: falloff_mm says how shadows fade beyond reach_mm, which is not given: give it, or 0")
     _check_least(who, "full_at_mm", lamp.full_at_mm, 0, above=True)
 
 
@@ -336,3 +338,5 @@ def _check_screen(screen: Screen) -> None:
             raise InputError(f"{who}: up must not point straight out of the screen, {screen.up}")
     _check_least(who, "reach_mm", screen.reach_mm, 0)
     _check_least(who, "falloff_mm", screen.falloff_mm, 0)
+    if screen.falloff_mm > 0 and math.isinf(screen.reach_mm):
+        raise InputError(f"{who}: falloff_mm says how shadows fade beyond reach_mm, which is not given: give it, or 0")

@@ -11,6 +11,7 @@ from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.frames import Frames
 from lightcube.job import Job
+from lightcube.lighting import Lighting
 from lightcube.needs import job_memory
 from lightcube.reachable import sentences
 from lightcube.solving import check_memory, too_much
@@ -26,7 +27,8 @@ def read(path: str, options: Options) -> tuple[Stage, Frames]:
     """Read a stage and fit its pictures, or raise `InputError` where it cannot be, or an option contradicts it."""
     for name in (*_SAID, *_SAID_OF_LAMPS):
         if getattr(options, name) != getattr(Options(), name):
-            raise InputError(f"--{name.replace('_', '-')} says what the stage {path} says too: leave it out")
+            option = name.replace("_", "-")
+            raise InputError(f"--{option} is not for a stage, and {path} is one that says all there is: leave it out")
     if options.lamp == "fixed":
         raise InputError(f"--lamp fixed: the stage {path} says which lamps are fixed, by their power: leave it out")
     samples = {"lamp_samples": options.lamp_samples, "pixel_samples": options.pixel_samples}
@@ -74,7 +76,16 @@ def in_short(stage: Stage, frames: Frames) -> list[str]:
     }
     said = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items())
     views = f", {len(frames.views)} views" if len(frames.views) != len(frames) else ""
-    return [f"{said}{views}; cube of {nx} x {ny} x {nz} voxels", *doubtful(stage), *sentences(frames)]
+    first = f"{said}{views}; cube of {nx} x {ny} x {nz} voxels"
+    return [first, *doubtful(stage), *sentences(frames), *unsampled(frames.lighting)]
+
+
+def unsampled(lighting: Lighting | None) -> list[str]:
+    """A sentence where lamps have a size that is not minded."""
+    if lighting is None or not np.any(lighting.disc_deg):
+        return []
+    names = dict.fromkeys(lighting.lamp_names[lamp] for lamp in lighting.lamp[lighting.disc_deg > 0])
+    return [f"the size of lamp {', '.join(map(repr, names))} is not minded: --lamp-samples 16 does"]
 
 
 def wanted(path: str, cube: Cube) -> Frames:

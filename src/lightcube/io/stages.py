@@ -88,6 +88,12 @@ class LampTable(_Table):
     falloff_mm: Number | None = None
     full_at_mm: Number | None = None
 
+    @model_validator(mode="after")
+    def _fixed_or_free(self) -> Self:
+        if {"power", "power_max"} <= self.model_fields_set:
+            raise PydanticCustomError("power", "power and power_max are both given: use one of the two")
+        return self
+
 
 class ScreenTable(_Table):
     """A screen, as `lightcube.stage.Screen`; `pitch_mm` is the cube's voxel side where it is left out."""
