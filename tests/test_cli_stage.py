@@ -138,6 +138,7 @@ def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  
         (["--lamp", "fixed"], "--lamp fixed"),
         (["--paper"], "--paper is not for a stage"),
         (["--method", "sirt"], "cannot choose the power of lamp 'sun'"),
+        (["--quality", "best", "--iterations", "3"], "--quality and --iterations both"),
         (["--hold", "90"], "wider than half the way"),
         (["--lamp-samples", "0"], "lamp-samples"),
     ],

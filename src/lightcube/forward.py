@@ -122,9 +122,9 @@ def exposures_at(cube: Cube, angles: ArrayLike) -> tuple[Views, Lighting, NDArra
     logs = np.log(cube.powers)
     powers = np.empty((len(moved.pairs), logs.shape[1]))
     for row, (picture, lamp) in enumerate(moved.pairs):
-        lit = (lighting.pairs[:, 1] == lamp) & (lighting.screen[lighting.pairs[:, 0]] == moved.screen[picture])
-        stops = lighting.angle[lighting.pairs[lit, 0]]
-        powers[row] = _powers_between(cube, moved.angle[[picture]], stops, logs[lit], 360.0)[0]
+        alike = (lighting.pairs[:, 1] == lamp) & (lighting.screen[lighting.pairs[:, 0]] == moved.screen[picture])
+        stops = lighting.angle[lighting.pairs[alike, 0]]
+        powers[row] = _powers_between(cube, moved.angle[[picture]], stops, logs[alike], 360.0)[0]
     return views, moved, powers
 
 

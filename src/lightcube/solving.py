@@ -41,16 +41,21 @@ class Prepared:
 
 def settled(options: Options) -> Options:
     """Fill in the lamp's kind and the paper's own set-up; `InputError` where others contradict them."""
-    if options.quality is not None and options.iterations is not None:
-        raise InputError("--quality and --iterations both say how many passes: leave one of them out")
-    if options.quality is not None and options.method != "display":
-        raise InputError(f"--quality is for method display: use --iterations with method {options.method}")
+    check_passes(options)
     if options.paper:
         options = _as_in_the_paper(options)
     if max(options.lamp_samples, options.pixel_samples) > 1:
         raise InputError("--lamp-samples and --pixel-samples are for a stage: describe lamp and screen in a stage file")
     kind = backward.check_options(options.method, **options.lamps, iterations=options.iterations)
     return replace(options, lamp=kind)
+
+
+def check_passes(options: Options) -> None:
+    """Raise `InputError` where options contradict each other about the number of passes."""
+    if options.quality is not None and options.iterations is not None:
+        raise InputError("--quality and --iterations both say how many passes: leave one of them out")
+    if options.quality is not None and options.method != "display":
+        raise InputError(f"--quality is for method display: use --iterations with method {options.method}")
 
 
 def _as_in_the_paper(options: Options) -> Options:

@@ -14,18 +14,21 @@ from lightcube.job import Job
 from lightcube.lighting import Lighting
 from lightcube.needs import job_memory
 from lightcube.reachable import sentences
-from lightcube.solving import check_memory, too_much
+from lightcube.solving import check_memory, check_passes, too_much
 from lightcube.stage import Stage
 from lightcube.stage_check import doubtful, facts, impossible
 
-#: Options of which a stage file says what they would say.
-_SAID = ("n", "shape", "size_mm", "frame_width", "fit", "angles", "span", "elevation", "paper", "order", "shift")
-_SAID_OF_LAMPS = ("lamp_power", "lamp_max")
+#: Options that a stage file leaves no room for.
+_SAID = (
+    *("n", "shape", "size_mm", "frame_width", "fit", "angles", "span", "elevation", "paper", "order", "shift"),
+    *("lamp_power", "lamp_max"),
+)
 
 
 def read(path: str, options: Options) -> tuple[Stage, Frames]:
     """Read a stage and fit its pictures, or raise `InputError` where it cannot be, or an option contradicts it."""
-    for name in (*_SAID, *_SAID_OF_LAMPS):
+    check_passes(options)
+    for name in _SAID:
         if getattr(options, name) != getattr(Options(), name):
             option = name.replace("_", "-")
             raise InputError(f"--{option} is not for a stage, and {path} is one that says all there is: leave it out")
