@@ -21,6 +21,8 @@ FRAMES = Annotated[str, typer.Argument(help="A folder of pictures, an animated i
 OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
 OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
 JSON = typer.Option("--json", help="Print JSON for machines.")
+LAMP_SAMPLES = typer.Option(help="Points at which a stage's lamps of a size are sampled, for soft shadows.", min=1)
+PIXEL_SAMPLES = typer.Option(help="Points along a side that a stage's pixels are averaged over.", min=1)
 FPS = typer.Option("--fps", help="Pictures per second of a movie.")
 
 
@@ -83,12 +85,8 @@ class Options:
         float | None, typer.Option(help="Largest extinction of the material, 1/mm; default none.")
     ] = None
     transfer: Annotated[Transfer, typer.Option(help="How picture values become linear light.")] = "srgb"
-    lamp_samples: Annotated[
-        int, typer.Option(help="Points at which a stage's lamps of a size are sampled, for soft shadows.", min=1)
-    ] = 1
-    pixel_samples: Annotated[
-        int, typer.Option(help="Points along a side that a stage's pixels are averaged over.", min=1)
-    ] = 1
+    lamp_samples: Annotated[int, LAMP_SAMPLES] = 1
+    pixel_samples: Annotated[int, PIXEL_SAMPLES] = 1
 
     @property
     def power(self) -> float:

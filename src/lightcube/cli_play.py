@@ -8,7 +8,7 @@ import typer
 from numpy.typing import NDArray
 
 from lightcube import arguments, io, playing, staging
-from lightcube.cli_options import FPS, JSON, OUT, OVERWRITE
+from lightcube.cli_options import FPS, JSON, LAMP_SAMPLES, OUT, OVERWRITE, PIXEL_SAMPLES
 from lightcube.console import done, err, progress
 from lightcube.errors import InputError
 
@@ -34,12 +34,8 @@ def play(
     room: Annotated[
         bool, typer.Option("--room", help="Show the room in perspective: cube, lamps, and screens with their shadows.")
     ] = False,
-    lamp_samples: Annotated[
-        int, typer.Option(help="Points at which a stage's lamps of a size are sampled, for soft shadows.", min=1)
-    ] = 1,
-    pixel_samples: Annotated[
-        int, typer.Option(help="Points along a side that a stage's pixels are averaged over.", min=1)
-    ] = 1,
+    lamp_samples: Annotated[int, LAMP_SAMPLES] = 1,
+    pixel_samples: Annotated[int, PIXEL_SAMPLES] = 1,
     fps: Annotated[float, FPS] = 25.0,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,

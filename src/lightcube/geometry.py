@@ -232,13 +232,18 @@ def _cos_sin(degrees: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     return np.choose(index, [cos, -sin, -cos, sin]), np.choose(index, [sin, cos, -sin, -cos])
 
 
+def unit(vector: ArrayLike) -> NDArray[np.float64]:
+    """The vector of length 1 that points the same way."""
+    array = np.asarray(vector, np.float64)
+    return np.asarray(array / np.linalg.norm(array))
+
+
 def rotations(axis: ArrayLike, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
     """``(n, 3, 3)``: rotations counter-clockwise about `axis` by each of the angles (O. Rodrigues, 1840)."""
-    unit = np.asarray(axis, np.float64) / np.linalg.norm(axis)
     cos, sin = (each[:, None, None] for each in _cos_sin(degrees))
-    x, y, z = unit
+    x, y, z = unit(axis)
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    along = np.outer(unit, unit)
+    along = np.outer(unit(axis), unit(axis))
     return np.asarray(cos * (np.eye(3) - along) + sin * cross + along, np.float64)
 
 

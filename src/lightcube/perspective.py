@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lightcube.errors import InputError
+from lightcube.geometry import unit
 
 Vector = tuple[float, float, float]
 Reals = NDArray[np.float64]
@@ -215,12 +216,6 @@ class Canvas:
         lifted = np.float32(1 + _LIFT) * near
         seen = (lifted >= solid) & (lifted > 0)
         return np.asarray(seen if front is None else seen & ((lifted >= glass) == front))
-
-
-def unit(vector: ArrayLike) -> Reals:
-    """The vector of length 1 that points the same way."""
-    array = np.asarray(vector, np.float64)
-    return np.asarray(array / np.linalg.norm(array))
 
 
 def fitting(points: Reals, axes: Reals, spread: tuple[float, float], margin: float) -> Reals:

@@ -10,9 +10,9 @@ from scipy.ndimage import map_coordinates
 
 from lightcube.cube import Cube
 from lightcube.forward import player
-from lightcube.geometry import Grid, Views
+from lightcube.geometry import Grid, Views, unit
 from lightcube.layout import columns_from_volume, pictures_from_columns
-from lightcube.perspective import FINE, Camera, Canvas, Floats, Reals, Region, fitting, unit
+from lightcube.perspective import FINE, Camera, Canvas, Floats, Reals, Region, fitting
 from lightcube.projector import Projector
 from lightcube.standing import PlacedLamp, PlacedScreen, Standing, corners_of, extent, size_of, standing, table_of
 

@@ -159,13 +159,20 @@ def _slowest(reasons: list[str]) -> str:
     return next(reason for reason in ("iterations", "enough", "converged") if reason in reasons)
 
 
+def _lamp_power(job: Job) -> dict[str, float]:
+    """The power of a fixed lamp, or the largest one; a stage's lamps have bounds of their own, in its lighting."""
+    if job.frames.lighting is not None:
+        return {}
+    return {"lamp_power" if job.lamp == "fixed" else "lamp_max": float(job.lamp_power)}
+
+
 def _made_with(job: Job) -> dict[str, Any]:
     """What the cube remembers of how it was made."""
     return {
         "lightcube": version("lightcube"),
         "method": job.method,
         "lamp": job.lamp,
-        "lamp_power" if job.lamp == "fixed" else "lamp_max": float(job.lamp_power),
+        **_lamp_power(job),
         "max_extinction": None if np.isinf(job.max_extinction) else float(job.max_extinction),
         "black": float(job.black),
         "angles_per_view": len(held_views(job.frames, job.hold, job.grid)[0]) // len(job.frames.views),

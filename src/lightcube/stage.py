@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.geometry import Grid, Views
+from lightcube.geometry import Grid, Views, unit
 from lightcube.lighting import Lighting, turned_by
 
 Vector = tuple[float, float, float]
@@ -115,7 +115,7 @@ class Screen:
     @property
     def facing(self) -> Reals:
         """Unit vector out of its lit side."""
-        return _unit(self.normal if self.normal is not None else -np.array(self.centre))
+        return unit(self.normal if self.normal is not None else -np.array(self.centre))
 
     @property
     def steps(self) -> tuple[Reals, Reals]:
@@ -123,7 +123,7 @@ class Screen:
         normal = self.facing
         flat = bool(np.hypot(normal[0], normal[1]) < 1e-9)
         up = np.array(self.up if self.up is not None else ((1.0, 0.0, 0.0) if flat else (0.0, 0.0, 1.0)))
-        up = _unit(up - (up @ normal) * normal)
+        up = unit(up - (up @ normal) * normal)
         right = np.cross(up, normal)
         return self.pitch_mm * (-right if self.rear else right), -self.pitch_mm * up
 
@@ -263,11 +263,6 @@ def _middle(screen: Screen, shape: tuple[int, int]) -> Reals:
     return np.asarray(np.array(screen.centre) + (shape[1] - columns) / 2 * right + (shape[0] - rows) / 2 * down)
 
 
-def _unit(vector: ArrayLike) -> Reals:
-    array = np.asarray(vector, np.float64)
-    return np.asarray(array / np.linalg.norm(array))
-
-
 def _check_names(kind: str, names: Sequence[str], most: int) -> None:
     if not names:
         raise InputError(f"there is no {kind} on this stage: give at least one")
@@ -292,6 +287,13 @@ def _check_least(who: str, key: str, value: float, least: float, *, above: bool 
         raise InputError(f"{who}: {key} must be {'above' if above else 'at least'} {least:g}, not {value:g}")
 
 
+def _check_fading(who: str, reach_mm: float, falloff_mm: float) -> None:
+    _check_least(who, "reach_mm", reach_mm, 0)
+    _check_least(who, "falloff_mm", falloff_mm, 0)
+    if falloff_mm > 0 and math.isinf(reach_mm):
+        raise InputError(f"{who}: falloff_mm says how shadows fade beyond reach_mm, which is not given: give it, or 0")
+
+
 def _check_lamp(lamp: Lamp) -> None:
     who = f"lamp {lamp.name!r}"
     if (lamp.direction is None) == (lamp.position is None):
@@ -311,10 +313,7 @@ def _check_lamp(lamp: Lamp) -> None:
         raise InputError(
             f"{who}: full_at_mm is for point lamps, and parallel light is the same everywhere: leave it out"
         )
-    _check_least(who, "reach_mm", lamp.reach_mm, 0)
-    _check_least(who, "falloff_mm", lamp.falloff_mm, 0)
-    if lamp.falloff_mm > 0 and math.isinf(lamp.reach_mm):
-        raise InputError(f"{who}: falloff_mm says how shadows fade beyond reach_mm, which is not given: give it, or 0")
+    _check_fading(who, lamp.reach_mm, lamp.falloff_mm)
     _check_least(who, "full_at_mm", lamp.full_at_mm, 0, above=True)
 
 
@@ -334,9 +333,6 @@ def _check_screen(screen: Screen) -> None:
         raise InputError(f"{who}: more than {MOST_PIXELS} pixels along a side: make it smaller, or pitch_mm larger")
     if screen.up is not None:
         _check_vector(who, "up", screen.up)
-        if np.linalg.norm(np.cross(_unit(screen.up), screen.facing)) < 1e-6:
+        if np.linalg.norm(np.cross(unit(screen.up), screen.facing)) < 1e-6:
             raise InputError(f"{who}: up must not point straight out of the screen, {screen.up}")
-    _check_least(who, "reach_mm", screen.reach_mm, 0)
-    _check_least(who, "falloff_mm", screen.falloff_mm, 0)
-    if screen.falloff_mm > 0 and math.isinf(screen.reach_mm):
-        raise InputError(f"{who}: falloff_mm says how shadows fade beyond reach_mm, which is not given: give it, or 0")
+    _check_fading(who, screen.reach_mm, screen.falloff_mm)

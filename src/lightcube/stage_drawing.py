@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lightcube.geometry import rotations
 from lightcube.stage import Lamp, Screen, Stage
-from lightcube.svg import Box, Labels, around, disc, hex_colour, hull, moved, path, polygon, text
+from lightcube.svg import Box, Labels, around, disc, hex_of, hull, moved, path, polygon, text
 from lightcube.transfer import encode
 
 Reals = NDArray[np.float64]
@@ -396,4 +396,4 @@ def _tints(colour: tuple[float, ...]) -> tuple[str, str]:
     shown = np.array(_AMBER) if np.ptp(light) < 0.2 else 0.92 * pure / pure.max()
     luminance = float(shown @ (0.2126, 0.7152, 0.0722))
     shown = shown * min(1.0, 0.7 / luminance)
-    return hex_colour(shown), hex_colour(0.68 * shown)
+    return hex_of(shown), hex_of(0.68 * shown)

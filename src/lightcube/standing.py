@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from lightcube.cube import Cube
 from lightcube.forward import exposures_at, lamp_at, views_at
-from lightcube.geometry import Grid, Views, rotations
+from lightcube.geometry import Grid, Views, rotations, unit
 from lightcube.lighting import Lighting, turned_by
-from lightcube.perspective import unit
 
 Reals = NDArray[np.float64]
 

@@ -37,7 +37,7 @@ def text(x: float, y: float, words: str, style: str = "") -> str:
     return f'<text x="{x:.1f}" y="{y:.1f}" {style}>{escape(words)}</text>'
 
 
-def hex_colour(colour: Reals) -> str:
+def hex_of(colour: Reals) -> str:
     """Display values from 0 to 1 as ``#rrggbb``."""
     return "#" + "".join(f"{round(255 * float(part)):02x}" for part in np.clip(colour, 0, 1))
 

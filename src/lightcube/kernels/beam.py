@@ -108,6 +108,12 @@ def on_face(p: float, d: float) -> bool:
     return abs(d) < PARALLEL and abs(p - round(p)) <= ON_FACE
 
 
+@njit(cache=True, inline="always")
+def beside(p: float, on: bool, side: int) -> float:
+    """Half a voxel to either `side`, 0 or 1, of the face that a beam runs on; where it runs on none, `p`."""
+    return round(p) + side - 0.5 if on else p
+
+
 @njit(cache=True)
 def trace_beam(
     px: float,
@@ -133,19 +139,10 @@ def trace_beam(
     touch the face. There must be room for one more piece than `max_pieces`.
     """
     on_x, on_y, on_z = on_face(px, dx), on_face(py, dy), on_face(pz, dz)
+    part = scale * 0.5 ** (on_x + on_y + on_z)
     for sx in range(2 if on_x else 1):
         for sy in range(2 if on_y else 1):
             for sz in range(2 if on_z else 1):
-                part = scale
-                qx, qy, qz = px, py, pz
-                if on_x:
-                    part *= 0.5
-                    qx = round(px) + sx - 0.5
-                if on_y:
-                    part *= 0.5
-                    qy = round(py) + sy - 0.5
-                if on_z:
-                    part *= 0.5
-                    qz = round(pz) + sz - 0.5
+                qx, qy, qz = beside(px, on_x, sx), beside(py, on_y, sy), beside(pz, on_z, sz)
                 count = _trace_off_faces(qx, qy, qz, dx, dy, dz, nx, ny, part, strides, places, shifts, weights, count)
     return count

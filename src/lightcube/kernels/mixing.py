@@ -23,7 +23,7 @@ from lightcube.kernels.threads import parallel
 Array = NDArray[Any]
 
 #: Numbers that a task keeps of its run's views, and parts that the entries of a picture are divided into at most.
-_KEPT, _PARTS = 16384, 16
+_KEPT, PARTS = 16384, 16
 #: Light is scaled by at most e to this, so that neither it nor its inverse leaves the range of float32.
 _MOST = 60.0
 #: The least part of all light that a view counts as in bounds on curvature, relative to its part without a cube.
@@ -47,7 +47,7 @@ def _runs(mixture: Mixture, entries: int, columns: int) -> tuple[int, int, int]:
         most = max(most, mixture.starts[picture + 1] - mixture.starts[picture])
     rows = entries // columns
     run = max(1, min(_KEPT // (most * columns), rows))
-    return most, run * columns, min(_PARTS, (rows + run - 1) // run)
+    return most, run * columns, min(PARTS, (rows + run - 1) // run)
 
 
 @njit(cache=True)
@@ -246,7 +246,7 @@ def pulls(
     """Add the derivatives by ln P of each group of views, and bounds on the second ones, to ``sums[0]``, ``sums[1]``.
 
     ``groups[v]`` is the group of view v: views of a picture and a lamp follow each other. `sums` is
-    ``(2, parts, groups, channels)`` with 16 parts, to be summed.
+    ``(2, PARTS, groups, channels)``, to be summed.
     """
     pictures, entries = wanted.shape
     channels = mixture.powers.shape[1]

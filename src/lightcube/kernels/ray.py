@@ -14,7 +14,7 @@ from typing import Any
 from numba import njit
 from numpy.typing import NDArray
 
-from lightcube.kernels.beam import PARALLEL, crossings, faces, on_face
+from lightcube.kernels.beam import PARALLEL, beside, crossings, faces, on_face
 
 Array = NDArray[Any]
 Ray = tuple[float, float, float, float, float, float, float, float]
@@ -107,21 +107,12 @@ def trace_ray(ray: Ray, shape: Triple, strides: Triple, scale: float, places: Ar
         return _trace_off_faces(ray, shape, strides, scale, places, weights, 0)
     px, py, pz, dx, dy, dz, first, last = ray
     on_x, on_y, on_z = on_face(px, dx), on_face(py, dy), on_face(pz, dz)
+    part = scale * 0.5 ** (on_x + on_y + on_z)
     count = 0
     for sx in range(2 if on_x else 1):
         for sy in range(2 if on_y else 1):
             for sz in range(2 if on_z else 1):
-                part = scale
-                qx, qy, qz = px, py, pz
-                if on_x:
-                    part *= 0.5
-                    qx = round(px) + sx - 0.5
-                if on_y:
-                    part *= 0.5
-                    qy = round(py) + sy - 0.5
-                if on_z:
-                    part *= 0.5
-                    qz = round(pz) + sz - 0.5
+                qx, qy, qz = beside(px, on_x, sx), beside(py, on_y, sy), beside(pz, on_z, sz)
                 half = (qx, qy, qz, dx, dy, dz, first, last)
                 count = _trace_off_faces(half, shape, strides, part, places, weights, count)
     return count

@@ -17,8 +17,6 @@ from lightcube.transfer import Transfer
 
 #: Newton's steps for the lamps' powers in each pass, at most; the longest one, and one so short that it is the last.
 _STEPS, _LONGEST, _SHORT = 10, 1.0, 1e-3
-#: Parts that the kernels add up one by one.
-_PARTS = 16
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ class MixedScreen:
         groups = np.cumsum(np.diff(self._picture * len(self.low) + self.mixture.lamp, prepend=-1) != 0) - 1
         lamp_of_group = self.mixture.lamp[np.unique(groups, return_index=True)[1]]
         for _ in range(_STEPS):
-            sums = np.zeros((2, _PARTS, len(lamp_of_group), lamp.shape[1]))
+            sums = np.zeros((2, mixing.PARTS, len(lamp_of_group), lamp.shape[1]))
             mixing.pulls(self._mixed(lamp, ax), groups, *self._data(ax), sums)
             pulls = np.zeros((2, *lamp.shape))
             for both, found in zip(pulls, sums.sum(axis=1), strict=True):
