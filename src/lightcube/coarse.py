@@ -14,14 +14,19 @@ Array = NDArray[np.floating[Any]]
 
 
 def halved(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
-    """Return the same pictures and cube with voxels and pixels twice as large, an odd last half voxel added.
+    """Return the same pictures and cube with voxels and pixels twice as large, an odd last half voxel added."""
+    return coarser(frames, grid, 2)
+
+
+def coarser(frames: Frames, grid: Grid, ratio: float) -> tuple[Frames, Grid]:
+    """Return the same pictures and cube with voxels and pixels `ratio` times as large, the last ones rounded up.
 
     Pixels are means in linear light, their weights the mean weight; both cubes and all pictures share their centres.
     """
-    nz, ny, nx = grid.shape
-    small = Grid(((nz + 1) // 2, (ny + 1) // 2, (nx + 1) // 2), 2 * grid.voxel_mm)
+    nz, ny, nx = (_parts(count, ratio) for count in grid.shape)
+    small = Grid((nz, ny, nx), ratio * grid.voxel_mm)
     rows, columns = frames.views.picture_shape
-    down, across = _halving(rows), _halving(columns)
+    down, across = _covered(rows, ratio), _covered(columns, ratio)
     views = frames.views
     shape = (len(down), len(across))
     weight = np.empty((len(frames), *shape), np.float32)
@@ -31,8 +36,13 @@ def halved(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
         light = np.einsum("ir,rck,jc->ijk", down, picture * frames.weight[view, ..., None], across, optimize=True)
         part = weight[view, ..., None]
         np.divide(light, part, out=pictures[view], where=part > 0)
-    halves = Views(views.lamps, views.origins, 2 * views.column_steps, 2 * views.row_steps, shape)
-    return replace(frames, pictures=pictures, views=halves, weights=weight), small
+    larger = Views(views.lamps, views.origins, ratio * views.column_steps, ratio * views.row_steps, shape)
+    lighting = frames.lighting
+    if lighting is not None:
+        before = (np.multiply(shape, ratio) - views.picture_shape) / 2  # what is added above and to the left
+        windows = np.ceil((lighting.window + before) / ratio - 1e-9).astype(int)
+        lighting = replace(lighting, window=np.minimum(windows, shape))
+    return replace(frames, pictures=pictures, views=larger, weights=weight, lighting=lighting), small
 
 
 def enlarged(volume: Array, shape: tuple[int, int, int], slices: slice | None = None) -> Array:
@@ -49,10 +59,18 @@ def enlarged(volume: Array, shape: tuple[int, int, int], slices: slice | None = 
     return volume
 
 
-def _halving(count: int) -> NDArray[np.float32]:
-    """``(coarse, count)``: the share of each coarse pixel that each of `count` pixels covers; middles coincide."""
-    coarse = math.ceil(count / 2)
-    starts = np.arange(count) + coarse - count / 2
-    edges = 2 * np.arange(coarse)[:, None]
-    covered = np.minimum(starts + 1, edges + 2) - np.maximum(starts, edges)
-    return (np.maximum(covered, 0) / 2).astype(np.float32)
+def _parts(count: int, ratio: float) -> int:
+    """How many parts, `ratio` times as wide, cover so many."""
+    return math.ceil(count / ratio - 1e-9)
+
+
+def _covered(count: int, ratio: float) -> NDArray[np.float32]:
+    """``(coarse, count)``: the share of each coarse pixel, `ratio` times as wide, that each of `count` pixels covers.
+
+    Middles coincide; of the outer pixels a part may be covered by none.
+    """
+    coarse = _parts(count, ratio)
+    starts = np.arange(count) + (coarse * ratio - count) / 2
+    edges = ratio * np.arange(coarse)[:, None]
+    shared = np.minimum(starts + 1, edges + ratio) - np.maximum(starts, edges)
+    return (np.maximum(shared, 0) / ratio).astype(np.float32)

@@ -49,10 +49,9 @@ def ssim(shown: Display, wanted: Display, weight: Display) -> float:
 
 
 def delta_e(shown: Display, wanted: Display, weight: Display) -> float:
-    """Colour difference CIEDE2000 (D65, sRGB primaries), the weighted mean over pixels."""
-    difference = color.deltaE_ciede2000(
-        color.rgb2lab(shown.astype(np.float64)), color.rgb2lab(wanted.astype(np.float64))
-    )
+    """Colour difference CIEDE2000 (D65, sRGB primaries), the weighted mean over pixels; one channel is grey."""
+    colours = (np.broadcast_to(each.astype(np.float64), (*each.shape[:2], 3)) for each in (shown, wanted))
+    difference = color.deltaE_ciede2000(*(color.rgb2lab(each) for each in colours))
     return float(np.sum(weight * difference) / np.sum(weight))
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.cube import Cube
-from lightcube.forward import exposures_at, lamp_at, views_at
-from lightcube.geometry import Grid, Views, rotations, unit
+from lightcube.forward import exposures_at, views_at
+from lightcube.geometry import Grid, Views, rotations, turn_period, turned, unit
 from lightcube.lighting import Lighting, turned_by
 
 Reals = NDArray[np.float64]
@@ -63,10 +63,66 @@ class Standing:
     lamps: tuple[PlacedLamp, ...]
 
 
+def as_stage(cube: Cube) -> Cube:
+    """The cube of a turntable as one of a stage that shows the same at every angle; a stage's cube as it is.
+
+    Its one lamp and one screen stand still while the table turns, the screen behind the cube, where parallel light
+    casts the same shadow. Where level light shows every picture again half a turn on, mirrored, there are as many
+    pictures more. It keeps no targets.
+
+    Raises
+    ------
+    InputError
+        Where the lamps stand at several elevations.
+    """
+    if cube.lighting is not None:
+        return cube
+    views_at(cube, [0.0])  # refuses lamps at several elevations
+    views, powers, names = cube.views, cube.powers, cube.names
+    if turn_period(views) == 180:
+        again = turned(views, 180.0)
+        aside = np.sum(again.origins * again.column_steps, axis=1) / np.sum(again.column_steps**2, axis=1)
+        again = replace(again, origins=again.origins - 2 * aside[:, None] * again.column_steps)
+        views, powers, names = _both(views, again), np.tile(powers, (2, 1)), 2 * names
+    light = views.lamps[:, :3]
+    away = _BEHIND * cube.grid.size_mm[1] / np.hypot(light[:, 0], light[:, 1])
+    views = replace(views, origins=views.origins + away[:, None] * light)
+    count = len(views)
+    lighting = Lighting(
+        picture=np.arange(count),
+        lamp=np.zeros(count, np.intp),
+        share=np.ones((count, powers.shape[1])),
+        reach_mm=np.full((count, 2), np.inf),
+        falloff_mm=np.zeros((count, 2)),
+        full_at_mm=np.full(count, np.inf),
+        disc_deg=np.zeros(count),
+        cosine=np.zeros(count, bool),
+        turning=np.ones((count, 2), bool),
+        way=np.full((count, 2), -1.0),
+        axis=np.array([0.0, 0.0, 1.0]),
+        angle=views.angles,
+        screen=np.zeros(count, np.intp),
+        window=np.tile(views.picture_shape, (count, 1)),
+        least=np.ones(1),
+        most=np.ones(1),
+        lamp_names=("lamp",),
+        screen_names=("screen",),
+    )
+    return replace(cube, views=views, lamp_powers=powers, names=names, lighting=lighting, targets=None)
+
+
+def _both(first: Views, second: Views) -> Views:
+    arrays = {
+        name: np.concatenate([getattr(first, name), getattr(second, name)])
+        for name in ("lamps", "origins", "column_steps", "row_steps")
+    }
+    return Views(**arrays, picture_shape=first.picture_shape)
+
+
 def standing(cube: Cube, angle: float) -> Standing:
     """Where the cube, the screens and the lamps stand at an angle (degrees)."""
-    if cube.lighting is None:
-        return _beside_turntable(cube, angle)
+    cube = as_stage(cube)
+    assert cube.lighting is not None  # noqa: S101 - a stage's
     views, lighting, powers = exposures_at(cube, [angle])
     carried = np.any(lighting.turning & (lighting.way < 0))
     turn = rotations(lighting.axis, np.array([angle if carried else 0.0]))[0]
@@ -85,16 +141,6 @@ def standing(cube: Cube, angle: float) -> Standing:
         lamps.append(PlacedLamp(turn @ place, parallel, light[lighting.lamp == number].sum(axis=0)))
     axis = lighting.axis * (1 if lighting.axis[2] >= 0 else -1)
     return _clear(cube.grid, Standing(turn, unit(axis), tuple(screens), tuple(lamps)))
-
-
-def _beside_turntable(cube: Cube, angle: float) -> Standing:
-    views = views_at(cube, [angle])
-    turn = rotations((0.0, 0.0, 1.0), np.array([angle]))[0]
-    light = views.lamps[0, :3]
-    middle = views.origins[0] + _BEHIND * cube.grid.size_mm[1] / np.hypot(light[0], light[1]) * light
-    screen = _placed(turn, middle, views, 0, views.picture_shape)
-    lamp = PlacedLamp(turn @ light, True, lamp_at(cube, [angle])[0])
-    return _clear(cube.grid, Standing(turn, np.array([0.0, 0.0, 1.0]), (screen,), (lamp,)))
 
 
 def _placed(turn: Reals, middle: Reals, views: Views, view: int, pixels: tuple[int, int]) -> PlacedScreen:
