@@ -29,11 +29,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib.figure import Figure
 from PIL import Image
 
 import lightcube as lc
-from lightcube import demo
+from lightcube import demo, plots
 from lightcube.conditioning import best_order
 from lightcube.fitting import fit_to_views
 from lightcube.metrics import psnr
@@ -333,40 +332,17 @@ def say_best_elevation(rows: list[Row]) -> None:
         print(f"\nn = {n}, mean of all rows: {said} dB; best: {max(means, key=lambda raised: means[raised]):g}°")
 
 
-#: Colours that everybody can tell apart (M. Okabe, K. Ito), and markers, by largest lamp power.
-STYLES = {64: ("#009E73", "s"), 16: ("#0072B2", "o"), 4: ("#E69F00", "D"), 1: ("#D55E00", "v")}
-#: Hollow markers by number of pictures and n.
-HOLLOW = {(32, 64): "P", (16, 32): "<", (16, 128): ">"}
+def points(run: "Runs", curve: Curve, raised: float) -> list[tuple[float, float]]:
+    """Load, as `lightcube.consistency.load`, and mean PSNR of each width; level pictures are as high as the cube."""
+    rows = [run(problem) for problem in curve.problems(raised)]
+    return [(row["count"] * row["columns"] * row["rows"] / row["n"] ** 2, row["psnr_mean"]) for row in rows]
 
 
-def capacity_plot(run: "Runs", curves: list[Curve], raised: float) -> Figure:
-    """Mean PSNR against the load, which is `lightcube.consistency.load`."""
-    figure = Figure(figsize=(12, 7), layout="constrained")
-    axes = figure.subplots()
-    for curve in curves:
-        rows = [run(problem) for problem in curve.problems(raised)]
-        # level pictures are as high as the cube
-        load = [row["count"] * row["columns"] * row["rows"] / row["n"] ** 2 for row in rows]
-        colour, marker = STYLES[curve.lamp_max]
-        look: dict[str, Any] = {"marker": marker, "linewidth": 2.2}
-        if (curve.count, curve.n) in HOLLOW:
-            look = {"marker": HOLLOW[curve.count, curve.n], "linestyle": "", "markerfacecolor": "none"}
-        axes.plot(load, [row["psnr_mean"] for row in rows], label=curve.label, color=colour, markersize=9, **look)
-    axes.axhline(40, color="#777", linewidth=1, linestyle="--")
-    lamp, size, side = "level lamp", "width", "the cube"
-    if raised:
-        lamp, size, side = f"lamp raised by {raised:g}°", "area", "a side of the cube"
-    axes.set_title(f"Unrelated photographs in one cube, {lamp}", fontsize=17)
-    axes.set_xlabel(f"load: number of pictures × {size} of a picture / {size} of {side}", fontsize=15)
-    axes.set_ylabel("mean PSNR, dB", fontsize=15)
-    ticks = [1, 2, 3, 4, 5, 6, 8, 10, 12, 16][0 if raised else 1 :]
-    axes.set(xscale="log", xticks=ticks, xticklabels=ticks)
-    axes.minorticks_off()
-    axes.tick_params(labelsize=13)
-    axes.grid(color="#ddd", linewidth=0.8)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(fontsize=14, frameon=False, loc="upper right")
-    return figure
+def capacity_plot(run: "Runs", curves: list[Curve], raised: float) -> Any:
+    """Sixteen photographs in a 64-cube as curves, all else as points."""
+    main = [curve for curve in curves if (curve.count, curve.n) == (16, 64)]
+    others = {curve.label: points(run, curve, raised) for curve in curves if curve not in main}
+    return plots.capacity_plot({c.lamp_max: points(run, c, raised) for c in main}, others, elevation=raised)
 
 
 def main() -> None:

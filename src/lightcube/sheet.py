@@ -14,7 +14,7 @@ from lightcube.transfer import encode, to_uint8
 _SIDE, _GAP, _LINE = 128, 8, 16
 _PAPER, _INK = (250, 250, 248), (40, 40, 40)
 #: Views shown at most: of more, so many evenly chosen ones.
-_MOST = 32
+MOST = 32
 
 
 def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float]) -> NDArray[np.uint8]:
@@ -35,7 +35,7 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
     views, 32 are shown.
     """
     count = len(frames)
-    chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST)).round().astype(int))
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
     rows, columns = frames.views.picture_shape
     scale = max(1, round(_SIDE / min(rows, columns)))
     cell_height, cell_width = rows * scale * 3 + 2 * _LINE + 2 * _GAP, max(columns * scale, 96) + _GAP
@@ -52,13 +52,13 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
         label = f"{frames.names[view]}"[:16]
         draw.text((left, top), label, _INK, font)
         draw.text((left, top + _LINE - 3), f"{frames.angles[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
-        for index, picture in enumerate(_triple(shown[view], frames, int(view))):
+        for index, picture in enumerate(triple(shown[view], frames, int(view))):
             tile = Image.fromarray(picture).resize((columns * scale, rows * scale), Image.Resampling.NEAREST)
             sheet.paste(tile, (left, top + 2 * _LINE + index * (rows * scale + 2)))
     return np.asarray(sheet)
 
 
-def _triple(shown: NDArray[np.float32], frames: Frames, view: int) -> list[NDArray[np.uint8]]:
+def triple(shown: NDArray[np.float32], frames: Frames, view: int) -> list[NDArray[np.uint8]]:
     """Wanted, shown and difference of one view, 8-bit RGB; grey where there is nothing wanted."""
     wanted, weight = frames.pictures[view], frames.weight[view][..., None] > 0
     difference = 0.5 + encode(shown, frames.transfer) - encode(wanted, frames.transfer)
