@@ -1,0 +1,138 @@
+"""What a report says of a cube, measured: scores, pictures to look at, curves, disturbances, pre-flight."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.between import Curve, curve, robust
+from lightcube.consistency import advice, check
+from lightcube.cube import Cube
+from lightcube.fitting import targets
+from lightcube.forward import cast
+from lightcube.frames import Frames
+from lightcube.metrics import check_same_views, score_pictures
+from lightcube.reachable import sentences
+from lightcube.sheet import triple as triple
+from lightcube.stage import Stage
+from lightcube.stage_check import doubtful
+
+Levels = NDArray[np.uint8]
+
+#: Pixels of all pictures together that a page holds without loss, and those that it holds at all (with a little loss):
+#: wanted, shown and difference of so many stay below 10 MB.
+EXACT, MOST = 700_000, 8_000_000
+#: Parts that the measuring consists of, for its progress.
+_PARTS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Findings:
+    """Everything that was measured of a cube.
+
+    Parameters
+    ----------
+    cube, frames, stage
+        The cube, what was wanted of it, and the stage that the frames are from.
+    scores
+        As `lightcube.metrics.score`.
+    pictures
+        By their number: wanted, shown and difference, 8-bit RGB; evenly chosen ones where there are too many.
+    curve
+        What is seen between the stops; None where nothing is between them.
+    robust
+        As `lightcube.between.robust`.
+    preflight
+        As `lightcube.consistency.check`; None on a stage, or with lamps at several elevations.
+    advice
+        What is wrong with the pictures, a sentence each.
+    apart
+        By how many display levels of 255 the frames are, at most, from those that the cube was made for; None where
+        it keeps none.
+    """
+
+    cube: Cube
+    frames: Frames
+    stage: Stage | None
+    scores: dict[str, Any]
+    pictures: dict[int, list[Levels]]
+    curve: Curve | None
+    robust: dict[str, Any]
+    preflight: dict[str, Any] | None
+    advice: list[str]
+    apart: int | None
+
+
+def measure(
+    cube: Cube, frames: Frames, stage: Stage | None = None, callback: Callable[[int, int], None] | None = None
+) -> Findings:
+    """Measure all that a report says of a cube and of what was wanted of it.
+
+    Parameters
+    ----------
+    stage
+        That the frames are from, if it is at hand.
+    callback
+        Called with how many parts of the work are done, and how many there are.
+
+    Raises
+    ------
+    InputError
+        Where the frames do not fit the cube's views.
+    """
+    check_same_views(cube, frames)
+    done = callback or (lambda part, of: None)
+    done(0, _PARTS)
+    pictures: dict[int, list[Levels]] = {number: [] for number in chosen(frames)}
+    shown = cast(cube, cube.views, cube.powers, cube.lighting)
+    scores = score_pictures(_kept(shown, frames, pictures), frames)
+    done(1, _PARTS)
+    turned = cube.lighting is None and len(np.unique(cube.views.elevations)) == 1
+    between = curve(cube, frames) if turned else None
+    done(2, _PARTS)
+    left = robust(cube, frames)
+    done(3, _PARTS)
+    facts = check(frames, cube.grid, most_power(cube)) if turned else None
+    said = sentences(frames) if facts is None else advice(facts)
+    if stage is not None:
+        said = [*doubtful(stage), *said]
+    done(_PARTS, _PARTS)
+    return Findings(cube, frames, stage, scores, pictures, between, left, facts, said, _apart(cube, frames))
+
+
+def most_power(cube: Cube) -> float:
+    """The largest power that a turntable's lamp was allowed, linear light."""
+    for name in ("lamp_max", "lamp_power"):
+        if name in cube.provenance:
+            return float(cube.provenance[name])
+    return float(cube.powers.max())
+
+
+def chosen(frames: Frames, most: int = MOST) -> list[int]:
+    """Numbers of the pictures that a page has room for, evenly chosen: those of at most so many pixels together."""
+    rows, columns = frames.views.picture_shape
+    room = min(len(frames), max(1, most // (rows * columns)))
+    return [int(number) for number in np.unique(np.linspace(0, len(frames) - 1, room).round())]
+
+
+def _kept(
+    shown: Iterable[NDArray[np.float32]], frames: Frames, pictures: dict[int, list[Levels]]
+) -> Iterator[NDArray[np.float32]]:
+    """Yield pictures as they come, and keep those to be looked at."""
+    for number, picture in enumerate(shown):
+        if number in pictures:
+            rows, columns = picture.shape[:2] if frames.lighting is None else frames.lighting.window[number]
+            pictures[number] = [each[:rows, :columns] for each in triple(picture, frames, number)]
+        yield picture
+
+
+def _apart(cube: Cube, frames: Frames) -> int | None:
+    """Largest difference, in levels, of the frames from the cube's own targets; their weights count too."""
+    if cube.targets is None:
+        return None
+    return max(
+        int(np.max(np.abs(own.astype(np.int16) - given)))
+        for own, given in zip(cube.targets, targets(frames), strict=True)
+    )

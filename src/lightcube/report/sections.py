@@ -1,0 +1,319 @@
+"""The parts of a report, as HTML: what is said of a cube, in the order in which it is asked."""
+
+from collections.abc import Iterator
+from html import escape
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.between import DISTURBANCES, LOBE_DB
+from lightcube.cube import Cube
+from lightcube.prediction import MOST_DB
+from lightcube.report import charts
+from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
+from lightcube.report.measuring import EXACT, Findings, most_power
+from lightcube.stage_check import facts
+from lightcube.stage_drawing import drawing
+
+#: Pictures in the strip at the top.
+_STRIP = 12
+
+
+def head(found: Findings, compared: str) -> str:
+    """What is to be seen at one look: what it is, what it casts, and how good that is."""
+    cube, scores = found.cube, found.scores
+    nz, ny, nx = cube.grid.shape
+    wide, high = _size(cube)
+    size = " × ".join(f"{length:.6g}" for length in cube.grid.size_mm[::-1])
+    count = len(cube.names)
+    what = f"A light cube of {nx} × {ny} × {nz} voxels, {size} mm, for {count} pictures of {wide} × {high} pixels."
+    lines = [text("p", what.replace(" × ", "\u00a0×\u00a0"), class_="lead")]
+    if cube.status != "complete":
+        warning = "This cube is unfinished: its solver was stopped early, or it is still being made."
+        lines.insert(0, text("p", warning, class_="warning"))
+    worst = min(scores["views"], key=lambda view: float(view["psnr"]))["name"]
+    tiles = {
+        "mean PSNR": (f"{number(scores['psnr_mean'])} dB", _predicted(cube, "psnr_mean")),
+        "worst PSNR": (f"{number(scores['psnr_min'])} dB", worst),
+        "SSIM": (number(scores["ssim_mean"], 4), "mean; 1 is perfect"),
+        "CIEDE2000": (number(scores["delta_e_mean"]), "mean; below 1 is invisible"),
+    }
+    shown = "".join(
+        element("div", text("dt", name) + text("dd", value, class_="figure") + text("dd", more, class_="more"))
+        for name, (value, more) in tiles.items()
+    )
+    numbers = sorted(found.pictures)
+    few = [
+        numbers[i] for i in np.unique(np.linspace(0, len(numbers) - 1, min(_STRIP, len(numbers))).round().astype(int))
+    ]
+    strip = "".join(image(found.pictures[i][1], f"shown: {cube.names[i]}", exact=_exact(found)) for i in few)
+    which = "all its pictures" if len(few) == count else f"{len(few)} of its {count} pictures"
+    lines += [
+        figure(element("div", strip, class_="strip"), f"What it casts: {which}."),
+        element("dl", shown, class_="tiles"),
+        text(
+            "p", f"{compared} PSNR: 20 dB is recognisable, 30 good, above 40 nobody sees a difference.", class_="note"
+        ),
+    ]
+    return "\n".join(lines)
+
+
+def _predicted(cube: Cube, name: str) -> str:
+    """What was predicted, if it was."""
+    predicted = cube.provenance.get("predicted")
+    if predicted is None:
+        return "nothing was predicted"
+    return f"predicted: {number(predicted[name], 1)} dB" + " or more" * (predicted[name] >= MOST_DB)
+
+
+def _size(cube: Cube) -> tuple[str, str]:
+    """Width and height of the pictures, from the least to the largest where they differ."""
+    windows = [cube.views.picture_shape] if cube.lighting is None else cube.lighting.window
+    rows, columns = np.array(windows).T
+    return _range(columns), _range(rows)
+
+
+def _range(values: NDArray[Any], form: str = "g") -> str:
+    least, most = f"{values.min():{form}}", f"{values.max():{form}}"
+    return least if least == most else f"{least} to {most}"
+
+
+def settings(found: Findings) -> str:
+    """What cube, lamp and solver were set to."""
+    cube, made = found.cube, found.cube.provenance
+    where = _turntable(cube) if cube.lighting is None else _stage(cube)
+    kinds = {"per-view": "one per picture and colour", "coarse": "one per picture and colour, found at half the size"}
+    kinds |= {"global": "one per colour", "fixed": "fixed"}
+    kind = kinds.get(str(made.get("lamp")), "–")
+    most = "" if cube.lighting is not None or made.get("lamp") == "fixed" else f", at most {most_power(cube):g}"
+    reasons = {
+        "enough": "the pictures were good enough",
+        "converged": "nothing was left to gain",
+        "iterations": "that was all that was allowed",
+        "callback": "it was stopped",
+    }
+    passes = f"{made['iterations']}" if "iterations" in made else "–"
+    reason = reasons.get(str(made.get("stop_reason")))
+    nz, ny, nx = cube.grid.shape
+    return pairs(
+        {
+            "Voxels": f"{nx} × {ny} × {nz} of {cube.grid.voxel_mm:.6g} mm",
+            **where,
+            "Lamp power": f"{_range(cube.powers, '.4g')} ({kind}{most})",
+            "Hold": f"{cube.hold_deg:g}° on either side of a stop" if cube.hold_deg else "none",
+            "Method": str(made.get("method", "–")),
+            "Passes": f"{passes}: {reason}" if reason else passes,
+            "Extinction": f"{cube.extinction.mean():.4g} per mm on average, {cube.extinction.max():.4g} at most",
+            "Transfer": cube.transfer,
+        }
+    )
+
+
+def _turntable(cube: Cube) -> dict[str, str]:
+    """Stops and lamp of a turntable."""
+    return {
+        "Stops": _stops(cube.angles),
+        "Lamp elevation": f"{_range(cube.views.elevations)}°",
+    }
+
+
+def _stops(angles: NDArray[np.float64]) -> str:
+    """How many stops, and where the first and the last one are."""
+    return f"{len(angles)}, from {angles.min():.6g}° to {angles.max():.6g}°" if len(angles) > 1 else f"{angles[0]:.6g}°"
+
+
+def _stage(cube: Cube) -> dict[str, str]:
+    """Lamps and screens of a stage."""
+    lighting = cube.lighting
+    assert lighting is not None  # noqa: S101 - a stage's
+    return {
+        "Stops": _stops(np.unique(cube.angles)),
+        "Lamps": ", ".join(lighting.lamp_names),
+        "Screens": ", ".join(lighting.screen_names),
+    }
+
+
+def pictures(found: Findings) -> str:
+    """Wanted, shown and difference of every picture, and their figures."""
+    total = len(found.cube.names)
+    note = "From left to right: wanted, shown, and the difference around grey; flat grey is what nobody asked for."
+    if len(found.pictures) < total:
+        note += f" {len(found.pictures)} of {total} pictures are here, evenly chosen; the table has all."
+    if not _exact(found):
+        note += " To keep the page small they lost a little; no figure did."
+    cards = "\n".join(_card(found, number) for number in sorted(found.pictures))
+    return "\n".join(
+        [text("p", note, class_="note"), element("div", cards, class_="sheet"), sideways(_table(found), "The figures")]
+    )
+
+
+def _exact(found: Findings) -> bool:
+    """Whether the page has room for the pictures without loss."""
+    return sum(each[0].shape[0] * each[0].shape[1] for each in found.pictures.values()) <= EXACT
+
+
+def _card(found: Findings, index: int) -> str:
+    """Three pictures, side by side, and what they are."""
+    view = found.scores["views"][index]
+    kinds = zip(("wanted", "shown", "difference"), found.pictures[index], strict=True)
+    three = "".join(image(levels, f"{kind}: {view['name']}", exact=_exact(found)) for kind, levels in kinds)
+    caption = (
+        text("b", f"{index + 1} {view['name']}") + " " + escape(f"{view['angle']:.6g}°, {number(view['psnr'])} dB")
+    )
+    return figure(element("div", three, class_="three"), caption, class_="card")
+
+
+def _table(found: Findings) -> str:
+    """One row per picture."""
+    cube, expected = found.cube, _expected(found.cube)
+    heads = ["no.", "picture", "angle", "PSNR, dB", "SSIM", "CIEDE2000"]
+    heads += ["predicted, dB"] * (expected is not None)
+    heads += [f"{LOBE_DB:g} dB over"] * (found.curve is not None)
+    heads += ["screen"] * (cube.lighting is not None)
+    return table("Every picture", heads, list(_rows(found, expected)), "figures")
+
+
+def _rows(found: Findings, expected: list[float] | None) -> Iterator[list[object]]:
+    lighting = found.cube.lighting
+    for index, view in enumerate(found.scores["views"]):
+        row: list[object] = [index + 1, view["name"], f"{view['angle']:.3f}°", number(view["psnr"])]
+        row += [number(view["ssim"], 4), number(view["delta_e"])]
+        row += [] if expected is None else [number(expected[index], 1)]
+        row += [] if found.curve is None else [f"{found.curve.lobes[index]:.2f}°"]
+        row += [] if lighting is None else [lighting.screen_names[lighting.screen[index]]]
+        yield row
+
+
+def _expected(cube: Cube) -> list[float] | None:
+    """What was predicted of each picture."""
+    views = cube.provenance.get("predicted", {}).get("views", [])
+    return [float(each) for each in views] if len(views) == len(cube.names) else None
+
+
+def curves(found: Findings) -> str:
+    """PSNR of each picture, PSNR between the stops, and the lamp's powers."""
+    cube, scores, expected = found.cube, found.scores, _expected(found.cube)
+    each = np.array([view["psnr"] for view in scores["views"]])
+    mean, worst = number(scores["psnr_mean"]), number(scores["psnr_min"])
+    label = f"PSNR of {len(each)} pictures: {mean} dB on average, worst {worst} dB"
+    said = "PSNR of each picture, the worst one in a colour of its own, the mean as a line"
+    said += ", and what was predicted as short lines." if expected else "."
+    bars = charts.picture_bars(cube.names, each, None if expected is None else np.array(expected), label)
+    return "\n".join(
+        [
+            figure(sideways(bars, "PSNR of each picture"), escape(said + " Numbers are those of the table.")),
+            *_between(found),
+            figure(sideways(_powers(cube), "Lamp powers"), escape(_powers_said(cube))),
+        ]
+    )
+
+
+def _between(found: Findings) -> Iterator[str]:
+    """What is seen between the stops."""
+    curve = found.curve
+    if curve is None:
+        reason = "a stage" if found.cube.lighting is not None else "lamps at several elevations"
+        yield text("p", f"What is seen between the stops is not measured for {reason}: play the cube to see it.")
+        return
+    lobes = f"{curve.lobes.min():.2f}° to {curve.lobes.max():.2f}°, {curve.lobes.mean():.2f}° on average"
+    stands = f"A picture stays above {LOBE_DB:g} dB over {lobes}."
+    drawn = charts.between_curve(curve, f"PSNR against the turntable's angle. {stands}")
+    said = f"PSNR of the nearer picture as the table turns; dots are the stops. {stands}"
+    yield figure(sideways(drawn, "PSNR against the angle"), escape(said))
+
+
+def _powers(cube: Cube) -> str:
+    """The lamp's powers over the pictures."""
+    lighting = cube.lighting
+    places = np.arange(1.0, len(cube.powers) + 1) if lighting is None else (lighting.pairs[:, 0] + 1).astype(np.float64)
+    most = most_power(cube) if lighting is None else float(lighting.most.max())
+    return charts.lamp_powers(
+        places, cube.powers, most, f"Lamp powers from {_range(cube.powers, '.4g')}, at most {most:g}"
+    )
+
+
+def _powers_said(cube: Cube) -> str:
+    """What the drawing of powers shows."""
+    colours = "; red discs, green squares, blue triangles" if cube.powers.shape[1] == 3 else ""
+    lamps = "" if cube.lighting is None else ", of each of its lamps"
+    return (
+        f"Power of the lamp for each picture and colour{lamps}; 1 shows white past the cube{colours}. "
+        "The dashed line is the largest that was allowed."
+    )
+
+
+def disturbances(found: Findings) -> str:
+    """What is left of the pictures in a set-up that is not perfect."""
+    best = found.robust["undisturbed"]["psnr_mean"]
+    rows = [
+        (str(DISTURBANCES[name]), number(left["psnr_mean"]), number(left["psnr_min"]), number(best - left["psnr_mean"]))
+        for name, left in found.robust.items()
+    ]
+    heads = ("what is off", "mean PSNR, dB", "worst, dB", "costs, dB")
+    return table("What is left of the pictures", heads, rows, "figures")
+
+
+def before(found: Findings) -> str:
+    """What was known before solving, and what came of it."""
+    parts = [*_told(found)]
+    if found.stage is not None:
+        parts += _room(found)
+    elif found.preflight is not None:
+        parts.append(pairs(_checked(found.preflight)))
+    elif found.cube.lighting is not None:
+        parts.append(text("p", "The stage's file says more of its room: give it as the pictures of this report."))
+    if found.advice:
+        parts.append(sentences(found.advice))
+    else:
+        parts.append(text("p", "Nothing is known to be wrong with these pictures."))
+    return "\n".join(parts)
+
+
+def _told(found: Findings) -> Iterator[str]:
+    """Predicted and reached."""
+    predicted = found.cube.provenance.get("predicted")
+    if predicted is None:
+        yield text("p", "What to expect was not predicted for this cube.")
+        return
+    rows = [
+        (what, number(predicted[name], 1), number(found.scores[name]), f"{found.scores[name] - predicted[name]:+.1f}")
+        for what, name in (("mean PSNR, dB", "psnr_mean"), ("worst PSNR, dB", "psnr_min"))
+    ]
+    yield table("What was predicted, and what came", ("what", "predicted", "came", "difference"), rows, "figures")
+    yield text("p", f"{MOST_DB:g} dB stands for all that is above: no eye tells more.", class_="note")
+
+
+def _checked(known: dict[str, Any]) -> dict[str, object]:
+    """What `lightcube.consistency.check` found, in words."""
+    totals = known["moments"]
+    white = sum(last - first + 1 for runs in known["white_rows"].values() for first, last in runs)
+    down = f", {totals['down']:.1%} of the height" if known["elevation"] else ""
+    return {
+        "Load": f"{known['load']:.2f}; unrelated pictures come out well up to {known['load_limit']:g}",
+        "Mirrored pairs": len(known["mirrored"]) or "none",
+        "Same pictures": len(known["duplicates"]) or "none",
+        "White rows": white or "none",
+        "Rows that contradict each other": len({each["row"] for each in known["row_conflicts"]}) or "none",
+        "Totals differ": f"{totals['total']:.0%} (a solid's shadows: 5% at most)",
+        "Centroids": f"off by {totals['across']:.1%} of the width{down}",
+    }
+
+
+def _room(found: Findings) -> Iterator[str]:
+    """The stage, drawn, and where its pictures stand."""
+    assert found.stage is not None  # noqa: S101 - asked before
+    yield figure(sideways(drawing(found.stage), "The room"), "The room from above and from the side.", class_="room")
+    rows = [
+        (
+            each["name"],
+            each["screen"],
+            ", ".join(each["lamps"]),
+            each["stop"],
+            f"{each['beams_in_cube']:.0%}",
+            number(each["pixel_in_voxels"]),
+        )
+        for each in facts(found.stage)["per_picture"]
+    ]
+    heads = ("picture", "screen", "lamps", "stop", "beams through the cube", "voxels a pixel")
+    yield sideways(table("Where the pictures stand", heads, rows, "figures"), "Where the pictures stand")
