@@ -22,10 +22,10 @@ STOREYS = [
         *("metrics", "between", "consistency", "prediction", "conditioning", "planning", "plots", "sheet"),
         *("stage_check", "stage_drawing", "reachable", "standing", "perspective", "room"),
     ],
-    ["io"],
+    ["io", "viewer", "report"],
     [
         *("arguments", "bench", "console", "demo", "solving", "staging", "running", "playing", "cluster", "reports"),
-        *("cli_options", "cli_play", "cli_stage", "cli", ""),
+        *("cli_options", "cli_play", "cli_report", "cli_stage", "cli_view", "cli", ""),
     ],
 ]
 ALLOWED_IN_KERNELS = {"numpy", "numba", "llvmlite", "math", "typing", "collections.abc", "functools", "threading"}
@@ -101,6 +101,7 @@ def test_every_module_has_a_room() -> None:
         *sys.stdlib_module_names,
         *("lightcube", "numpy", "scipy", "numba", "skimage", "PIL", "av", "zarr", "typer", "click", "rich", "pydantic"),
         *("pydantic_core", "trimesh", "matplotlib", "fsspec", "llvmlite", "torch", "astra", "dask", "distributed"),
+        *("anywidget", "traitlets"),
     }
 
 
@@ -134,6 +135,7 @@ def test_public_names_are_a_list() -> None:
         "fit_to_stage",
         "lamp_at",
         "load",
+        "page",
         "plan",
         "play",
         "player",
@@ -148,10 +150,12 @@ def test_public_names_are_a_list() -> None:
         "scene_frames",
         "scene_views",
         "score",
+        "show",
         "solve",
         "spread_angles",
         "turntable",
         "views_at",
+        "write_page",
         "write_pictures",
     ]
     for name in lightcube.__all__:

@@ -17,6 +17,7 @@ from lightcube.io import (
     read_stage,
     read_stage_frames,
     save,
+    write_page,
     write_pictures,
 )
 from lightcube.lighting import Lighting, sampled
@@ -30,6 +31,8 @@ from lightcube.solution import Solution
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
 from lightcube.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.viewer.notebook import displayed, show
+from lightcube.viewer.page import page
 
 __all__ = [
     "METHODS",
@@ -60,6 +63,7 @@ __all__ = [
     "fit_to_stage",
     "lamp_at",
     "load",
+    "page",
     "plan",
     "play",
     "player",
@@ -74,9 +78,13 @@ __all__ = [
     "scene_frames",
     "scene_views",
     "score",
+    "show",
     "solve",
     "spread_angles",
     "turntable",
     "views_at",
+    "write_page",
     "write_pictures",
 ]
+
+Cube.shown_by = displayed  # the cube itself stands too low to know the page

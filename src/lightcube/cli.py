@@ -7,14 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
 import typer
 
 from lightcube import (
     arguments,
     between,
     cli_play,
+    cli_report,
     cli_stage,
+    cli_view,
     cluster,
     demo,
     forward,
@@ -28,10 +29,8 @@ from lightcube import (
 )
 from lightcube.cli_options import FPS, FRAMES, JSON, OUT, OVERWRITE, Options, one_by_one
 from lightcube.console import done, err, json_document, json_line, out, plain_warnings, prepare, progress
-from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.fitting import check_fit, fit_to_views, frames_from_targets
-from lightcube.frames import Frames
+from lightcube.fitting import frames_from_targets
 from lightcube.job import Job
 from lightcube.needs import job_memory
 from lightcube.scene.tracer import scene_frames, scene_views
@@ -182,6 +181,8 @@ def merge(
 
 
 app.command()(cli_play.play)
+app.command()(cli_view.view)
+app.command()(cli_report.report)
 
 
 @app.command()
@@ -209,7 +210,7 @@ def score(
     if plot is not None:
         io.check_figure_target(plot, overwrite=overwrite)
     loaded = io.load(cube)
-    wanted = frames_from_targets(loaded) if frames is None else _refitted(loaded, frames)
+    wanted = frames_from_targets(loaded) if frames is None else cli_report.refitted(loaded, frames)
     scores = metrics.score(loaded, wanted)
     if between_frames or plot is not None:
         curve = between.curve(loaded, wanted)
@@ -352,23 +353,3 @@ def _finish(
         json_line("result", out=str(output), seconds=seconds, **reports.facts(solution), predicted=predicted, **scores)
     else:
         reports.solved(solution, scores, output, seconds)
-
-
-def _refitted(cube: Cube, frames: str) -> Frames:
-    """Pictures as `solve` fitted them to the cube, in its order."""
-    if io.is_stage(frames):
-        return staging.wanted(frames, cube)
-    if cube.lighting is not None:
-        raise InputError(f"the cube was made on a stage: give its file instead of {frames}, or nothing")
-    pictures = io.read_pictures(frames, transfer=cube.transfer)
-    order = cube.provenance.get("order", range(len(pictures)))
-    if len(order) == len(pictures):
-        images, names = (tuple(each[picture] for picture in order) for each in (pictures.images, pictures.names))
-        pictures = replace(pictures, images=images, names=names)
-    if pictures.angles is not None and len(pictures) == len(cube.views):
-        apart = np.abs(np.remainder(pictures.angles - cube.views.angles + 180, 360) - 180)
-        if np.max(apart) > 1e-6:
-            raise InputError(
-                f"{frames} says other angles than the cube was made for: give the pictures it was made from"
-            )
-    return fit_to_views(pictures, cube.views, check_fit(cube.provenance.get("fit", "crop")))

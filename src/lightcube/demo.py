@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from lightcube.scene.tracer import scene_frames
 from lightcube.sheet import contact_sheet
 from lightcube.solvers import METHODS
 from lightcube.transfer import decode
+from lightcube.viewer.page import page
 
 #: Pictures that come with scikit-image.
 _PHOTOGRAPHS: dict[str, Callable[[], NDArray[np.uint8]]] = {
@@ -97,7 +99,9 @@ def run(folder: Path) -> None:
             f"{row['name']:>14} {row['pictures']:>16} {row['elevation']:>5.0f}° {row['psnr_mean']:>5.1f} dB "
             f"{row['psnr_min']:>4.1f} dB {row['ssim_mean']:>7.3f} {row['delta_e_mean']:>7.2f} {row['seconds']:>5.0f} s"
         )
-    out.print(f"\nLook at the movies and contact sheets in {folder}/")
+    out.print(f"\nLook at the movies and contact sheets in {folder}/. Turn the cubes by hand: open, in a browser,")
+    for row in rows:
+        out.print(f"  {folder / row['name']}.html")
 
 
 def _juggler(grid: Grid) -> Frames:
@@ -113,8 +117,8 @@ def _one(name: str, frames: Frames, grid: Grid, folder: Path, hold: float = 0.0)
     with progress(f"solving {name}", as_json=False) as advance:
         solution = backward.solve(frames, grid, hold=hold, callback=lambda step: advance(round(1000 * step.done), 1000))
     seconds = time.monotonic() - began
-    cube = solution.cube
-    scores = metrics.score(cube, frames)
+    scores = metrics.score(solution.cube, frames)
+    cube = replace(solution.cube, scores=scores)
     io.save(cube, folder / f"{name}.zarr", overwrite=True)
     shown = forward.play(cube)
     sheet = contact_sheet(shown, frames, [view["psnr"] for view in scores["views"]])
@@ -127,6 +131,7 @@ def _one(name: str, frames: Frames, grid: Grid, folder: Path, hold: float = 0.0)
     views, powers = forward.views_at(cube, turn, whole_screen=True), forward.lamp_at(cube, turn)
     turning = _on_a_screen(forward.cast(cube, views, powers))
     io.write_pictures(folder / f"{name}-turn.mp4", turning, count=len(turn), fps=20, scale=4, overwrite=True)
+    io.write_page(folder / f"{name}.html", page(cube, name), overwrite=True)
     rows, columns = frames.views.picture_shape
     return {
         "name": name,

@@ -1,10 +1,11 @@
 """Reading and writing files, by suffix."""
 
-from lightcube.io.cubes import UnfinishedCube, check_cube_target, load, publish, save
+from lightcube.io.cubes import UnfinishedCube, bare_name, check_cube_target, load, publish, save
 from lightcube.io.drawings import check_drawing_target, write_drawing
 from lightcube.io.figures import check_figure_target, write_figure
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures, check_pictures_target, write_pictures
+from lightcube.io.pages import check_page_target, write_page
 from lightcube.io.partial import (
     DiskStore,
     begun_units,
@@ -25,10 +26,12 @@ __all__ = [
     "DiskStore",
     "TransparentPictures",
     "UnfinishedCube",
+    "bare_name",
     "begun_units",
     "check_cube_target",
     "check_drawing_target",
     "check_figure_target",
+    "check_page_target",
     "check_partial",
     "check_pictures_target",
     "check_sheet_target",
@@ -50,6 +53,7 @@ __all__ = [
     "write_drawing",
     "write_figure",
     "write_json",
+    "write_page",
     "write_pictures",
     "write_sheet",
 ]

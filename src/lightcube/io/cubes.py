@@ -25,6 +25,13 @@ class UnfinishedCube(UserWarning):
     """A cube that was loaded is a partial one, or its solver was stopped early."""
 
 
+def bare_name(path: str | Path) -> str:
+    """Name of a cube's file without its suffix."""
+    name = name_of(place(path))
+    found = [suffix for suffix in (*_FORMATS, PARTIAL_SUFFIX) if name.lower().endswith(suffix)]
+    return bare_name(name[: -len(max(found, key=len))]) if found and name.lower() not in found else name
+
+
 def check_cube_target(path: str | Path, *, overwrite: bool = False) -> None:
     """Raise `InputError` unless `save` could write to `path`: ask before long work."""
     at = place(path)

@@ -1,0 +1,46 @@
+"""One HTML file in which a cube is turned, with all that it needs inside."""
+
+import base64
+import html
+import re
+from typing import Any
+
+from lightcube.cube import Cube
+from lightcube.pieces import Watching
+from lightcube.viewer.described import describe, zipped
+from lightcube.viewer.modules import joined, source
+from lightcube.viewer.packing import pack
+from lightcube.viewer.smaller import smaller
+
+
+def page(cube: Cube, title: str, *, full: bool = False, callback: Watching | None = None) -> str:
+    """The text of a page that shows a cube, in any browser, from a file, without a network.
+
+    Parameters
+    ----------
+    title
+        For people.
+    full
+        Keep all voxels; else a `smaller` cube is solved for one of more than 128 along a side, and the page says so.
+    callback
+        Is told of every pass of that.
+
+    Raises
+    ------
+    InputError
+        Where the cube has other than 1 or 3 colours, more voxels than a browser takes, or lamps at several elevations.
+    """
+    packed = pack(cube if full else smaller(cube, callback))
+    return page_of(describe(cube, packed, title), packed.data())
+
+
+def page_of(description: dict[str, Any], voxels: bytes) -> str:
+    """The same of what `describe` and `Packed.data` return."""
+    parts = {
+        "title": html.escape(description["title"]),
+        "style": source("style.css"),
+        "code": joined("page.js"),
+        "scene": base64.b64encode(zipped(description)).decode(),
+        "voxels": base64.b64encode(voxels).decode(),
+    }
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], source("page.html"))

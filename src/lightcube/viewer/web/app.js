@@ -1,0 +1,216 @@
+// Puts the page together: the turntable, the room and the cards, and what is done to them.
+
+import { createCompare } from "./compare.js";
+import { createControls } from "./controls.js";
+import { degreesText, element, scoreText } from "./elements.js";
+import { createFilmstrip } from "./filmstrip.js";
+import { listenToGestures } from "./gestures.js";
+import { createHeader, createQuietLine } from "./header.js";
+import { createHelp, createHint } from "./help.js";
+import { listenToKeys } from "./keys.js";
+import { createLoop } from "./loop.js";
+import { momentOf } from "./moment.js";
+import { RoomView } from "./roomview.js";
+import { createScanline } from "./scanline.js";
+import { stops } from "./stage.js";
+import { nearestOf, neighbourOf, Turning } from "./turning.js";
+
+/** Degrees by which a pixel of a drag turns the cube. */
+const TURN_SPEED = 0.35;
+/** Milliseconds between two copies of the shadow into the cards while it changes. */
+const COPY_EVERY = 80;
+
+/**
+ * Build the page in an element.
+ *
+ * @param {HTMLElement} root is emptied; keeps what is returned as `root.lightcube` too
+ * @param {Object} scene
+ * @param {Object} cube
+ * @param {{compact: boolean}} options compact: the room, the controls and the film strip alone, for notebooks
+ * @returns {{angle: number, resting: boolean, turnTo: function(number): void,
+ *   onTurn: function(function(number): void): void, dispose: function(): void}} degrees; whether nothing moves and all
+ *   is drawn; `turnTo` turns there at once, `onTurn` calls with every new angle
+ */
+export function mount(root, scene, cube, { compact = false } = {}) {
+  const turning = new Turning(stops(scene), matchMedia("(prefers-reduced-motion: reduce)").matches);
+  const view = new RoomView(scene, cube);
+  const app = { root, scene, turning, view, chosen: { place: 0, row: null, column: null, whole: false, dark: false } };
+  app.does = actionsOf(app);
+  app.parts = createParts(app, cube, compact);
+  const [show, rested] = showing(app);
+  app.loop = createLoop(show, rested);
+  view.aim(turning.angle, false);
+  const ends = [listenToTheme(app), listenToKeys(compact ? root : document, app.does), listenToRoom(app, compact)];
+
+  view.renderer.onRestored = app.loop.ask;
+  root.classList.add("lightcube");
+  root.classList.toggle("compact", compact);
+  root.replaceChildren(...layoutOf(app.parts, compact)); // its new size asks for the first drawing
+  root.lightcube = {
+    get angle() {
+      return turning.angle;
+    },
+    get resting() {
+      return app.loop.resting;
+    },
+    turnTo(angle) {
+      turning.set(angle);
+      app.loop.ask();
+    },
+    onTurn(callback) {
+      app.told = callback;
+    },
+    dispose() {
+      ends.forEach((end) => end());
+      app.loop.stop();
+      view.dispose();
+      root.replaceChildren();
+    },
+  };
+  return root.lightcube;
+}
+
+/** What can be done, each ending with a new drawing. */
+function actionsOf(app) {
+  const { root, scene, turning, view, chosen } = app;
+  const toNeighbour = (way) => turning.glideTo(turning.stops[neighbourOf(turning.stops, turning.angle, way)]);
+  const toNearest = () => turning.glideTo(turning.stops[nearestOf(turning.stops, turning.angle)]);
+  const all = {
+    turn: (degrees) => turning.push(degrees),
+    release: (degreesPerSecond) => turning.release(degreesPerSecond),
+    neighbour: toNeighbour,
+    nearest: toNearest,
+    first: () => turning.glideTo(turning.stops[0]),
+    picture: (number) => turning.glideTo(scene.pictures[number].angle),
+    play: () => (turning.playing ? turning.release(0) : turning.play()),
+    speed: (factor) => (turning.speed = factor),
+    slide: (angle) => turning.set(angle),
+    slid: () => turning.release(0),
+    snap() {
+      turning.snap = !turning.snap;
+      if (turning.snap && !turning.playing) toNearest();
+    },
+    whole() {
+      if (scene.whole === null) return false;
+      // the same beam is another row of the larger picture
+      Object.assign(chosen, { whole: !chosen.whole, row: null, column: null });
+      return true;
+    },
+    eye: (across, down) => view.moveEye(across, down),
+    zoom: (factor) => view.zoom(factor),
+    reset: () => view.comeBack(),
+    screen: (place) => Object.assign(chosen, { place, row: null, column: null }),
+    point: (row, column) => Object.assign(chosen, { row, column }),
+    theme: () => setTheme(app, !chosen.dark),
+    fullScreen: () => toggleFullScreen(root),
+    help: () => app.parts.help.toggle(),
+    close: () => false, // dialogs and full screen close themselves
+  };
+  return Object.fromEntries(Object.entries(all).map(([name, does]) => [name, (...given) => {
+    const done = does(...given);
+    app.loop.ask();
+    return done;
+  }]));
+}
+
+function toggleFullScreen(root) {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else root.requestFullscreen?.().catch(() => {}); // a person's browser may refuse it
+}
+
+function setTheme(app, dark) {
+  app.chosen.dark = dark;
+  app.root.dataset.theme = dark ? "dark" : "light";
+}
+
+/** Follow the system's theme until another one is chosen. */
+function listenToTheme(app) {
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const follow = () => {
+    setTheme(app, system.matches);
+    app.loop.ask();
+  };
+  setTheme(app, system.matches);
+  system.addEventListener("change", follow);
+  return () => system.removeEventListener("change", follow);
+}
+
+function listenToRoom({ does, view, chosen, loop, parts }, compact) {
+  listenToGestures(view.canvas, {
+    ...does,
+    begin: () => parts.hint.done(),
+    turn: (pixels) => does.turn(TURN_SPEED * pixels),
+    release: (pixelsPerSecond) => does.release(TURN_SPEED * pixelsPerSecond),
+    point(x, y) {
+      const found = view.pointed(x, y);
+      view.canvas.classList.toggle("pointing", found !== null);
+      if (found === null) does.point(chosen.row, null);
+      else Object.assign(chosen, { place: found.screen, row: found.row, column: found.column });
+      loop.ask();
+    },
+    leave: () => does.point(chosen.row, null),
+  }, compact);
+  const resized = new ResizeObserver(loop.ask);
+  resized.observe(view.canvas);
+  return () => resized.disconnect();
+}
+
+function createParts({ scene, turning, view, does }, cube, compact) {
+  return {
+    header: createHeader(scene, does),
+    quiet: createQuietLine(scene, view.note),
+    hint: createHint(),
+    help: createHelp(scene.whole !== null),
+    controls: createControls(scene, turning.stops, does),
+    filmstrip: createFilmstrip(scene, does.picture),
+    compare: compact ? null : createCompare(scene, does),
+    scanline: compact ? null : createScanline(scene, cube, does.point),
+    room: view.canvas,
+    said: element("p", { class: "unseen", "aria-live": "polite" }),
+  };
+}
+
+function layoutOf(parts, compact) {
+  const stage = element("div", { class: "stage" }, parts.room, parts.header, parts.hint.element);
+  const dock = element("div", { class: "dock" }, parts.controls.element, parts.filmstrip.element);
+  const rest = [parts.said, parts.help.element];
+  if (compact) return [stage, dock, ...rest];
+  const cards = [parts.compare.element, parts.scanline.element, parts.quiet];
+  return [stage, dock, element("aside", { class: "side", "aria-label": "Details" }, ...cards), ...rest];
+}
+
+/** How a frame is shown, and what is said once things rest. */
+function showing(app) {
+  const { scene, turning, view, chosen, parts } = app;
+  let [copied, told] = [-Infinity, turning.angle];
+
+  function show(seconds, scale) {
+    turning.step(seconds);
+    view.aim(turning.angle, chosen.whole);
+    const now = momentOf(scene, turning, view.exposures, chosen);
+    const { place, row, column } = now.spot;
+    view.draw(now.dark, chosen.row === null ? null : { screen: place, row, column }, scale);
+    parts.controls.update(now);
+    parts.filmstrip.update(now);
+    if (performance.now() - copied > COPY_EVERY) showCards(now);
+    if (told !== turning.angle) app.told?.(turning.angle);
+    told = turning.angle;
+    return turning.moving;
+  }
+
+  function showCards(now) {
+    copied = performance.now();
+    parts.compare?.update(now, view);
+    parts.scanline?.update(now);
+  }
+
+  function rested() {
+    const now = momentOf(scene, turning, view.exposures, chosen);
+    showCards(now);
+    view.canvas.setAttribute("aria-label", `The cube in its room, turned by ${degreesText(now.angle)}`);
+    const scores = now.pictures.map((number) => scoreText(scene.pictures[number].psnr));
+    parts.said.textContent = [now.name, degreesText(now.angle), ...scores].filter(Boolean).join(", ");
+  }
+
+  return [show, rested];
+}

@@ -1,0 +1,154 @@
+// A camera on an orbit round the cube, and what its rays meet; lengths are mm, in the room.
+import { extentOf, halfSides } from "./furniture.js";
+import { add, applyInverse, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
+
+/** Heights of the eye above its target's level, degrees: above the floor, and with an upright picture. */
+const ORBIT_LOWEST = 2;
+const ORBIT_HIGHEST = 88;
+/** Width by height of the picture whose width spans the orbit's field. */
+const ORBIT_ASPECT = 16 / 9;
+/** Part of the picture that stays free at each edge. */
+const ORBIT_MARGIN = 0.05;
+
+const RADIANS = Math.PI / 180;
+
+/**
+ * The orbit that a described camera is on.
+ * @param {{eye: number[], target: number[], field: number}} described
+ * @returns {{azimuth: number, height: number, distance: number, target: number[], field: number}} angles in degrees
+ */
+export function orbitFrom({ eye, target, field }) {
+  const way = sub(eye, target);
+  const distance = norm(way);
+  const azimuth = Math.atan2(way[1], way[0]) / RADIANS;
+  return limited({ azimuth, height: Math.asin(way[2] / distance) / RADIANS, distance, target, field });
+}
+
+/** The orbit with its height within bounds: the eye stays above the floor, and up is up in its picture. */
+export function limited(orbit) {
+  return { ...orbit, height: Math.min(Math.max(orbit.height, ORBIT_LOWEST), ORBIT_HIGHEST) };
+}
+
+/** Where the eye is. */
+export function eyeOf(orbit) {
+  return add(orbit.target, scaled(fromTarget(orbit), orbit.distance));
+}
+
+function fromTarget(orbit) {
+  const [azimuth, height] = [orbit.azimuth * RADIANS, limited(orbit).height * RADIANS];
+  return [Math.cos(height) * Math.cos(azimuth), Math.cos(height) * Math.sin(azimuth), Math.sin(height)];
+}
+
+/**
+ * The camera of an orbit. The orbit's field is what the width of a 16:9 picture spans; a narrower one spans less in
+ * width and more in height, so that neither is distorted.
+ * @param {object} orbit
+ * @param {number} aspect width by height of the picture
+ * @returns {{eye: number[], right: number[], up: number[], ahead: number[], across: number, tall: number}} unit
+ *   vectors, and the tangents of half the angles that its width and height span
+ */
+export function cameraOf(orbit, aspect) {
+  const ahead = scaled(fromTarget(orbit), -1);
+  const right = unit(cross(ahead, [0, 0, 1]));
+  const across = Math.tan((orbit.field / 2) * RADIANS) * Math.sqrt(aspect / ORBIT_ASPECT);
+  return { eye: eyeOf(orbit), right, up: cross(right, ahead), ahead, across, tall: across / aspect };
+}
+
+/**
+ * The orbit moved along its own direction and aside until rooms fill the picture; it turns about what is ahead of the
+ * eye, nearest to the cube's middle.
+ *
+ * To see p to the right of it, an eye at e needs p.r - s p.f <= e.r - s e.f, with r to the right, f ahead, and s the
+ * tangent of half the width; and so on.
+ * @param {object} orbit
+ * @param {object} scene
+ * @param {object[]} rooms all that is to be seen
+ * @param {number} aspect width by height
+ */
+export function fitted(orbit, scene, rooms, aspect) {
+  const { right, up, ahead, across, tall } = cameraOf(orbit, aspect);
+  const points = rooms.flatMap((room) => extentOf(scene, room));
+  let [eye, depth] = [[0, 0, 0], Infinity];
+  for (const [axis, half] of [[right, across], [up, tall]]) {
+    const free = half * (1 - 2 * ORBIT_MARGIN);
+    const most = Math.max(...points.map((point) => dot(point, axis) - free * dot(point, ahead)));
+    const least = Math.max(...points.map((point) => -dot(point, axis) - free * dot(point, ahead)));
+    eye = add(eye, scaled(axis, (most - least) / 2));
+    depth = Math.min(depth, -(most + least) / (2 * free));
+  }
+  return { ...orbit, target: eye, distance: -depth };
+}
+
+/**
+ * The ray through a place of the picture.
+ * @param {object} camera
+ * @param {number} x 0..1 from the left
+ * @param {number} y 0..1 from the top
+ * @returns {{start: number[], way: number[]}} `way` has length 1
+ */
+export function rayAt({ eye, right, up, ahead, across, tall }, x, y) {
+  const aside = add(scaled(right, across * (2 * x - 1)), scaled(up, tall * (1 - 2 * y)));
+  return { start: eye, way: unit(add(ahead, aside)) };
+}
+
+/**
+ * Where a point is seen: the inverse of `rayAt`.
+ * @returns {{x: number, y: number, depth: number}} depth in mm along the camera's axis; x and y mean nothing where it
+ *   is not above 0
+ */
+export function seenAt({ eye, right, up, ahead, across, tall }, point) {
+  const way = sub(point, eye);
+  const depth = dot(way, ahead);
+  return { x: 0.5 + dot(way, right) / (2 * across * depth), y: 0.5 - dot(way, up) / (2 * tall * depth), depth };
+}
+
+/**
+ * The part of a line that lies before the eye.
+ * @param {object} camera
+ * @param {number[][]} ends
+ * @param {number} near least depth
+ * @returns {number[][] | null}
+ */
+export function beforeEye({ eye, ahead }, [start, end], near) {
+  const depths = [start, end].map((point) => dot(sub(point, eye), ahead));
+  if (Math.max(...depths) <= near) return null;
+  const crossing = () => add(start, scaled(sub(end, start), (near - depths[0]) / (depths[1] - depths[0])));
+  return [depths[0] > near ? start : crossing(), depths[1] > near ? end : crossing()];
+}
+
+/**
+ * The pixel of a screen's lit side that a ray meets.
+ * @param {object} room
+ * @param {number[]} cubeSize unused
+ * @param {{start: number[], way: number[]}} ray
+ * @returns {{screen: number, row: number, column: number} | null} null too where another screen's back is nearer
+ */
+export function pointed(room, cubeSize, { start, way }) {
+  let [found, nearest] = [null, Infinity];
+  room.screens.forEach(({ corner, right, down, pixels, facing }, screen) => {
+    const distance = dot(sub(corner, start), facing) / dot(way, facing);
+    if (!(distance > 0 && distance < nearest)) return;
+    const place = sub(add(start, scaled(way, distance)), corner);
+    const [row, column] = [down, right].map((step) => Math.floor(dot(place, step) / dot(step, step)));
+    if (row < 0 || column < 0 || row >= pixels[0] || column >= pixels[1]) return;
+    nearest = distance;
+    found = dot(way, facing) < 0 ? { screen, row, column } : null;
+  });
+  return found;
+}
+
+/** Whether a ray meets the cube. */
+export function meetsCube(room, scene, { start, way }) {
+  const [from, along] = [applyInverse(room.turn, start), applyInverse(room.turn, way)];
+  let [enter, leave] = [0, Infinity];
+  halfSides(scene).forEach((half, axis) => {
+    const ends = [(-half - from[axis]) / along[axis], (half - from[axis]) / along[axis]];
+    if (along[axis] === 0) {
+      if (Math.abs(from[axis]) > half) leave = -Infinity;
+      return;
+    }
+    enter = Math.max(enter, Math.min(...ends));
+    leave = Math.min(leave, Math.max(...ends));
+  });
+  return enter < leave;
+}

@@ -1,0 +1,189 @@
+// The card that shows the nearest stop's picture as it was wanted and as it is shown, and the lamps that make it.
+
+import { clampTo, degreesText, element, figuresText, scoreText } from "./elements.js";
+import { wantedImage } from "./filmstrip.js";
+import { placeIn } from "./gestures.js";
+import { dot } from "./vectors.js";
+
+const COLOURS = ["red", "green", "blue"];
+
+/**
+ * The card; where there are several screens, with a tab for each.
+ *
+ * @param {Object} scene
+ * @param {Object} does `screen(place)`: another screen is chosen; `point(row, column)`: a pixel of the shown picture is
+ *   pointed at, `column` null where only the row counts
+ * @returns {{element: HTMLElement, update: function(Object, RoomView): void}} `update` takes what is known at a
+ *   moment, and the room
+ */
+export function createCompare(scene, does) {
+  const title = element("h2");
+  const facts = element("p", { class: "facts" });
+  const tabs = element("div", { class: "tabs", role: "group", "aria-label": "Screens" });
+  const wanted = element("div", { class: "picture" });
+  const shown = createShown(does);
+  const lamps = createLamps(scene);
+  let drawn = "";
+  const card = element("section", { class: "card compare", "aria-label": "Wanted and shown" },
+    element("header", {}, title, facts), tabs,
+    element("div", { class: "pair" },
+      element("figure", {}, wanted, element("figcaption", { text: "wanted" })),
+      element("figure", {}, shown.element, element("figcaption", { text: "shown" }))),
+    lamps.element);
+
+  return {
+    element: card,
+    update(now, view) {
+      const exposure = now.exposures[now.spot.place];
+      const picture = scene.pictures[exposure.picture];
+      title.textContent = picture.name + (picture.mirrored ? " (mirrored)" : "");
+      facts.textContent = exposure.lit ? placeText(now.away, picture) : "no light on this screen here";
+      const key = `${exposure.picture} ${exposure.lit}`;
+      if (key !== drawn) wanted.replaceChildren(wantedImage(scene, picture));
+      drawn = key;
+      updateTabs(tabs, scene, now, does);
+      shown.update(now, view, now.whole ? windowInWhole(scene, exposure) : null);
+      lamps.update(exposure);
+    },
+  };
+}
+
+/** "33.8° · 0.4° from it · 54.1 dB". */
+function placeText(away, picture) {
+  const off = Math.abs(away) < 0.005 ? "here" : `${degreesText(Math.abs(away))} away`;
+  return [`stop ${degreesText(picture.angle)}`, off, scoreText(picture.psnr)].filter(Boolean).join(" · ");
+}
+
+/** The shown picture, on which pointing, dragging or the arrow keys choose a row. */
+function createShown(does) {
+  const canvas = element("canvas", { class: "image" });
+  const line = element("span", { class: "line" });
+  const dotted = element("span", { class: "dot" });
+  const frame = element("span", { class: "frame" });
+  const area = element("div", {
+    class: "picture choose", tabindex: 0, role: "slider", "aria-orientation": "vertical",
+    "aria-label": "Row of the shown picture", "aria-valuemin": 1,
+  }, canvas, line, dotted, frame);
+  let [row, column, rows, columns] = [0, null, 1, 1];
+
+  const pointAt = (event) => {
+    const [x, y] = placeIn(canvas, event);
+    does.point(within(Math.floor(y * rows), rows), within(Math.floor(x * columns), columns));
+  };
+  area.addEventListener("pointerdown", pointAt);
+  area.addEventListener("pointermove", pointAt);
+  area.addEventListener("pointerleave", () => does.point(row, null));
+  area.addEventListener("keydown", (event) => {
+    const way = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] }[event.key];
+    if (way === undefined) return;
+    event.preventDefault();
+    const across = way[1] === 0 ? column : within((column ?? Math.floor(columns / 2)) + way[1], columns);
+    does.point(within(row + way[0], rows), across);
+  });
+
+  return {
+    element: area,
+    update(now, view, inner) {
+      ({ row, column } = now.spot);
+      [rows, columns] = now.exposures[now.spot.place].window;
+      view.copyShadow(now.spot.place, canvas);
+      placeBox(line, [row, 0, 1, columns], rows, columns);
+      dotted.hidden = column === null;
+      if (column !== null) placeBox(dotted, [row, column, 1, 1], rows, columns);
+      frame.hidden = inner === null;
+      if (inner !== null) placeBox(frame, inner, rows, columns);
+      area.setAttribute("aria-valuemax", rows);
+      area.setAttribute("aria-valuenow", row + 1);
+      const across = column === null ? "" : `, column ${column + 1}`;
+      area.setAttribute("aria-valuetext", `row ${row + 1} of ${rows}${across}`);
+    },
+  };
+}
+
+/** Lay an element over pixels [row, column, rows, columns] of a picture. */
+function placeBox(box, [row, column, tall, wide], rows, columns) {
+  const percent = (part, all) => `${(100 * part) / all}%`;
+  Object.assign(box.style, {
+    top: percent(row, rows), height: percent(tall, rows), left: percent(column, columns), width: percent(wide, columns),
+  });
+}
+
+function within(number, count) {
+  return clampTo(number, 0, count - 1);
+}
+
+/** The picture's window [row, column, rows, columns] in the raster of the whole shadow. */
+function windowInWhole(scene, { picture, raster }) {
+  const { origin, right, down } = scene.views.find((view) => view.picture === picture);
+  const [rows, columns] = scene.pictures[picture].window;
+  const below = dot(origin, down) / dot(down, down);
+  const across = dot(origin, right) / dot(right, right);
+  return [(raster[0] - rows) / 2 + below, (raster[1] - columns) / 2 + across, rows, columns];
+}
+
+function updateTabs(tabs, scene, now, does) {
+  tabs.hidden = now.exposures.length < 2;
+  if (tabs.hidden) return;
+  if (tabs.children.length === 0) {
+    tabs.append(...now.exposures.map(({ screen }, place) =>
+      element("button", { type: "button", text: scene.screens[screen], click: () => does.screen(place) })));
+  }
+  now.exposures.forEach((exposure, place) => {
+    tabs.children[place].setAttribute("aria-pressed", String(place === now.spot.place));
+    tabs.children[place].disabled = !exposure.lit;
+  });
+}
+
+/** Power of every lamp that shines on the screen, by colour, as bars and numbers. */
+function createLamps(scene) {
+  const most = Math.max(...scene.pairs.flatMap((pair) => pair.power));
+  const body = element("tbody");
+  const rows = new Map();
+  const heading = scene.lamps.length > 1 ? "Lamps" : "Lamp power";
+  const table = element("table", { class: "lamps" },
+    element("caption", { text: heading, title: "Light in parts of the white that the screen shows at 1" }), body);
+
+  return {
+    element: table,
+    update(exposure) {
+      const powers = lampPowers(exposure);
+      for (const [lamp, power] of powers) {
+        if (!rows.has(lamp)) rows.set(lamp, lampEntry(scene, lamp));
+        rows.get(lamp).update(power, most);
+      }
+      const order = [...powers.keys()].map((lamp) => rows.get(lamp).element);
+      const same = order.length === body.children.length && order.every((row, i) => body.children[i] === row);
+      if (!same) body.replaceChildren(...order);
+    },
+  };
+}
+
+/** Light of each lamp that is lit, summed over its samples: lamp → [red, green, blue]. */
+export function lampPowers(exposure) {
+  const powers = new Map();
+  for (const { lamp, power } of exposure.views) {
+    const before = powers.get(lamp) ?? [0, 0, 0];
+    if (power.some((part) => part > 0)) powers.set(lamp, before.map((part, i) => part + power[i]));
+  }
+  return powers;
+}
+
+function lampEntry(scene, lamp) {
+  const cells = (scene.voxels.channels === 1 ? ["white"] : COLOURS).map((colour) => {
+    const bar = element("i", { class: "bar" });
+    const number = element("span");
+    const cell = element("td", { class: colour }, number, element("span", { class: "track" }, bar));
+    return { colour, bar, number, cell };
+  });
+  const name = scene.lamps.length > 1 ? element("th", { scope: "row", text: scene.lamps[lamp] }) : null;
+  return {
+    element: element("tr", {}, name, ...cells.map(({ cell }) => cell)),
+    update(power, most) {
+      cells.forEach(({ colour, bar, number, cell }, i) => {
+        bar.style.width = `${100 * Math.min(1, power[i] / most)}%`;
+        number.textContent = figuresText(power[i]);
+        cell.title = `${colour}: ${figuresText(power[i])} times white`;
+      });
+    },
+  };
+}

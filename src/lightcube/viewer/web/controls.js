@@ -1,0 +1,106 @@
+// The controls below the room: the slider over the turn with a tick at every stop, playing, and what can be chosen.
+
+import { degreesText, element, icon, iconButton } from "./elements.js";
+import { PLAY_SPEED } from "./turning.js";
+
+/** Speeds of playing. */
+const SPEEDS = [0.25, 0.5, 1, 2, 4];
+/** Steps of the slider, in degrees. */
+const SLIDER_STEP = 0.01;
+
+/**
+ * The row of controls.
+ *
+ * @param {Object} scene
+ * @param {number[]} stops
+ * @param {Object} does `play()`, `neighbour(way)`, `snap()`, `whole()`, `speed(factor)`, `slide(angle)`, `slid()`
+ * @returns {{element: HTMLElement, update: function(Object): void}} `update` takes what the app knows at a moment
+ */
+export function createControls(scene, stops, does) {
+  const play = iconButton("play", "Play", "Space", does.play);
+  const snap = switchButton("magnet", "Snap", "Come to rest on pictures, and on each while playing", does.snap);
+  const whole = switchButton("whole", "Whole shadow", "Show the whole shadow (W)", does.whole);
+  whole.hidden = scene.whole === null;
+  const readout = element("output", { class: "readout", "aria-live": "off" });
+  const slider = createSlider(stops, does);
+  const row = element("div", { class: "controls", role: "group", "aria-label": "Turning" },
+    element("div", { class: "transport" },
+      iconButton("previous", "Previous picture", "Page Up", () => does.neighbour(-1)), play,
+      iconButton("next", "Next picture", "Page Down", () => does.neighbour(1))),
+    readout, slider.element,
+    element("div", { class: "choices" }, speedChoice(does.speed), snap, whole));
+
+  return {
+    element: row,
+    update(now) {
+      setPressed(snap, now.snap);
+      setPressed(whole, now.whole);
+      if (play.dataset.playing !== String(now.playing)) {
+        play.dataset.playing = now.playing;
+        play.replaceChildren(icon(now.playing ? "pause" : "play"));
+        play.setAttribute("aria-label", now.playing ? "Pause" : "Play");
+        play.title = now.playing ? "Pause (Space)" : "Play (Space)";
+      }
+      readout.textContent = degreesText(now.angle);
+      slider.update(now);
+    },
+  };
+}
+
+/** The slider over 360° with its ticks. */
+function createSlider(stops, does) {
+  const input = element("input", {
+    type: "range", min: 0, max: 360, step: SLIDER_STEP, "aria-label": "Angle of the turntable",
+    input: () => does.slide(Number(input.value)),
+    change: () => does.slid(),
+  });
+  return {
+    element: element("div", { class: "slider" }, ticksOf(stops), input),
+    update(now) {
+      if (Number(input.value) !== now.angle) input.value = now.angle;
+      input.style.setProperty("--part", now.angle / 360);
+      input.setAttribute("aria-valuetext", spokenPlace(now));
+    },
+  };
+}
+
+/** "23.4°, 0.8° from 'coffee'". */
+function spokenPlace(now) {
+  const off = degreesText(Math.abs(now.away));
+  return `${degreesText(now.angle)}, ${off === "0.0°" ? "at" : `${off} from`} '${now.name}'`;
+}
+
+function ticksOf(stops) {
+  const space = "http://www.w3.org/2000/svg";
+  const drawing = document.createElementNS(space, "svg");
+  drawing.setAttribute("viewBox", "0 0 360 1");
+  drawing.setAttribute("preserveAspectRatio", "none");
+  drawing.setAttribute("aria-hidden", "true");
+  const lines = document.createElementNS(space, "path");
+  lines.setAttribute("d", stops.map((stop) => `M${stop} 0V1`).join(""));
+  lines.setAttribute("vector-effect", "non-scaling-stroke");
+  drawing.append(lines);
+  return drawing;
+}
+
+function speedChoice(chosen) {
+  const options = SPEEDS.map((speed) =>
+    element("option", { value: speed, selected: speed === 1, text: `${speed}×` }));
+  const say = () => (select.title = `Speed of playing: ${PLAY_SPEED * Number(select.value)}° per second`);
+  const choose = () => {
+    chosen(Number(select.value));
+    say();
+  };
+  const select = element("select", { "aria-label": "Speed of playing", change: choose }, ...options);
+  say();
+  return select;
+}
+
+function switchButton(name, text, title, pressed) {
+  return element("button", { type: "button", class: "switch", "aria-pressed": "false", title, click: pressed },
+    icon(name), element("span", { text }));
+}
+
+function setPressed(button, on) {
+  button.setAttribute("aria-pressed", String(on));
+}

@@ -1,0 +1,94 @@
+// From the bytes that a page carries to its scene and its voxels, or one sentence that says what is damaged.
+
+const DATA_FORMAT = 1;
+const DATA_CODES = 1024;
+const DATA_AGAIN = "write or send the page again";
+
+/**
+ * Unpack gzipped bytes; their checksum tells where any is damaged.
+ * @param {Uint8Array} bytes
+ * @param {string} [name] what they are, for the sentence
+ * @returns {Promise<Uint8Array>}
+ */
+export async function gunzip(bytes, name = "data") {
+  if (typeof DecompressionStream === "undefined") {
+    throw new Error("this browser cannot unpack gzip: open the page in a newer one");
+  }
+  try {
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  } catch {
+    throw new Error(`the page's ${name} came damaged or cut off (its gzip does not unpack): ${DATA_AGAIN}`);
+  }
+}
+
+/**
+ * Bytes of a base64 text.
+ * @param {string} text
+ * @returns {Uint8Array}
+ */
+export function fromBase64(text) {
+  try {
+    if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+    return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  } catch {
+    throw new Error(`the page's data is not base64, some of its letters are damaged: ${DATA_AGAIN}`);
+  }
+}
+
+/**
+ * The scene: what stands where, under which light, and what is wanted.
+ * @param {Uint8Array} bytes gzipped JSON
+ * @returns {Promise<object>}
+ */
+export async function readScene(bytes) {
+  const unpacked = await gunzip(bytes, "scene");
+  let scene;
+  try {
+    scene = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(unpacked));
+  } catch {
+    throw new Error(`the page's scene is not readable JSON: ${DATA_AGAIN}`);
+  }
+  const format = scene?.format;
+  if (format === DATA_FORMAT) return scene;
+  if (format > DATA_FORMAT) {
+    throw new Error(`the page's data has format ${format}, newer than ${DATA_FORMAT}: update the viewer that opens it`);
+  }
+  throw new Error(`the page's data has format ${format}, not ${DATA_FORMAT}: write the page again with this version`);
+}
+
+/**
+ * The voxels, as a texture takes them.
+ *
+ * The bytes are first the high 8 bits of every code, [channel][z][y][x], then their low 2 bits, four to a byte.
+ * @param {Uint8Array} bytes gzipped
+ * @param {object} scene
+ * @returns {Promise<{shape: number[], mm: number, codes: Uint32Array, tables: Float32Array[]}>} codes of three channels
+ *   packed as RGB10_A2, index (z * ny + y) * nx + x, and each channel's extinction (1/mm) by code
+ */
+export async function readVoxels(bytes, scene) {
+  const { shape, mm, channels, least, rates } = scene.voxels;
+  const unpacked = await gunzip(bytes, "voxels");
+  const count = shape[0] * shape[1] * shape[2];
+  const size = count * channels + Math.ceil((count * channels) / 4);
+  if (unpacked.length !== size) {
+    const sizes = `${unpacked.length} bytes, not the ${size} of ${shape.join(" x ")} voxels in ${channels} channels`;
+    throw new Error(`the page's voxels have ${sizes}: ${DATA_AGAIN}`);
+  }
+  const codes = new Uint32Array(count);
+  for (let channel = 0; channel < 3; channel++) {
+    const first = (channels === 1 ? 0 : channel) * count;
+    for (let voxel = 0; voxel < count; voxel++) {
+      const place = first + voxel;
+      const low = (unpacked[count * channels + (place >> 2)] >> (2 * (place & 3))) & 3;
+      codes[voxel] |= ((unpacked[place] << 2) | low) << (10 * channel);
+    }
+  }
+  const tables = [0, 1, 2].map((channel) => dataTable(least, rates[channels === 1 ? 0 : channel]));
+  return { shape, mm, codes, tables };
+}
+
+/** Extinction (1/mm) by code: nearly even steps up to about `least`, beyond it they grow with the extinction. */
+function dataTable(least, rate) {
+  return Float32Array.from({ length: DATA_CODES }, (_, code) => least * Math.expm1(rate * code));
+}

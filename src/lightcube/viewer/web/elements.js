@@ -1,0 +1,106 @@
+// Makes the page's elements and icons in few words, and formats its numbers.
+
+/** Pixels of a canvas to a pixel of the page, at most. */
+const DENSEST = 2;
+/** Lines of the icons, in a square of 24. */
+const ICONS = {
+  play: "M8 5l11 7-11 7z",
+  pause: "M8 5v14M16 5v14",
+  previous: "M18 6l-8 6 8 6M7 6v12",
+  next: "M6 6l8 6-8 6M17 6v12",
+  magnet: "M6 4v8a6 6 0 0 0 12 0V4M6 9h4M14 9h4M10 4v8a2 2 0 0 0 4 0V4M6 4h4M14 4h4",
+  whole: "M4 8V4h4M16 4h4v4M20 16v4h-4M8 20H4v-4M9 9h6v6H9z",
+  screen: "M9 4H4v5M15 4h5v5M20 15v5h-5M9 20H4v-5",
+  theme: "M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16",
+  help: "M9 9a3 3 0 1 1 4.2 2.8c-.8.4-1.2 1-1.2 2.2M12 17.5v.5",
+  hand:
+    "M9 12V5.5a1.5 1.5 0 0 1 3 0V11m0-1a1.5 1.5 0 0 1 3 0v1m0-.5a1.5 1.5 0 0 1 3 0V15a6 6 0 0 1-6 6h-1" +
+    "a6 6 0 0 1-4.6-2.2L4 15.5a1.6 1.6 0 0 1 2.4-2L9 15.5V12",
+  close: "M6 6l12 12M18 6L6 18",
+};
+
+/**
+ * A new element.
+ *
+ * @param {string} tag
+ * @param {Object} given attributes; functions listen to the event of that name, `text` is its text, `true` is bare,
+ *   and `false` and `null` are left out
+ * @param {...Node} children those that are null are left out
+ * @returns {HTMLElement}
+ */
+export function element(tag, given = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(given)) {
+    if (typeof value === "function") made.addEventListener(name, value);
+    else if (name === "text") made.textContent = value;
+    else if (value === true) made.setAttribute(name, "");
+    else if (value !== false && value !== null) made.setAttribute(name, value);
+  }
+  made.append(...children.filter((child) => child !== null));
+  return made;
+}
+
+/**
+ * An icon of 24 × 24, drawn in the colour of its text, hidden from screen readers.
+ *
+ * @param {string} name one of `ICONS`
+ * @returns {SVGElement}
+ */
+export function icon(name) {
+  const space = "http://www.w3.org/2000/svg";
+  const drawing = document.createElementNS(space, "svg");
+  drawing.setAttribute("viewBox", "0 0 24 24");
+  drawing.setAttribute("aria-hidden", "true");
+  const line = document.createElementNS(space, "path");
+  line.setAttribute("d", ICONS[name]);
+  drawing.append(line);
+  return drawing;
+}
+
+/**
+ * A button with an icon, its name and its key said on pointing at it.
+ *
+ * @param {string} name of the icon
+ * @param {string} label for people
+ * @param {string} key that does the same
+ * @param {function(): void} pressed
+ * @param {Object} given further attributes
+ * @returns {HTMLButtonElement}
+ */
+export function iconButton(name, label, key, pressed, given = {}) {
+  const said = { type: "button", class: "icon", "aria-label": label, title: `${label} (${key})`, click: pressed };
+  return element("button", { ...said, ...given }, icon(name));
+}
+
+/** Give a canvas as many pixels as it covers on the screen. */
+export function fitCanvas(canvas) {
+  const density = Math.min(window.devicePixelRatio, DENSEST);
+  const sides = [canvas.clientWidth, canvas.clientHeight];
+  const [width, height] = sides.map((side) => Math.max(1, Math.round(side * density)));
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+}
+
+/** A number with one decimal, 0 never negative: -0.04 is "0.0". */
+export function oneDecimal(value) {
+  return (Math.round(value * 10) / 10 + 0).toFixed(1);
+}
+
+/** An angle for people: 23.46 is "23.5°", and 359.97 is "0.0°". */
+export function degreesText(angle) {
+  return `${oneDecimal((Math.round(angle * 10) / 10) % 360)}°`;
+}
+
+/** A positive number with three figures at most: 0.00013 is "0.0001", 3.456 is "3.46". */
+export function figuresText(value) {
+  return String(value >= 0.01 ? Number(value.toPrecision(3)) : Number(value.toPrecision(1)));
+}
+
+/** A score for people: 41.27 is "41.3 dB"; empty where there is none. */
+export function scoreText(psnr) {
+  return psnr === null ? "" : `${oneDecimal(psnr)} dB`;
+}
+
+/** The nearest number in low..high. */
+export function clampTo(value, low, high) {
+  return Math.min(high, Math.max(low, value));
+}

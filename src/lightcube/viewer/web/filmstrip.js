@@ -1,0 +1,81 @@
+// The strip of all wanted pictures: a click turns the cube to one, and the nearest one is marked.
+
+import { degreesText, element, scoreText } from "./elements.js";
+
+/**
+ * The film strip, in the order of the turn.
+ *
+ * One of its pictures can be reached by Tab, the others from there by the arrow keys.
+ *
+ * @param {Object} scene
+ * @param {function(number): void} chosen called with the number of a picture
+ * @returns {{element: HTMLElement, update: function(Object): void}}
+ */
+export function createFilmstrip(scene, chosen) {
+  const { pictures } = scene;
+  const order = pictures.map((_, i) => i);
+  order.sort((a, b) => pictures[a].angle - pictures[b].angle || pictures[a].screen - pictures[b].screen);
+  const buttons = new Map(order.map((number) => [number, thumbnail(scene, number, () => chosen(number))]));
+  const strip = element("div", { class: "filmstrip", role: "group", "aria-label": "Wanted pictures" });
+  strip.append(...buttons.values());
+  let marked = [];
+
+  strip.addEventListener("keydown", (event) => {
+    const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    const at = order.findIndex((number) => buttons.get(number) === event.target);
+    if (way === undefined || at < 0) return;
+    event.preventDefault();
+    const next = order[(at + way + order.length) % order.length];
+    buttons.get(next).focus({ preventScroll: true });
+    chosen(next);
+  });
+
+  return {
+    element: strip,
+    update(now) {
+      if (now.pictures.join() === marked.join()) return;
+      for (const number of marked) mark(buttons.get(number), false);
+      marked = now.pictures;
+      for (const number of marked) mark(buttons.get(number), true);
+      for (const [number, button] of buttons) button.tabIndex = number === marked[0] ? 0 : -1;
+      scrollInto(strip, buttons.get(marked[0]));
+    },
+  };
+}
+
+function thumbnail(scene, number, pressed) {
+  const picture = scene.pictures[number];
+  const score = scoreText(picture.psnr);
+  const mirrored = picture.mirrored ? ", mirrored" : "";
+  const label = [picture.name + mirrored, degreesText(picture.angle), score].filter(Boolean).join(", ");
+  const given = { type: "button", class: "thumbnail", "aria-label": label, title: label, tabindex: -1, click: pressed };
+  return element("button", given,
+    wantedImage(scene, picture),
+    element("span", { class: "name", text: picture.name }),
+    element("span", { class: "score", text: score || degreesText(picture.angle) }));
+}
+
+/**
+ * A wanted picture as an image that is loaded when it is seen; an empty frame where none was kept.
+ *
+ * @param {Object} scene
+ * @param {Object} picture of the scene
+ * @returns {HTMLElement}
+ */
+export function wantedImage(scene, picture) {
+  if (picture.wanted === null) return element("span", { class: "image empty", "aria-hidden": "true" });
+  const classes = picture.mirrored ? "image mirrored" : "image";
+  const src = scene.wanted[picture.wanted];
+  return element("img", { class: classes, src, alt: "", loading: "lazy", decoding: "async", draggable: "false" });
+}
+
+function mark(button, on) {
+  if (on) button.setAttribute("aria-current", "true");
+  else button.removeAttribute("aria-current");
+}
+
+/** Scroll the strip alone, not what it stands in. */
+function scrollInto(strip, button) {
+  const middle = button.offsetLeft + button.offsetWidth / 2 - strip.clientWidth / 2;
+  strip.scrollTo({ left: middle, behavior: "auto" });
+}

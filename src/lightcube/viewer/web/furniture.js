@@ -1,0 +1,244 @@
+// What stands in the room besides pictures, and its colours: the same for both renderers. Lengths are mm, in the room.
+import { standing } from "./stage.js";
+import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
+
+/** Linear light of the room and of what stands in it. */
+export const ROOM_TONES = {
+  dark: {
+    floor: [0.15, 0.153, 0.162],
+    far: [0.02, 0.0215, 0.0255],
+    grid: [0.26, 0.265, 0.28],
+    table: [0.7, 0.705, 0.715],
+    rim: [0.86, 0.87, 0.89],
+    frame: [0.3, 0.3, 0.31],
+    back: [0.06, 0.06, 0.064],
+    off: [0.12, 0.12, 0.13],
+    edge: [0.78, 0.88, 1.0],
+    hint: [0.9, 0.92, 1.0],
+    mark: [0.55, 0.9, 1.0],
+    shade: 0.6,
+  },
+  light: {
+    floor: [0.83, 0.83, 0.82],
+    far: [0.6, 0.61, 0.63],
+    grid: [0.6, 0.605, 0.61],
+    table: [0.97, 0.97, 0.96],
+    rim: [0.3, 0.31, 0.33],
+    frame: [0.09, 0.09, 0.095],
+    back: [0.33, 0.335, 0.345],
+    off: [0.24, 0.245, 0.26],
+    edge: [0.05, 0.065, 0.09],
+    hint: [0.12, 0.13, 0.17],
+    mark: [0.0, 0.25, 0.75],
+    shade: 0.34,
+  },
+};
+
+/** Angles that stand for all that the table comes to, degrees. */
+const ROOM_AROUND = Array.from({ length: 12 }, (_, i) => 30 * i);
+/** A lamp so many times as far from the cube as anything else need not be seen. */
+const ROOM_FAR = 3;
+/** A lamp's radius, in widths of the cube. */
+const LAMP_RADIUS = 0.036;
+/** With more lamps than this, lines to the corners of all pictures would hide the room. */
+const MOST_HINTED = 6;
+
+/** Half the cube's sides along x, y, z. */
+export function halfSides({ voxels }) {
+  return [...voxels.shape].reverse().map((count) => (count * voxels.mm) / 2);
+}
+
+/** The cube's longest side. */
+export function longestSide({ voxels }) {
+  return Math.max(...voxels.shape) * voxels.mm;
+}
+
+/** Radius that lamps are drawn with. */
+export function lampRadius(scene) {
+  return LAMP_RADIUS * longestSide(scene);
+}
+
+/** Sides of a picture's frame. */
+export function frameWidth(scene) {
+  return 0.014 * longestSide(scene);
+}
+
+/** The colour of light, its brightest part 1; null of no light. */
+export function pureColour(light) {
+  const most = Math.max(...light);
+  return most > 0 ? scaled(light, 1 / most) : null;
+}
+
+/** A room's screens with their numbers, the one that is farthest from the eye first. */
+export function fromFar(room, eye) {
+  const away = (screen) => norm(sub(scaled(screenCorners(screen).reduce(add), 1 / 4), eye));
+  return room.screens
+    .map((screen, number) => ({ ...screen, number }))
+    .sort((one, other) => away(other) - away(one));
+}
+
+/** The cube's eight corners; those whose numbers differ in one bit share an edge. */
+export function cubeCorners(scene, room) {
+  const half = halfSides(scene);
+  return Array.from({ length: 8 }, (_, i) =>
+    apply(room.turn, half.map((side, axis) => ((i >> axis) & 1 ? side : -side))),
+  );
+}
+
+/** A screen's corners, in order around it from the upper left. */
+export function screenCorners({ corner, right, down, pixels }) {
+  const [across, below] = [scaled(right, pixels[1]), scaled(down, pixels[0])];
+  return [corner, add(corner, across), add(add(corner, across), below), add(corner, below)];
+}
+
+/** The table's disc: its middle, and two radii of it that turn with the cube. */
+export function tableOf(scene, room) {
+  const { axis, turn } = room;
+  const corners = cubeCorners(scene, room);
+  const along = corners.map((corner) => dot(corner, axis));
+  const radius = 1.12 * Math.max(...corners.map((corner, i) => norm(sub(corner, scaled(axis, along[i])))));
+  const aside = Math.abs(axis[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0];
+  const start = apply(turn, unit(sub(aside, scaled(axis, dot(aside, axis)))));
+  return {
+    middle: scaled(axis, Math.min(...along) - 0.03 * radius),
+    right: scaled(start, radius),
+    down: scaled(cross(start, axis), radius),
+  };
+}
+
+/** Points between which everything lies, but lamps that stand far from all else. */
+export function extentOf(scene, room) {
+  const { middle, right, down } = tableOf(scene, room);
+  const disc = Array.from({ length: 24 }, (_, i) => (i * Math.PI) / 12).map((turn) =>
+    add(middle, add(scaled(right, Math.cos(turn)), scaled(down, Math.sin(turn)))),
+  );
+  const points = [...cubeCorners(scene, room), ...disc, ...room.screens.flatMap(screenCorners)];
+  const far = ROOM_FAR * Math.max(...points.map(norm));
+  const around = 0.1 * longestSide(scene);
+  for (const { place } of room.lamps) {
+    if (norm(place) >= far) continue;
+    for (let axis = 0; axis < 3; axis++) {
+      const aside = [0, 1, 2].map((i) => (i === axis ? around : 0));
+      points.push(add(place, aside), sub(place, aside));
+    }
+  }
+  return points;
+}
+
+/** Rooms that stand for all that the table comes to. */
+export function roomsAround(scene, whole = false) {
+  return ROOM_AROUND.map((angle) => standing(scene, angle, whole));
+}
+
+/**
+ * Height of the floor below everything, at all angles.
+ * @param {object} scene
+ * @returns {(room: object) => number} for the pictures' windows, and lower where a room has the whole shadow
+ */
+export function floorOf(scene) {
+  const [narrow, whole] = [false, true].map((all) => {
+    const heights = roomsAround(scene, all).flatMap((room) => extentOf(scene, room).map((point) => point[2]));
+    return Math.min(...heights) - 0.02 * longestSide(scene);
+  });
+  return (room) => (scene.whole && room.screens[0].pixels.join() === scene.whole.join() ? whole : narrow);
+}
+
+/**
+ * Thin lines, the most important first: the marked row, the cube's edges, the beams' outlines.
+ * @param {object} scene
+ * @param {object[]} exposures that the room's screens show
+ * @param {object} room
+ * @param {number[]} eye
+ * @param {{screen: number, row: number, column: number | null} | null} mark
+ * @param {object} tones
+ * @returns {{ends: number[][], colour: number[], parts: number[], width: number, over: boolean}[]} `parts` is how
+ *   strong a line is at either end, `width` in pixels of the page; `over` lines are seen through the cube as if it
+ *   were clear
+ */
+export function linesOf(scene, exposures, room, eye, mark, tones) {
+  return [
+    ...(mark && room.screens[mark.screen] ? markLines(room.screens[mark.screen], mark, tones) : []),
+    ...edgeLines(scene, room, eye, tones),
+    ...hintLines(scene, exposures, room, tones),
+  ];
+}
+
+function edgeLines(scene, room, eye, tones) {
+  const [corners, half, inside] = [cubeCorners(scene, room), halfSides(scene), applyInverse(room.turn, eye)];
+  const lines = [];
+  for (let a = 0; a < 8; a++) {
+    for (const bit of [1, 2, 4].filter((each) => !(a & each))) {
+      const faces = [0, 1, 2].filter((axis) => 1 << axis !== bit); // those that meet there
+      const before = faces.some((axis) => ((a >> axis) & 1 ? 1 : -1) * inside[axis] > half[axis]);
+      const part = before ? 0.75 : 0.16;
+      const ends = [corners[a], corners[a | bit]];
+      lines.push({ ends, colour: tones.edge, parts: [part, part], width: before ? 1.3 : 1, over: true });
+    }
+  }
+  return lines;
+}
+
+/** The lamps that light a screen, by their numbers in the room, the brightest first. */
+export function lampsLighting(scene, exposure) {
+  const numbers = [...new Set(scene.views.map((view) => view.lamp))].sort((a, b) => a - b);
+  const light = numbers.map((lamp) =>
+    exposure.views.filter((view) => view.lamp === lamp).reduce((sum, view) => sum + Math.max(...view.power), 0),
+  );
+  return numbers.map((_, i) => i).filter((i) => light[i] > 0).sort((a, b) => light[b] - light[a]);
+}
+
+function hintLines(scene, exposures, room, tones) {
+  const lines = [];
+  const addLine = (...ends) => (parts) => lines.push({ ends, colour: tones.hint, parts, width: 1, over: false });
+  room.lamps.forEach((lamp) => {
+    if (lamp.parallel && Math.max(...lamp.light) > 0) addLine(lamp.place, [0, 0, 0])([0.4, 0.1]);
+  });
+  exposures.forEach((exposure, i) => {
+    const lamps = lampsLighting(scene, exposure).map((number) => room.lamps[number]);
+    if (!room.screens[i] || lamps.length > MOST_HINTED) return;
+    const part = 0.26 / Math.sqrt(Math.max(lamps.length, 1));
+    for (const lamp of lamps) {
+      for (const corner of screenCorners(room.screens[i])) {
+        addLine(beamStart(lamp, corner), corner)(lamp.parallel ? [0, part] : [part, part]);
+      }
+    }
+  });
+  return lines;
+}
+
+/** Where the light that falls on a point comes from: the lamp, or as far back as parallel light is drawn. */
+function beamStart({ place, parallel }, point) {
+  if (!parallel) return place;
+  const way = scaled(unit(place), -1);
+  return sub(point, scaled(way, dot(sub(point, place), way)));
+}
+
+/** Both ends of the middle of a row of a screen. */
+function rowEnds({ corner, right, down, pixels }, row) {
+  const start = add(corner, scaled(down, row + 0.5));
+  return [start, add(start, scaled(right, pixels[1]))];
+}
+
+function markLines(screen, { row, column }, tones) {
+  const lines = [rowEnds(screen, row)];
+  if (column !== null) {
+    const middle = add(lines[0][0], scaled(screen.right, column + 0.5));
+    lines.push([sub(middle, scaled(screen.down, 2)), add(middle, scaled(screen.down, 2))]);
+  }
+  return lines.map((ends) => ({ ends, colour: tones.mark, parts: [0.95, 0.95], width: 1.6, over: false }));
+}
+
+/**
+ * The beams of the marked row under the brightest lamp that lights it.
+ * @returns {{kind: number, corner: number[], sides: number[][]} | null} kind 1: a parallelogram that fades along its
+ *   second side; 2: a triangle with the lamp in its corner
+ */
+export function markedSheet(scene, exposures, room, mark) {
+  const screen = mark && room.screens[mark.screen];
+  const [lamp] = screen && exposures[mark.screen] ? lampsLighting(scene, exposures[mark.screen]) : [];
+  if (lamp === undefined) return null;
+  const [start, end] = rowEnds(screen, mark.row);
+  const from = beamStart(room.lamps[lamp], start);
+  if (room.lamps[lamp].parallel) return { kind: 1, corner: start, sides: [sub(end, start), sub(from, start)] };
+  return { kind: 2, corner: from, sides: [sub(start, from), sub(end, from)] };
+}

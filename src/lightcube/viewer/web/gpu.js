@@ -1,0 +1,364 @@
+// The renderer on WebGL2: exact shadows into textures, and the room with the cube as coloured glass.
+import { beforeEye, seenAt } from "./camera.js";
+import { ROOM_TONES, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
+import { linesOf, longestSide, markedSheet, pureColour, tableOf } from "./furniture.js";
+import { SHADER_CAST, SHADER_EVERYWHERE, SHADER_ROOM } from "./shaders.js";
+import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
+
+/** What is infinite, in single precision. */
+const GPU_NEVER = 1e30;
+/** As in the tie rule: parts of directions, and distances from a face in voxel sides, below which they are zero. */
+const GPU_PARALLEL = 1e-12;
+const GPU_ON_FACE = 1e-9;
+/** Texture units. */
+const [VOXEL_UNIT, VIEW_UNIT, SHADOW_UNIT] = [0, 1, 2];
+/** Screens, lamps and lines that are drawn at most: as many as the room's program has room for. */
+const MOST_THINGS = 256;
+
+/**
+ * A renderer that computes shadows and draws the room on a canvas.
+ *
+ * `cast(exposures)` computes the shadows of all screens; `shadow(number)` reads one back as {rows, columns, pixels},
+ * RGBA from the upper left; `drawShadow(number, canvas)` copies it into another canvas of that size;
+ * `draw(room, camera, {dark, mark, scale})` draws the room at a part of the canvas's resolution. The drawing context
+ * may be lost and come back: then everything is made again, and `onRestored` called.
+ * @param {HTMLCanvasElement} canvas
+ * @param {object} scene
+ * @param {object} cube
+ * @returns {{kind: string, onRestored: function | null, cast: function, shadow: function, drawShadow: function,
+ *   draw: function, dispose: function}}
+ */
+export function createRenderer(canvas, scene, cube) {
+  const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false });
+  if (!gl) throw new Error("This browser does not offer WebGL 2.");
+  const longest = gl.getParameter(gl.MAX_3D_TEXTURE_SIZE);
+  if (Math.max(...cube.shape) > longest) {
+    const most = Math.max(...cube.shape);
+    throw new Error(`The cube has ${most} voxels along a side, more than the ${longest} that this browser draws.`);
+  }
+  const floor = floorOf(scene);
+  let [kit, shown] = [gpuKit(gl, scene, cube), []];
+  const renderer = {
+    kind: "webgl2",
+    onRestored: null,
+    cast(exposures) {
+      shown = exposures;
+      castAll(kit, scene, exposures);
+    },
+    shadow: (number) => readShadow(kit, shown[number], number),
+    drawShadow(number, target) {
+      const { rows, columns, pixels } = readShadow(kit, shown[number], number);
+      target.getContext("2d").putImageData(new ImageData(pixels, columns, rows), 0, 0);
+    },
+    draw: (room, camera, look) => drawRoom(kit, { scene, floor: floor(room), exposures: shown, room, camera, ...look }),
+    dispose() {
+      canvas.removeEventListener("webglcontextlost", lost);
+      canvas.removeEventListener("webglcontextrestored", restored);
+      gl.getExtension("WEBGL_lose_context")?.loseContext();
+    },
+  };
+  const lost = (event) => event.preventDefault(); // else it would not come back
+  const restored = () => {
+    kit = gpuKit(gl, scene, cube);
+    castAll(kit, scene, shown);
+    renderer.onRestored?.();
+  };
+  canvas.addEventListener("webglcontextlost", lost);
+  canvas.addEventListener("webglcontextrestored", restored);
+  return renderer;
+}
+
+/** All that lives on the graphics processor. */
+function gpuKit(gl, scene, cube) {
+  const kit = {
+    gl,
+    caster: gpuProgram(gl, SHADER_CAST),
+    painter: gpuProgram(gl, SHADER_ROOM),
+    voxels: gpuTexture(gl, gl.TEXTURE_3D, VOXEL_UNIT, gl.NEAREST),
+    shadows: null,
+    layers: "",
+    target: gl.createFramebuffer(),
+    views: gpuTexture(gl, gl.TEXTURE_2D, VIEW_UNIT, gl.NEAREST),
+    things: gl.createBuffer(),
+    small: { frame: gl.createFramebuffer(), texture: null, size: "" },
+  };
+  gl.activeTexture(gl.TEXTURE0 + VOXEL_UNIT);
+  const [nz, ny, nx] = cube.shape;
+  const kind = [gl.RGBA_INTEGER, gl.UNSIGNED_INT_2_10_10_10_REV];
+  gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGB10_A2UI, nx, ny, nz, 0, ...kind, cube.codes);
+  const { rates, least, mm } = scene.voxels;
+  for (const program of [kit.caster, kit.painter]) {
+    gl.useProgram(program.made);
+    gl.uniform1i(program.at("voxels"), VOXEL_UNIT);
+    gl.uniform3fv(program.at("rates"), [0, 1, 2].map((i) => rates[rates.length === 1 ? 0 : i] / Math.LN2));
+    gl.uniform1f(program.at("least"), least * mm);
+  }
+  gl.uniformBlockBinding(kit.painter.made, gl.getUniformBlockIndex(kit.painter.made, "Things"), 0);
+  gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, kit.things);
+  gl.bufferData(gl.UNIFORM_BUFFER, 64 * MOST_THINGS, gl.DYNAMIC_DRAW);
+  return kit;
+}
+
+function gpuProgram(gl, fragments) {
+  const made = gl.createProgram();
+  for (const [kind, text] of [[gl.VERTEX_SHADER, SHADER_EVERYWHERE], [gl.FRAGMENT_SHADER, fragments]]) {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    gl.attachShader(made, shader);
+  }
+  gl.linkProgram(made);
+  if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) {
+    const said = gl.getAttachedShaders(made).map((shader) => gl.getShaderInfoLog(shader)).join(" ");
+    throw new Error(`This machine's graphics refuse the page's programs: ${said}${gl.getProgramInfoLog(made)}`);
+  }
+  const places = {};
+  return { made, at: (name) => (places[name] ??= gl.getUniformLocation(made, name)) };
+}
+
+function gpuTexture(gl, kind, place, filter, smaller = filter) {
+  const texture = gl.createTexture();
+  gl.activeTexture(gl.TEXTURE0 + place);
+  gl.bindTexture(kind, texture);
+  gl.texParameteri(kind, gl.TEXTURE_MAG_FILTER, filter);
+  gl.texParameteri(kind, gl.TEXTURE_MIN_FILTER, smaller);
+  for (const axis of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(kind, axis, gl.CLAMP_TO_EDGE);
+  return texture;
+}
+
+/** Make room for the shadows: a layer of each screen. */
+function makeLayers(kit, rows, columns, count) {
+  const layers = `${rows} ${columns} ${count}`;
+  if (kit.layers === layers) return;
+  const { gl } = kit;
+  gl.deleteTexture(kit.shadows);
+  kit.shadows = gpuTexture(gl, gl.TEXTURE_2D_ARRAY, SHADOW_UNIT, gl.LINEAR, gl.LINEAR_MIPMAP_LINEAR);
+  const levels = 1 + Math.floor(Math.log2(Math.max(rows, columns)));
+  gl.texStorage3D(gl.TEXTURE_2D_ARRAY, levels, gl.RGBA8, columns, rows, count);
+  kit.layers = layers;
+}
+
+function castAll(kit, scene, exposures) {
+  const { gl, caster } = kit;
+  if (exposures.length === 0 || gl.isContextLost()) return;
+  const [rows, columns] = exposures[0].raster;
+  makeLayers(kit, rows, columns, exposures.length);
+  uploadViews(kit, scene, exposures.flatMap((exposure) => exposure.views), rows, columns);
+  gl.useProgram(caster.made);
+  gl.uniform1i(caster.at("views"), VIEW_UNIT);
+  gl.uniform1i(caster.at("linear"), scene.transfer === "linear" ? 1 : 0);
+  gl.uniform2i(caster.at("raster"), columns, rows);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, kit.target);
+  gl.viewport(0, 0, columns, rows);
+  let first = 0;
+  exposures.forEach(({ window, views: { length } }, layer) => {
+    gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, kit.shadows, 0, layer);
+    gl.uniform2i(caster.at("window"), window[1], window[0]);
+    gl.uniform2i(caster.at("range"), first, first + length);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    first += length;
+  });
+  gl.activeTexture(gl.TEXTURE0 + SHADOW_UNIT);
+  gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
+}
+
+/** A table of the views, five rows of texels for each. */
+function uploadViews({ gl, views: table }, scene, views, rows, columns) {
+  const width = Math.max(rows, columns, 6);
+  const numbers = new Float32Array(20 * width * views.length);
+  views.forEach((view, i) => {
+    const put = (row, texel, values) => numbers.set(values, 4 * ((5 * i + row) * width + texel));
+    putBeams(put, scene, inVoxels(view, scene.voxels.mm), rows, columns);
+  });
+  gl.activeTexture(gl.TEXTURE0 + VIEW_UNIT);
+  gl.bindTexture(gl.TEXTURE_2D, table);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, 5 * views.length, 0, gl.RGBA, gl.FLOAT, numbers);
+}
+
+/** A view with all lengths in voxel sides, and nothing infinite. */
+function inVoxels(view, mm) {
+  const [lamp, origin, right, down] = [view.light.slice(0, 3), view.origin, view.right, view.down].map((each) =>
+    scaled(each, 1 / mm),
+  );
+  const [reach, falloff, [fullAt]] = [view.reach, view.falloff, [view.full_at]].map((lengths) =>
+    lengths.map((length) => Math.min(length / mm, GPU_NEVER)),
+  );
+  return { ...view, lamp, origin, right, down, reach, falloff, fullAt, point: view.light[3] !== 0 };
+}
+
+/**
+ * One view's rows: where its rays start, as the sum of a column's and a row's part, each a whole number of voxel sides
+ * (rows 0 and 2) and a small rest (1 and 3); then its light and its screen.
+ *
+ * Rays start near the cube's middle, where parallel light is nearest to it, and where a point lamp's light passes a
+ * plane that is parallel to the screen: there too the starts lie on a raster.
+ */
+function putBeams(put, scene, view, rows, columns) {
+  const half = halfSides(scene).map((side) => side / scene.voxels.mm);
+  const { point, lamp, origin, right, down } = view;
+  const normal = unit(cross(right, down));
+  const way = unit(lamp).map((part) => nearZero(part, GPU_PARALLEL));
+  const nearness = point ? towardsMiddle(lamp, origin, normal) : 1;
+  const moved = (vector) => (point ? scaled(vector, nearness) : sub(vector, scaled(way, dot(vector, way))));
+  const start = add(half, point ? add(lamp, scaled(sub(origin, lamp), nearness)) : moved(origin));
+  const putPlace = (row, texel, place) => {
+    const whole = place.map(Math.round);
+    put(row, texel, whole);
+    put(row + 1, texel, sub(place, whole).map((rest) => nearZero(rest, GPU_ON_FACE)));
+  };
+  for (let i = 0; i < columns; i++) putPlace(0, i, add(start, scaled(moved(right), i - (columns - 1) / 2)));
+  for (let i = 0; i < rows; i++) putPlace(2, i, scaled(moved(down), i - (rows - 1) / 2));
+  const stood = add(lamp, half);
+  const whole = stood.map(Math.round);
+  put(4, 0, point ? [...whole, 1] : [...way, 0]);
+  put(4, 1, [...sub(stood, whole).map((rest) => nearZero(rest, GPU_ON_FACE)), 1 / nearness]);
+  put(4, 2, [...view.power, view.cosine ? 1 : 0]);
+  put(4, 3, [view.reach[0], view.falloff[0], view.reach[1], view.falloff[1]]);
+  put(4, 4, [...normal, view.fullAt]);
+  put(4, 5, [dot(way, origin), dot(way, right), dot(way, down), 0]);
+}
+
+/** The part of the way from a lamp to the screen at which a plane parallel to that passes the cube's middle. */
+function towardsMiddle(lamp, origin, normal) {
+  const part = -dot(lamp, normal) / dot(sub(origin, lamp), normal);
+  return part > 0.01 && part < 100 ? part : 1;
+}
+
+function nearZero(value, least) {
+  return Math.abs(value) < least ? 0 : value;
+}
+
+function readShadow({ gl, target, shadows }, { window: [rows, columns] }, layer) {
+  const pixels = new Uint8ClampedArray(4 * rows * columns);
+  if (!gl.isContextLost()) {
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, shadows, 0, layer);
+    gl.readPixels(0, 0, columns, rows, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  }
+  return { rows, columns, pixels };
+}
+
+function drawRoom(kit, seen) {
+  const { gl, painter, small } = kit;
+  const { canvas } = gl;
+  if (gl.isContextLost() || !kit.shadows || canvas.width * canvas.height === 0) return;
+  const part = Math.min(seen.scale ?? 1, 1);
+  const [width, height] = [canvas.width, canvas.height].map((side) => Math.max(1, Math.round(side * part)));
+  const dense = width / (canvas.clientWidth || canvas.width); // pixels to a pixel of the page
+  const { counts, numbers } = thingTable(seen, width, height, dense);
+  gl.bufferSubData(gl.UNIFORM_BUFFER, 0, numbers);
+  gl.useProgram(painter.made);
+  setSight(gl, painter, seen, width, height);
+  setThings(gl, painter, seen, counts);
+  if (part < 1) makeSmall(gl, small, width, height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, part < 1 ? small.frame : null);
+  gl.viewport(0, 0, width, height);
+  gl.drawArrays(gl.TRIANGLES, 0, 3);
+  if (part === 1) return;
+  gl.bindFramebuffer(gl.READ_FRAMEBUFFER, small.frame);
+  gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+  gl.blitFramebuffer(0, 0, width, height, 0, 0, canvas.width, canvas.height, gl.COLOR_BUFFER_BIT, gl.LINEAR);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+}
+
+/** Room for a smaller picture, to be enlarged. */
+function makeSmall(gl, small, width, height) {
+  const size = `${width} ${height}`;
+  if (small.size === size) return;
+  gl.deleteRenderbuffer(small.texture);
+  small.texture = gl.createRenderbuffer();
+  small.size = size;
+  gl.bindRenderbuffer(gl.RENDERBUFFER, small.texture);
+  gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA8, width, height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, small.frame);
+  gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, small.texture);
+}
+
+/** From where the room is seen, and where the cube is. */
+function setSight(gl, painter, { scene, room, camera, floor }, width, height) {
+  const { eye, right, up, ahead, across, tall } = camera;
+  const { mm } = scene.voxels;
+  const inside = add(scaled(applyInverse(room.turn, eye), 1 / mm), scaled(halfSides(scene), 1 / mm));
+  const whole = inside.map(Math.round);
+  gl.uniform2f(painter.at("canvas"), width, height);
+  gl.uniformMatrix3fv(painter.at("sight"), false, [...scaled(right, across), ...scaled(up, tall), ...ahead]);
+  // row by row in `turn` is column by column of its transpose
+  gl.uniformMatrix3fv(painter.at("inCube"), false, room.turn.map((each) => each / mm));
+  gl.uniform3iv(painter.at("eyeWhole"), whole);
+  gl.uniform3fv(painter.at("eyeRest"), sub(inside, whole));
+  gl.uniform3fv(painter.at("ground"), sub([0, 0, floor], eye));
+  gl.uniform1f(painter.at("unit"), longestSide(scene));
+}
+
+/** What stands in the room, in which colours. */
+function setThings(gl, painter, { scene, exposures, room, camera, dark, mark }, counts) {
+  const tones = ROOM_TONES[dark ? "dark" : "light"];
+  const { middle, right, down } = tableOf(scene, room);
+  gl.uniform1i(painter.at("shadows"), SHADOW_UNIT);
+  gl.uniform3iv(painter.at("counts"), counts);
+  gl.uniformMatrix3fv(painter.at("table"), false, [...sub(middle, camera.eye), ...right, ...down]);
+  gl.uniform3fv(painter.at("foot"), footOf(scene, room, right, down));
+  for (const name of ["floor", "far", "grid", "table", "rim", "frame", "back", "off", "mark"]) {
+    gl.uniform3fv(painter.at(`${name}Tone`), tones[name]);
+  }
+  gl.uniform1f(painter.at("shade"), tones.shade);
+  const sheet = markedSheet(scene, exposures, room, mark);
+  gl.uniform1i(painter.at("sheetKind"), sheet ? sheet.kind : 0);
+  if (sheet) gl.uniformMatrix3fv(painter.at("sheet"), false, [...sub(sheet.corner, camera.eye), ...sheet.sides.flat()]);
+}
+
+/** What the cube covers of the disc, in its radii; it shades it where it stands upright. */
+function footOf(scene, room, right, down) {
+  const half = halfSides(scene);
+  const sides = [0, 1, 2].map((axis) => apply(room.turn, [0, 1, 2].map((i) => (i === axis ? half[axis] : 0))));
+  const shares = (step) => sides.map((side) => Math.abs(dot(side, step)) / dot(step, step));
+  const reach = [right, down].map((step) => Math.max(...shares(step)));
+  const upright = sides.filter((side) => Math.abs(dot(side, room.axis)) < 1e-6 * norm(side)).length === 2;
+  return [...reach, upright ? 0.5 : 0];
+}
+
+/** Screens (from far to near), lamps and lines, four texels each, places seen from the eye. */
+function thingTable({ scene, exposures, room, camera, dark, mark }, width, height, dense) {
+  const seen = (point) => {
+    const { x, y, depth } = seenAt(camera, point);
+    return [x * width, (1 - y) * height, 1 / depth];
+  };
+  const near = 1e-3 * longestSide(scene);
+  const screens = screenRows(scene, room, camera.eye);
+  const lamps = room.lamps.map((lamp) => lampRow(scene, lamp, camera, seen, height));
+  const lines = linesOf(scene, exposures, room, camera.eye, mark, ROOM_TONES[dark ? "dark" : "light"])
+    .map((line) => ({ ...line, ends: beforeEye(camera, line.ends, near) }))
+    .filter((line) => line.ends !== null)
+    .map((line) => lineRow(line, seen, dense));
+  let left = MOST_THINGS;
+  const drawn = [screens, lamps, lines].map((things) => {
+    const kept = things.slice(0, left);
+    left -= kept.length;
+    return kept;
+  });
+  return { counts: drawn.map((things) => things.length), numbers: new Float32Array(drawn.flat(2)) };
+}
+
+function screenRows(scene, room, eye) {
+  const frame = frameWidth(scene);
+  return fromFar(room, eye).map(({ corner, right, down, pixels, facing, number }) => [
+    ...[...sub(corner, eye), pixels[0]],
+    ...[...right, pixels[1]],
+    ...[...down, number],
+    ...[...facing, frame],
+  ]);
+}
+
+function lampRow(scene, { place, light }, camera, seen, height) {
+  const at = seen(place);
+  const pure = pureColour(light);
+  const radius = Math.max((lampRadius(scene) * at[2] * height) / (2 * camera.tall), 2.5);
+  return [...at, radius, ...(pure ?? light), pure ? 1 : 0, ...Array(8).fill(0)];
+}
+
+function lineRow({ ends, colour, parts, width, over }, seen, dense) {
+  const [start, end] = ends.map(seen);
+  const thin = Math.min(width * dense, 1); // lines thinner than a pixel are fainter instead
+  const broad = Math.max(width * dense, 1);
+  return [...start, broad, ...end, over ? 1 : 0, ...colour, thin * parts[0], thin * parts[1], 0, 0, 0];
+}

@@ -1,0 +1,44 @@
+// The title, the quiet line that says what the page holds, and the buttons of the page itself.
+
+import { element, iconButton, oneDecimal } from "./elements.js";
+
+/**
+ * Title and buttons.
+ *
+ * @param {Object} scene
+ * @param {Object} does `theme()`, `fullScreen()`, `help()`
+ * @returns {HTMLElement}
+ */
+export function createHeader(scene, does) {
+  return element("header", { class: "top" },
+    element("h1", { text: scene.title }),
+    element("div", { class: "tools" },
+      iconButton("theme", "Light or dark", "T", does.theme),
+      document.fullscreenEnabled ? iconButton("screen", "Full screen", "F", does.fullScreen) : null,
+      iconButton("help", "Help", "?", does.help)));
+}
+
+/**
+ * What the page holds of the cube, in one line.
+ *
+ * @param {Object} scene
+ * @param {string|null} note a sentence more
+ * @returns {HTMLElement}
+ */
+export function createQuietLine(scene, note) {
+  return element("p", { class: "quiet", text: [keptText(scene), note].filter(Boolean).join(" ") });
+}
+
+function keptText({ voxels, kept }) {
+  const full = countText(kept.full);
+  const held = countText(voxels.shape);
+  const what = full === held
+    ? `A cube of ${full} voxels, kept in this page in 10 bits`
+    : `A cube of ${full} voxels, reduced to ${held} of 10 bits in this page`;
+  return `${what}: its shadows differ from the full cube's by at most ${oneDecimal(kept.worst_levels)} of 255 levels.`;
+}
+
+/** "64³", or "60 × 64 × 64" (x, y, z). */
+function countText([nz, ny, nx]) {
+  return nx === ny && ny === nz ? `${nx}³` : `${nx} × ${ny} × ${nz}`;
+}

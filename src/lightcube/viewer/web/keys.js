@@ -1,0 +1,49 @@
+// What the keys do.
+
+/** Elements that need the keys themselves. */
+const TYPED_IN = "select, textarea, input:not([type=range]), [contenteditable]";
+
+/**
+ * Call an action for a key that is pressed.
+ *
+ * @param {EventTarget} area the document, or an element of it
+ * @param {Object} does `turn(degrees)`, `neighbour(way)`, `play()`, `nearest()`, `first()`, `zoom(factor)`, `whole()`,
+ *   `fullScreen()`, `theme()`, `help()`, `close()`
+ * @returns {function(): void} stops listening
+ */
+export function listenToKeys(area, does) {
+  const actions = keyActions(does);
+  const pressed = (event) => {
+    if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey) return;
+    if (event.target.closest?.(TYPED_IN)) return;
+    if (event.key === " " && event.target.closest?.("button, a, summary")) return; // presses it
+    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (action === undefined || action(event) === false) return;
+    event.preventDefault();
+  };
+  area.addEventListener("keydown", pressed);
+  return () => area.removeEventListener("keydown", pressed);
+}
+
+function keyActions(does) {
+  const fine = (event) => (event.shiftKey ? 0.1 : 1);
+  return {
+    ArrowLeft: (event) => does.turn(-fine(event)),
+    ArrowRight: (event) => does.turn(fine(event)),
+    PageUp: () => does.neighbour(-1),
+    ",": () => does.neighbour(-1),
+    PageDown: () => does.neighbour(1),
+    ".": () => does.neighbour(1),
+    " ": () => does.play(),
+    n: () => does.nearest(),
+    Home: () => does.first(),
+    "+": () => does.zoom(1.15),
+    "=": () => does.zoom(1.15),
+    "-": () => does.zoom(1 / 1.15),
+    w: () => does.whole(),
+    f: () => does.fullScreen(),
+    t: () => does.theme(),
+    "?": () => does.help(),
+    Escape: () => does.close(),
+  };
+}

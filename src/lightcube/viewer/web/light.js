@@ -1,0 +1,58 @@
+// How display values follow from linear light, and how much light and shadow of a lamp reaches a pixel.
+import { cross, dot, norm, scaled, sub } from "./vectors.js";
+
+/** Shortest way from a lamp to a pixel that it stands on, mm. */
+const LIGHT_SHORTEST = 1e-12;
+
+/**
+ * Linear light (1 = white) to a display value: IEC 61966-2-1, or the same number; never clipped.
+ * @param {number} x
+ * @param {"srgb" | "linear"} transfer
+ */
+export function encode(x, transfer) {
+  if (transfer === "linear") return x;
+  return x <= 0.0031308 ? x * 12.92 : 1.055 * x ** (1 / 2.4) - 0.055;
+}
+
+/** Display value to linear light: the inverse of `encode`. */
+export function decode(x, transfer) {
+  if (transfer === "linear") return x;
+  return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
+}
+
+/**
+ * Strength of a shadow so far behind the cube: 1 up to `reach`, then exp(-(distance - reach) / falloff).
+ * @param {number} distance mm
+ * @param {number} reach mm
+ * @param {number} falloff mm; 0 = the shadow ends at its reach
+ */
+export function fading(distance, reach, falloff) {
+  const beyond = Math.max(distance - reach, 0);
+  if (falloff === 0) return beyond > 0 ? 0 : 1;
+  return Math.exp(-beyond / falloff);
+}
+
+/**
+ * Light g and strength of the shadow a at a pixel: of a lamp of power 1 it shows g (1 - a (1 - T)).
+ *
+ * With u the unit direction of the beam through the pixel at q, n the screen's normal and l the place of a point lamp:
+ * g = (full_at / |q - l|)^2 |u.n|, each factor only where it is asked for; a fades with u.q beyond each reach.
+ * @param {object} view of an exposure
+ * @param {number[]} pixel mm, in the cube's frame
+ * @returns {{light: number, shadow: number}}
+ */
+export function fallingLight(view, pixel) {
+  const point = view.light[3] !== 0;
+  const way = point ? sub(pixel, view.light) : view.light.slice(0, 3);
+  const length = Math.max(norm(way), LIGHT_SHORTEST);
+  const ahead = scaled(way, 1 / length);
+  let light = 1;
+  if (view.cosine) {
+    const normal = cross(view.right, view.down);
+    light *= Math.abs(dot(ahead, normal)) / norm(normal);
+  }
+  if (point && view.full_at < Infinity) light *= (view.full_at / length) ** 2;
+  const travelled = dot(ahead, pixel);
+  const shadow = fading(travelled, view.reach[0], view.falloff[0]) * fading(travelled, view.reach[1], view.falloff[1]);
+  return { light, shadow };
+}

@@ -1,0 +1,34 @@
+// Opens the page: reads the data behind this text, shows the cube, and says a sentence where that fails.
+
+import { mount } from "./app.js";
+import { fromBase64, readScene, readVoxels } from "./data.js";
+
+/** Say a sentence instead of the page. */
+function saySentence(root, sentence) {
+  const said = document.createElement("p");
+  said.className = "message";
+  said.setAttribute("role", "alert");
+  said.textContent = sentence;
+  root.replaceChildren(said);
+}
+
+/** Bytes of a part of the document, by its id. */
+function bytesOf(id) {
+  const part = document.getElementById(id);
+  const text = part === null ? "" : part.textContent.trim();
+  if (text === "") throw new Error(`This page is incomplete: it ends before its ${id}.`);
+  return fromBase64(text);
+}
+
+async function openPage(root) {
+  try {
+    const scene = await readScene(bytesOf("scene"));
+    mount(root, scene, await readVoxels(bytesOf("voxels"), scene));
+  } catch (error) {
+    saySentence(root, `${error.message} Save or write this page again.`);
+  }
+}
+
+// the data may come after this text
+document.getElementById("lightcube").dataset.opened = "";
+openPage(document.getElementById("lightcube"));

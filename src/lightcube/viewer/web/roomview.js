@@ -1,0 +1,121 @@
+// The room on its canvas: which renderer draws it, from where it is seen, and what one points at in it.
+
+import { cameraOf, fitted, orbitFrom, pointed, rayAt } from "./camera.js";
+import { clampTo, element, fitCanvas } from "./elements.js";
+import { createFlat } from "./flat.js";
+import { roomsAround } from "./furniture.js";
+import { createRenderer } from "./gpu.js";
+import { exposures, standing } from "./stage.js";
+
+/** Degrees that the eye moves by for a pixel. */
+const EYE_SPEED = 0.3;
+/** How high the eye may stand (degrees), and how far it may go, in parts of the distance at which all is seen. */
+const [LOWEST, HIGHEST] = [2, 88];
+const [NEAREST, FARTHEST] = [0.2, 3];
+
+/**
+ * The room, drawn by WebGL2 or, where there is none, plainly.
+ *
+ * @param {Object} scene
+ * @param {Object} cube
+ */
+export class RoomView {
+  constructor(scene, cube) {
+    this.scene = scene;
+    const { canvas, renderer, note } = rendererFor(scene, cube);
+    Object.assign(this, { canvas, renderer, note, size: cube.shape.map((count) => count * cube.mm) });
+    this.comeBack();
+    this.bases = {};
+  }
+
+  /** Cast the shadows of an angle, of the whole turntable's shadow or of its picture window. */
+  aim(angle, whole) {
+    if (this.angle === angle && this.whole === whole) return;
+    Object.assign(this, { angle, whole });
+    this.exposures = exposures(this.scene, angle, whole);
+    this.room = standing(this.scene, angle, whole);
+    this.renderer.cast(this.exposures);
+  }
+
+  /** Draw at a part of the full resolution; `mark` is the pixel that is pointed at, or null. */
+  draw(dark, mark, scale) {
+    fitCanvas(this.canvas);
+    this.renderer.draw(this.room, this.camera(), { dark, mark, scale });
+  }
+
+  /** Move the eye around the room by pixels of a drag. */
+  moveEye(across, down) {
+    this.away.azimuth -= EYE_SPEED * across;
+    const { height } = this.base();
+    this.away.height = clampTo(height + this.away.height + EYE_SPEED * down, LOWEST, HIGHEST) - height;
+  }
+
+  /** Go nearer (factor above 1) or farther. */
+  zoom(factor) {
+    this.away.far = clampTo(this.away.far / factor, NEAREST, FARTHEST);
+  }
+
+  /** Put the eye back where it began. */
+  comeBack() {
+    this.away = { azimuth: 0, height: 0, far: 1 };
+  }
+
+  /** What a place on the canvas (0..1 from its upper left) lies on: {screen, row, column}, or null. */
+  pointed(x, y) {
+    return pointed(this.room, this.size, rayAt(this.camera(), x, y));
+  }
+
+  /** Copy the shadow on a screen, by its place in the list, into a canvas. */
+  copyShadow(place, canvas) {
+    const [rows, columns] = this.exposures[place].window;
+    if (canvas.width !== columns || canvas.height !== rows) Object.assign(canvas, { width: columns, height: rows });
+    this.renderer.drawShadow(place, canvas);
+  }
+
+  /** The eye, where it has been moved to. */
+  camera() {
+    const base = this.base();
+    const orbit = {
+      ...base,
+      azimuth: base.azimuth + this.away.azimuth,
+      height: base.height + this.away.height,
+      distance: base.distance * this.away.far,
+    };
+    return cameraOf(orbit, this.aspect());
+  }
+
+  /** The eye that sees everything on a canvas of this shape. */
+  base() {
+    const key = `${this.whole} ${this.aspect().toFixed(3)}`;
+    if (!(key in this.bases)) {
+      const rooms = roomsAround(this.scene, this.whole);
+      this.bases = { [key]: fitted(orbitFrom(this.scene.camera), this.scene, rooms, this.aspect()) };
+    }
+    return this.bases[key];
+  }
+
+  aspect() {
+    return Math.max(1, this.canvas.clientWidth) / Math.max(1, this.canvas.clientHeight);
+  }
+
+  dispose() {
+    this.renderer.dispose();
+  }
+}
+
+/** A canvas with its renderer, and a sentence for people where it is not WebGL2 that draws. */
+function rendererFor(scene, cube) {
+  const canvas = newCanvas();
+  try {
+    return { canvas, renderer: createRenderer(canvas, scene, cube), note: null };
+  } catch (error) {
+    // a canvas that has been asked for WebGL2 may not give another context
+    const plain = newCanvas();
+    const note = `${error.message} The room is drawn more plainly.`;
+    return { canvas: plain, renderer: createFlat(plain, scene, cube), note };
+  }
+}
+
+function newCanvas() {
+  return element("canvas", { class: "room", tabindex: 0, role: "img" });
+}

@@ -1,0 +1,95 @@
+// The card that shows one scan-line from above: a slice of the cube, the beams through it, and the pixels they make.
+
+import { element } from "./elements.js";
+import { beamFacts, sheetOf } from "./sheet.js";
+import { SliceDrawing } from "./slice.js";
+
+/**
+ * The card.
+ *
+ * @param {Object} scene
+ * @param {Object} cube
+ * @param {function(number, number|null): void} point called with the row and the column that are pointed at
+ * @returns {{element: HTMLElement, update: function(Object): void}}
+ */
+export function createScanline(scene, cube, point) {
+  const canvas = element("canvas", { class: "slice", role: "img" });
+  const facts = element("p", { class: "facts", "aria-live": "polite" });
+  const subtitle = element("p", { class: "facts" });
+  const lamps = element("select", { "aria-label": "Lamp whose beams are drawn", change: () => showAgain() });
+  const drawing = new SliceDrawing(canvas, cube);
+  let now = null;
+
+  canvas.addEventListener("pointermove", (event) => pointAt(event));
+  canvas.addEventListener("pointerdown", (event) => pointAt(event));
+  canvas.addEventListener("pointerleave", () => point(now.spot.row, null));
+
+  function pointAt(event) {
+    const box = canvas.getBoundingClientRect();
+    const column = drawing.columnAt(event.clientX - box.left, event.clientY - box.top);
+    if (column !== null) point(now.spot.row, column);
+  }
+
+  function showAgain() {
+    const exposure = now.exposures[now.spot.place];
+    const { row, column } = now.spot;
+    const view = offerLamps(lamps, scene, exposure);
+    subtitle.textContent = `row ${row + 1} of ${exposure.window[0]}`;
+    if (view === null) {
+      drawing.clear();
+      facts.textContent = "No lamp shines on this screen here.";
+      return;
+    }
+    const sheet = sheetOf(cube, exposure, view, row);
+    drawing.show(sheet, exposure.views[view], { column, dark: now.dark });
+    canvas.setAttribute("aria-label", `${sheet.beams.length} beams through the cube, seen ${seenFrom(sheet.axis)}`);
+    facts.textContent = column === null
+      ? "Point at a beam, or at a pixel of the shown picture."
+      : beamText(beamFacts(cube, exposure, view, row, column), column, scene.voxels.channels);
+  }
+
+  return {
+    element: element("section", { class: "card scanline", "aria-label": "Scan-line" },
+      element("header", {}, element("h2", { text: "Scan-line from above" }), subtitle, lamps),
+      canvas, facts),
+    update(next) {
+      now = next;
+      showAgain();
+    },
+  };
+}
+
+function seenFrom(axis) {
+  return axis === 2 ? "from above" : "from the side";
+}
+
+/** "Pixel 12 passes 87 voxels; 42 / 13 / 5 % of the light is left." */
+function beamText({ voxels, left }, column, channels) {
+  if (voxels.length === 0) return `Pixel ${column + 1}: the beam misses the cube; all of the light is left.`;
+  const parts = left.slice(0, channels).map((part) => (100 * part).toFixed(part < 0.0995 ? 1 : 0));
+  const few = voxels.length === 1 ? "voxel" : "voxels";
+  return `Pixel ${column + 1} passes ${voxels.length} ${few}; ${parts.join(" / ")} % of the light is left.`;
+}
+
+/**
+ * Offer the lamps that shine on a screen, where there are several; the view of the chosen one, null where none shines.
+ *
+ * Of a lamp that has many samples it is the middle one's.
+ */
+function offerLamps(select, scene, exposure) {
+  const views = new Map();
+  exposure.views.forEach(({ lamp, power }, number) => {
+    if (power.some((part) => part > 0)) views.set(lamp, [...(views.get(lamp) ?? []), number]);
+  });
+  const offered = [...views.keys()];
+  if (offered.join() !== (select.dataset.offered ?? "")) {
+    const chosen = select.value;
+    select.replaceChildren(...offered.map((lamp) => element("option", { value: lamp, text: scene.lamps[lamp] })));
+    if (chosen !== "" && offered.includes(Number(chosen))) select.value = chosen;
+    select.dataset.offered = offered.join();
+  }
+  select.hidden = offered.length < 2;
+  if (offered.length === 0) return null;
+  const its = views.get(Number(select.value));
+  return its[Math.floor(its.length / 2)];
+}

@@ -1,0 +1,355 @@
+// The renderer's programs in GLSL ES 3.00: light through the cube, what the screens show, and the room.
+
+const SHADER_HEAD = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp sampler2DArray;
+precision highp usampler3D;
+`;
+
+/** One triangle that covers everything. */
+export const SHADER_EVERYWHERE = `#version 300 es
+void main() {
+  gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}`;
+
+/** Display values and linear light: IEC 61966-2-1. */
+const SHADER_TRANSFER = `
+vec3 toDisplay(vec3 light) {
+  vec3 powered = 1.055 * pow(max(light, 0.0031308), vec3(1.0 / 2.4)) - 0.055;
+  return mix(powered, light * 12.92, lessThanEqual(light, vec3(0.0031308)));
+}
+
+vec3 toLinear(vec3 shown) {
+  vec3 powered = pow((max(shown, 0.04045) + 0.055) / 1.055, vec3(2.4));
+  return mix(powered, shown / 12.92, lessThanEqual(shown, vec3(0.04045)));
+}
+`;
+
+/**
+ * `absorbed`: the exact absorbance of a ray's stretch through the voxels, by colour.
+ *
+ * The ray is base + off + t way, in voxel sides from the cube's lowest corner, and way has length 1. Its start has a
+ * whole part and a small rest, and each crossing follows from the number of its plane, so that single precision is
+ * enough for rays that run almost along a face.
+ */
+const SHADER_GLASS = `
+uniform usampler3D voxels;
+uniform vec3 rates;    // extinction of a code c: least (2 ^ (rates c) - 1), per voxel side
+uniform float least;
+
+const float STILL = 1e-8;    // a part of a direction below this is zero
+const float ON_FACE = 1e-6;  // nearer to a face than this, a ray runs along it
+const float NEVER = 1e30;
+const float BLACK = 24.0;    // of so much absorbance no display shows what is behind
+
+float least3(vec3 v) { return min(v.x, min(v.y, v.z)); }
+float most3(vec3 v) { return max(v.x, max(v.y, v.z)); }
+
+vec3 walked(ivec3 base, vec3 off, vec3 way, float from, float to) {
+  ivec3 shape = textureSize(voxels, 0);
+  bvec3 still = lessThan(abs(way), vec3(STILL));
+  vec3 per = 1.0 / mix(way, vec3(1.0), still);
+  vec3 low = vec3(-base) - off;
+  vec3 high = vec3(shape - base) - off;
+  if (any(bvec3(still.x && low.x * high.x >= 0.0, still.y && low.y * high.y >= 0.0, still.z && low.z * high.z >= 0.0)))
+    return vec3(0.0);
+  float t = max(from, most3(mix(min(low * per, high * per), vec3(-NEVER), still)));
+  float end = min(to, least3(mix(max(low * per, high * per), vec3(NEVER), still)));
+  vec3 sum = vec3(0.0);
+  if (!(t < end)) return sum;
+  ivec3 cell = clamp(base + ivec3(floor(off + t * mix(way, vec3(0.0), still))), ivec3(0), shape - 1);
+  ivec3 stride = ivec3(sign(way));
+  ivec3 rise = max(stride, 0) - base;
+  for (int left = shape.x + shape.y + shape.z; left >= 0; left--) {
+    vec3 next = mix((vec3(cell + rise) - off) * per, vec3(NEVER), still);
+    float until = min(least3(next), end);
+    vec3 code = vec3(texelFetch(voxels, cell, 0).rgb);
+    sum += max(until - t, 0.0) * (exp2(rates * code) - 1.0);
+    if (until >= end || least * least3(sum) > BLACK) break;
+    t = max(t, until);
+    cell += stride * ivec3(lessThanEqual(next, vec3(until)));
+  }
+  return least * sum;
+}
+
+vec3 absorbed(ivec3 base, vec3 off, vec3 way, float from, float to) {
+  vec3 whole = round(off);
+  base += ivec3(whole);
+  off -= whole;
+  vec3 along = vec3(lessThan(abs(way), vec3(STILL))) * vec3(lessThan(abs(off), vec3(ON_FACE)));
+  int sides = along == vec3(0.0) ? 1 : 8; // along a face: the mean of the rays beside it
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < sides; i++) {
+    vec3 aside = vec3(i & 1, (i >> 1) & 1, i >> 2) - 0.5;
+    sum += walked(base, off + along * aside, way, from, to);
+  }
+  return sum / float(sides);
+}
+`;
+
+/** What one screen shows: row 0 of the target is the picture's top. The table's layout is gpu.js's `putBeams`. */
+export const SHADER_CAST = `${SHADER_HEAD}${SHADER_TRANSFER}${SHADER_GLASS}
+uniform sampler2D views;
+uniform ivec2 range;   // the first of the screen's views, and after the last
+uniform ivec2 window;  // columns and rows that lie on the screen
+uniform ivec2 raster;
+uniform bool linear;   // display values are linear light
+out vec4 shown;
+
+float fading(float distance, float reach, float falloff) {
+  float beyond = max(distance - reach, 0.0);
+  return falloff == 0.0 ? float(beyond <= 0.0) : exp(-beyond / falloff);
+}
+
+vec3 lightOf(int view, ivec2 pixel) {
+  int row = 5 * view;
+  vec4 light = texelFetch(views, ivec2(0, row + 4), 0);
+  vec4 power = texelFetch(views, ivec2(2, row + 4), 0);
+  if (power.rgb == vec3(0.0)) return vec3(0.0);
+  vec4 rest = texelFetch(views, ivec2(1, row + 4), 0);
+  vec4 fades = texelFetch(views, ivec2(3, row + 4), 0);
+  vec4 normal = texelFetch(views, ivec2(4, row + 4), 0);
+  vec3 whole = texelFetch(views, ivec2(pixel.x, row), 0).xyz + texelFetch(views, ivec2(pixel.y, row + 2), 0).xyz;
+  vec3 off = texelFetch(views, ivec2(pixel.x, row + 1), 0).xyz + texelFetch(views, ivec2(pixel.y, row + 3), 0).xyz;
+  vec3 way = light.xyz;
+  float from = -NEVER, to = NEVER, travelled;
+  float strength = 1.0;
+  if (light.w == 0.0) {
+    vec3 along = texelFetch(views, ivec2(5, row + 4), 0).xyz;
+    vec2 place = vec2(pixel) - 0.5 * vec2(raster - 1);
+    travelled = along.x + place.x * along.y + place.y * along.z;
+  } else {
+    way = (whole - light.xyz) + (off - rest.xyz);
+    float gone = max(length(way), 1e-12);
+    way /= gone;
+    from = -gone;
+    to = gone * rest.w - gone;
+    travelled = dot(way, whole + off - 0.5 * vec3(textureSize(voxels, 0))) + to;
+    if (normal.w < NEVER) strength = pow(normal.w / (gone * rest.w), 2.0);
+  }
+  if (power.w != 0.0) strength *= abs(dot(way, normal.xyz));
+  float shadow = fading(travelled, fades.x, fades.y) * fading(travelled, fades.z, fades.w);
+  vec3 passed = exp(-absorbed(ivec3(whole), off, way, from, to));
+  return power.rgb * strength * (1.0 - shadow * (1.0 - passed));
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec3 sum = vec3(0.0);
+  if (all(lessThan(pixel, window)))
+    for (int view = range.x; view < range.y; view++) sum += lightOf(view, pixel);
+  sum = clamp(sum, 0.0, 1.0);
+  shown = vec4(linear ? sum : toDisplay(sum), 1.0);
+}`;
+
+/**
+ * The room. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
+ * light behind the cube's glass, or on a veil before it. The things' layout is gpu.js's `thingTable`.
+ */
+export const SHADER_ROOM = `${SHADER_HEAD}${SHADER_TRANSFER}${SHADER_GLASS}
+uniform vec2 canvas;      // pixels
+uniform mat3 sight;       // to the right edge, to the upper edge, ahead
+uniform mat3 inCube;      // mm in the room to voxel sides in the cube
+uniform ivec3 eyeWhole;   // the eye in the cube
+uniform vec3 eyeRest;
+uniform vec3 ground;      // a point of the floor below the cube's middle
+uniform float unit;       // the cube's longest side
+uniform mat3 table;       // the disc's middle, and two radii that turn with the cube
+uniform vec3 foot;        // half the sides of what stands on the disc, in its radii, and how strong its shadow is
+layout(std140) uniform Things { vec4 things[1024]; };  // four numbers of four for each thing
+uniform ivec3 counts;     // screens, lamps, lines
+uniform sampler2DArray shadows;
+uniform vec3 floorTone, farTone, gridTone, tableTone, rimTone, frameTone, backTone, offTone, markTone;
+uniform float shade;      // how dark shadows on the floor are
+uniform mat3 sheet;       // a corner of the marked row's beams, and two sides
+uniform int sheetKind;    // 0 none, 1 of parallel light, 2 of a lamp in that corner
+out vec4 shown;
+
+vec3 way, stepX, stepY;   // of this pixel, and on to its neighbours
+vec3 light;               // behind the glass
+vec4 veil;                // before it: light, and the part that it lets through
+float solid, enter, leave;
+
+struct Place { float depth; vec2 at; vec2 grain; };
+
+/* Where the ray meets a plane, in steps along two of its sides, and how far these go from pixel to pixel. */
+Place placeOn(vec3 origin, vec3 right, vec3 down) {
+  vec3 normal = cross(right, down);
+  float facing = dot(way, normal);
+  float depth = dot(origin, normal) / facing;
+  vec3 x = depth * (stepX - way * (dot(stepX, normal) / facing));
+  vec3 y = depth * (stepY - way * (dot(stepY, normal) / facing));
+  mat2x3 sides = mat2x3(cross(down, normal), cross(normal, right)) * (1.0 / dot(normal, normal));
+  sides[0] *= sign(dot(sides[0], right));
+  sides[1] *= sign(dot(sides[1], down));
+  vec2 grain = sqrt(pow(x * sides, vec2(2.0)) + pow(y * sides, vec2(2.0)));
+  return Place(depth, (depth * way - origin) * sides, grain);
+}
+
+float within(float distance, float grain) { return clamp(0.5 + distance / max(grain, 1e-9), 0.0, 1.0); }
+
+void lay(vec3 colour, float part, float depth) {
+  if (depth <= 0.0 || depth > solid) return;
+  if (depth > enter) light = mix(light, colour, part);
+  else veil = vec4(mix(veil.rgb, colour, part), veil.a * (1.0 - part));
+}
+
+/* Thin lines at whole numbers, fading where they are too fine to be seen. */
+float lineAt(float place, float half_, float grain) {
+  return within(half_ - abs(place - round(place)), grain) * clamp(1.5 - 4.0 * grain, 0.0, 1.0);
+}
+
+float blob(float distance, float height, float size) {
+  float soft = size + 0.55 * height;
+  return exp(-distance * distance / (soft * soft)) * size / soft;
+}
+
+vec3 backdrop() {
+  float rise = clamp(way.z / length(way), 0.0, 1.0);
+  return farTone * (1.0 + 0.35 * smoothstep(0.0, 0.7, rise));
+}
+
+void drawFloor() {
+  light = backdrop();
+  solid = NEVER;
+  Place place = placeOn(ground, vec3(unit, 0.0, 0.0), vec3(0.0, unit, 0.0));
+  if (way.z >= 0.0) return;
+  solid = place.depth;
+  float away = length(place.at);
+  vec2 grain = place.grain;
+  float lines = max(lineAt(place.at.x, 0.004, grain.x), lineAt(place.at.y, 0.004, grain.y));
+  vec3 tone = mix(floorTone, gridTone, 0.55 * lines);
+  tone = mix(farTone, tone, exp(-away * away / 14.0));
+  vec3 hover = (table[0] - ground) / unit;
+  float radius = length(table[1]) / unit;
+  float dark = blob(max(length(place.at - hover.xy) - 0.8 * radius, 0.0), hover.z, 0.24);
+  for (int i = 0; i < counts.x; i++) {
+    vec4 corner = things[4 * i], right = things[4 * i + 1];
+    vec3 across = right.xyz * right.w / unit, below = things[4 * i + 2].xyz * corner.w / unit;
+    vec3 start = (corner.xyz - ground) / unit + 0.5 * below;
+    float part = clamp(dot(place.at - start.xy, across.xy) / max(dot(across.xy, across.xy), 1e-9), 0.0, 1.0);
+    float aside = max(length(place.at - start.xy - part * across.xy) - 0.4 * length(below.xy), 0.0);
+    float height = max(start.z - 0.5 * abs(below.z) - 0.5 * abs(across.z), 0.0);
+    dark = max(dark, 0.7 * blob(aside, height, 0.16));
+  }
+  light = tone * (1.0 - shade * dark);
+}
+
+void drawScreen(int i) {
+  vec4 corner = things[4 * i], right = things[4 * i + 1];
+  vec4 down = things[4 * i + 2], facing = things[4 * i + 3];
+  Place place = placeOn(corner.xyz, right.xyz, down.xyz);
+  if (place.depth <= 0.0 || place.depth > solid) return;
+  vec2 pixels = vec2(right.w, corner.w);
+  vec2 edge = 0.5 * pixels - abs(place.at - 0.5 * pixels);
+  vec2 rim = edge + facing.w / vec2(length(right.xyz), length(down.xyz));
+  float inside = within(edge.x, place.grain.x) * within(edge.y, place.grain.y);
+  float framed = within(rim.x, place.grain.x) * within(rim.y, place.grain.y);
+  vec3 tone = backTone;
+  if (dot(corner.xyz, facing.xyz) < 0.0) {
+    vec2 spot = clamp(place.at, vec2(0.5), pixels - 0.5) / vec2(textureSize(shadows, 0).xy);
+    float coarse = log2(max(max(place.grain.x, place.grain.y), 1.0));
+    tone = toLinear(textureLod(shadows, vec3(spot, down.w), coarse).rgb);
+  }
+  light = mix(light, mix(frameTone, tone, inside), framed);
+  if (framed > 0.5) solid = place.depth;
+}
+
+void drawTable(float frost) {
+  Place place = placeOn(table[0], table[1], table[2]);
+  float radius = length(place.at), grain = max(place.grain.x, place.grain.y);
+  float inside = within(1.0 - radius, grain);
+  if (inside <= 0.0) return;
+  vec2 beside = max(abs(place.at) - foot.xy, 0.0);
+  float under = foot.z * exp(-dot(beside, beside) / 0.012);
+  lay(tableTone * (1.0 - 0.25 * radius * radius) * (1.0 - shade * under), frost * inside, place.depth);
+  float rim = within(radius - 0.985, grain) * inside;
+  float turn = atan(place.at.y, place.at.x) / radians(5.0);
+  float fine = grain / (radians(5.0) * max(radius, 0.1));
+  bool long_ = mod(round(turn), 6.0) == 0.0;
+  float marks = lineAt(turn, long_ ? 0.055 : 0.035, fine) * within(radius - (long_ ? 0.925 : 0.95), grain) * inside;
+  float zero = within(0.014 - length(place.at - vec2(0.885, 0.0)), grain);
+  lay(rimTone, max(max(0.75 * rim, 0.6 * marks), 0.9 * zero), place.depth);
+}
+
+void drawLamp(int row) {
+  vec4 place = things[4 * row], colour = things[4 * row + 1];
+  float away = length(gl_FragCoord.xy - place.xy), radius = place.w;
+  if (away > 6.0 * radius + 2.0) return;
+  float depth = 1.0 / place.z;
+  if (colour.w > 0.0) {
+    float far = max(away / radius - 1.0, 0.0);
+    lay(colour.rgb, 0.6 * exp(-0.9 * far) * smoothstep(5.0, 2.0, far), depth);
+  }
+  float core = exp(-1.2 * away * away / (radius * radius));
+  vec3 tone = colour.w > 0.0 ? mix(colour.rgb, vec3(1.0), 0.25 + 0.65 * core) : offTone;
+  lay(offTone, 0.45 * within(radius + 0.09 * radius - away, 1.0), depth);
+  lay(tone, within(radius - away, 1.0), depth);
+}
+
+void drawLine(int row) {
+  vec4 start = things[4 * row], end = things[4 * row + 1];
+  vec2 along = end.xy - start.xy, from = gl_FragCoord.xy - start.xy;
+  float part = clamp(dot(from, along) / max(dot(along, along), 1e-9), 0.0, 1.0);
+  float cover = clamp(0.5 + 0.5 * start.w - length(from - part * along), 0.0, 1.0);
+  if (cover <= 0.0) return;
+  vec4 colour = things[4 * row + 2];
+  float strength = cover * mix(colour.w, things[4 * row + 3].x, part);
+  float depth = 0.998 / mix(start.z, end.z, part);
+  if (end.w == 0.0) lay(colour.rgb, strength, depth);
+  else if (depth < solid) veil = vec4(mix(veil.rgb, colour.rgb, strength), veil.a * (1.0 - strength));
+}
+
+/* How much of the marked row's sheet of beams the ray meets, and where. */
+vec2 metSheet() {
+  if (sheetKind == 0) return vec2(0.0, -1.0);
+  Place place = placeOn(sheet[0], sheet[1], sheet[2]);
+  vec2 at = place.at, grain = place.grain;
+  float inside = within(at.x, grain.x) * within(at.y, grain.y);
+  if (sheetKind == 1) inside *= within(1.0 - at.x, grain.x) * within(1.0 - at.y, grain.y) * (1.0 - 0.8 * at.y);
+  else inside *= within(1.0 - at.x - at.y, grain.x + grain.y);
+  return vec2(0.16 * inside, place.depth < solid ? place.depth : -1.0);
+}
+
+/* The light that comes through the glass, past the part of the sheet that lies in it. */
+void drawGlass(vec2 beams) {
+  vec3 inside = inCube * way;
+  float scale = length(inside);
+  float last = min(leave, solid);
+  bool cut = beams.x > 0.0 && beams.y > enter && beams.y < last;
+  for (int piece = cut ? 0 : 1; piece < 2; piece++) {
+    float from = piece == 0 ? beams.y : enter, to = piece == 1 && cut ? beams.y : last;
+    light *= exp(-absorbed(eyeWhole, eyeRest, inside / scale, from * scale, to * scale));
+    if (piece == 0) light = mix(light, markTone, beams.x);
+  }
+  if (!cut) lay(markTone, beams.x, beams.y);
+}
+
+void main() {
+  way = sight * vec3(2.0 * gl_FragCoord.xy / canvas - 1.0, 1.0);
+  stepX = sight[0] * (2.0 / canvas.x);
+  stepY = sight[1] * (2.0 / canvas.y);
+  veil = vec4(0.0, 0.0, 0.0, 1.0);
+  vec3 inside = inCube * way, start = vec3(eyeWhole) + eyeRest;
+  vec3 one = -start / inside, other = (vec3(textureSize(voxels, 0)) - start) / inside;
+  enter = max(most3(min(one, other)), 0.0);
+  leave = least3(max(one, other));
+  drawFloor();
+  vec2 off = gl_FragCoord.xy / canvas - 0.5;
+  light *= 1.0 - 0.42 * dot(off, off);
+  float open = solid;
+  for (int i = 0; i < counts.x; i++) drawScreen(i);
+  bool plain = solid == open;
+  if (!(enter < leave && enter < solid)) enter = leave = NEVER;
+  drawTable(plain ? 0.68 : 0.1);
+  for (int i = 0; i < counts.z; i++) drawLine(counts.x + counts.y + i);
+  for (int i = 0; i < counts.y; i++) drawLamp(counts.x + i);
+  vec2 beams = metSheet();
+  drawGlass(beams);
+  vec3 seen = toDisplay(clamp(veil.rgb + veil.a * light, 0.0, 1.0));
+  // gradients without steps: noise of half a level (J. Jimenez, Next generation post processing, 2014)
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
+  shown = vec4(plain ? seen + noise / 255.0 : seen, 1.0);
+}`;

@@ -1,0 +1,58 @@
+"""The notebook widget in which a cube is turned; it needs anywidget."""
+
+import math
+from typing import Any
+
+import anywidget
+import traitlets
+
+from lightcube.cube import Cube
+from lightcube.errors import InputError
+from lightcube.viewer.described import describe, zipped
+from lightcube.viewer.modules import joined, source
+from lightcube.viewer.packing import pack
+from lightcube.viewer.smaller import smaller
+from lightcube.viewer.thumbnails import still
+
+
+class CubeWidget(anywidget.AnyWidget):
+    """A cube that is turned by hand or from Python, made by `lightcube.show`.
+
+    Parameters
+    ----------
+    cube
+        What is shown.
+    full
+        Keep all voxels; else a smaller cube is solved for one of more than 128 along a side, and the widget says so.
+
+    Attributes
+    ----------
+    angle
+        Of the turntable, degrees in [0, 360). Setting it turns the cube, and turning the cube sets it:
+        ``widget.observe(callback, "angle")`` tells.
+    """
+
+    _esm = joined("widget.js") + "\nexport default { render };\n"
+    _css = source("style.css")
+
+    angle = traitlets.Float(0.0).tag(sync=True)
+    scene = traitlets.Bytes().tag(sync=True)
+    voxels = traitlets.Bytes().tag(sync=True)
+
+    def __init__(self, cube: Cube, *, full: bool = False) -> None:
+        packed = pack(cube if full else smaller(cube))
+        scene = zipped(describe(cube, packed, "light cube"))
+        self._cube = cube
+        super().__init__(angle=float(cube.angles[0]), scene=scene, voxels=packed.data())
+
+    @traitlets.validate("angle")
+    def _within_a_turn(self, proposal: dict[str, Any]) -> float:
+        angle = float(proposal["value"])
+        if not math.isfinite(angle):
+            raise InputError(f"a cube cannot be turned to {angle} degrees: give a finite angle")
+        return angle % 360.0 % 360.0  # of a tiny negative angle the first remainder is 360
+
+    def _repr_mimebundle_(self, **asked: Any) -> tuple[dict[str, Any], dict[str, Any]] | None:
+        """The widget, and for notebooks that are opened without a kernel what the cube shows at its stops."""
+        shown = super()._repr_mimebundle_(**asked)
+        return None if shown is None else (shown[0] | still(self._cube), shown[1])

@@ -1,0 +1,72 @@
+"""A real browser for tests, Chromium driven by Playwright; tests that need it skip where it is missing."""
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lightcube.viewer.modules import joined
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+
+
+def chromium() -> str | None:
+    """Path of a Chromium: ``LIGHTCUBE_CHROMIUM``, or one of its usual names."""
+    return os.environ.get("LIGHTCUBE_CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
+
+
+def launched(*arguments: str) -> Iterator[Any]:
+    """Yield a Playwright browser, or skip with a reason."""
+    api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    executable = chromium()
+    if executable is None:
+        pytest.skip("there is no Chromium: install one, or name it in LIGHTCUBE_CHROMIUM")
+    with api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=executable, args=["--no-sandbox", "--enable-unsafe-swiftshader", *arguments]
+        )
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """A browser with WebGL2, of the machine or computed by SwiftShader."""
+    yield from launched()
+
+
+@pytest.fixture(scope="session")
+def bare_browser() -> Iterator[Any]:
+    """A browser without WebGL."""
+    yield from launched("--disable-gpu", "--disable-software-rasterizer", "--disable-3d-apis")
+
+
+@pytest.fixture
+def evaluate(browser: Any) -> Iterator[Callable[..., Any]]:
+    """A function that runs an expression after some of the page's modules, in an empty page."""
+    page = browser.new_page()
+
+    def run(modules: tuple[str, ...], expression: str, argument: Any = None) -> Any:
+        body = f"async (argument) => {{\n{joined(*modules)}\nreturn await ({expression});\n}}"
+        return page.evaluate(body, json.loads(json.dumps(argument)))
+
+    yield run
+    page.close()
+
+
+def opened(browser: Any, path: Path, *, width: int = 1280, height: int = 800, **context: Any) -> tuple[Any, list[str]]:
+    """A page opened from a file, and a list that fills with what it says in its console or asks of a network."""
+    tab = browser.new_context(viewport={"width": width, "height": height}, **context).new_page()
+    heard: list[str] = []
+    tab.on("console", lambda message: heard.append(message.text) if message.type in ("error", "warning") else None)
+    tab.on("pageerror", lambda error: heard.append(str(error)))
+    tab.on(
+        "request",
+        lambda asked: heard.append(asked.url) if not asked.url.startswith(("file:", "data:", "blob:")) else None,
+    )
+    tab.goto(path.as_uri())
+    return tab, heard
