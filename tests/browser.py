@@ -19,32 +19,31 @@ def chromium() -> str | None:
     return os.environ.get("LIGHTCUBE_CHROMIUM") or next(filter(None, map(shutil.which, NAMES)), None)
 
 
-def launched(*arguments: str) -> Iterator[Any]:
-    """Yield a Playwright browser, or skip with a reason."""
+@pytest.fixture(scope="session")
+def launch() -> Iterator[Callable[..., Any]]:
+    """A function that starts a browser with more arguments; skips with a reason where there is none."""
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         pytest.skip("a page is the same whether kernels are compiled or not")
     api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
     executable = chromium()
     if executable is None:
         pytest.skip("there is no Chromium: install one, or name it in LIGHTCUBE_CHROMIUM")
-    with api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=executable, args=["--no-sandbox", "--enable-unsafe-swiftshader", *arguments]
-        )
-        yield browser
-        browser.close()
+    with api.sync_playwright() as playwright:  # there can be one only
+        yield lambda *more: playwright.chromium.launch(executable_path=executable, args=["--no-sandbox", *more])
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
+def browser(launch: Callable[..., Any]) -> Iterator[Any]:
     """A browser with WebGL2, of the machine or computed by SwiftShader."""
-    yield from launched()
+    with launch("--enable-unsafe-swiftshader") as started:
+        yield started
 
 
 @pytest.fixture(scope="session")
-def bare_browser() -> Iterator[Any]:
+def bare_browser(launch: Callable[..., Any]) -> Iterator[Any]:
     """A browser without WebGL."""
-    yield from launched("--disable-gpu", "--disable-software-rasterizer", "--disable-3d-apis")
+    with launch("--disable-gpu", "--disable-software-rasterizer", "--disable-3d-apis") as started:
+        yield started
 
 
 @pytest.fixture

@@ -4,9 +4,9 @@ import os
 
 import pytest
 
-from tests.browser import bare_browser, browser, evaluate
+from tests.browser import bare_browser, browser, evaluate, launch
 
-__all__ = ["bare_browser", "browser", "evaluate"]
+__all__ = ["bare_browser", "browser", "evaluate", "launch"]
 
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 

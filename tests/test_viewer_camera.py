@@ -35,7 +35,7 @@ def test_pointing_finds_what_is_drawn(evaluate: Run, cube: str, behind: bool) ->
       for (let row = 0; row < pixels[0]; row++) for (let column = 0; column < pixels[1]; column++) {
         const place = add(corner, add(scaled(right, column + 0.9), scaled(down, row + 0.1)));
         const { x, y } = seenAt(camera, place);
-        found.push([lit ? { screen, row, column } : null, pointed(room, null, rayAt(camera, x, y))]);
+        found.push([lit ? { screen, row, column } : null, pointed(room, rayAt(camera, x, y))]);
       }
       return found;
     })"""

@@ -274,7 +274,7 @@ def test_a_whole_shadow_has_its_middle_in_the_middle(evaluate: Evaluate, name: s
     cube, packed, data = held_in_a_page(name)
     expression = """argument.angles.map((angle) => {
       const [exposure] = exposures(scene, angle, true);
-      return { exposure, room: standing(scene, angle, true), picture: castPicture(cube, scene, exposure) };
+      return { exposure, room: standing(scene, angle, true), picture: castPicture(cube, exposure) };
     })"""
     found = asked(evaluate, data, expression, angles=ANGLES)
     views = views_at(cube, ANGLES, whole_screen=True)
@@ -391,9 +391,9 @@ def test_pictures_are_those_of_play(evaluate: Evaluate, name: str) -> None:
     _, packed, data = held_in_a_page(name)
     expression = """argument.angles.flatMap((angle) => exposures(scene, angle)).map((exposure) => {
       const [rows, columns] = exposure.raster;
-      const light = castPicture(cube, scene, exposure);
+      const light = castPicture(cube, exposure);
       const pixels = [[0, 0], [1, 2], [rows - 1, columns - 1]];
-      return { light, some: pixels.map(([row, column]) => castPixel(cube, scene, exposure, row, column)) };
+      return { light, some: pixels.map(([row, column]) => castPixel(cube, exposure, row, column)) };
     })"""
     found = asked(evaluate, data, expression, angles=ANGLES)
     wanted = np.broadcast_to(play(packed.cube, ANGLES), (*play(packed.cube, ANGLES).shape[:3], 3))

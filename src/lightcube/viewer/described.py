@@ -65,6 +65,7 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
         "transfer": cube.transfer,
         "hold": cube.hold_deg,
         "axis": lighting.axis.tolist(),
+        "turns": bool(np.any(lighting.turning) or len(np.unique(lighting.angle)) > 1),
         "carried": bool(np.any(lighting.turning & (lighting.way < 0))),
         "raster": staged.views.picture_shape,
         "whole": _whole(packed.cube),

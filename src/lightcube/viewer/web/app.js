@@ -101,7 +101,10 @@ function actionsOf(app) {
     reset: () => view.comeBack(),
     screen: (place) => Object.assign(chosen, { place, row: null, column: null }),
     point: (row, column) => Object.assign(chosen, { row, column }),
-    theme: () => setTheme(app, !chosen.dark),
+    theme() {
+      app.ownTheme = true;
+      setTheme(app, !chosen.dark);
+    },
     fullScreen: () => toggleFullScreen(root),
     help: () => app.parts.help.toggle(),
     close: () => false, // dialogs and full screen close themselves
@@ -127,7 +130,7 @@ function setTheme(app, dark) {
 function listenToTheme(app) {
   const system = matchMedia("(prefers-color-scheme: dark)");
   const follow = () => {
-    setTheme(app, system.matches);
+    if (!app.ownTheme) setTheme(app, system.matches);
     app.loop.ask();
   };
   setTheme(app, system.matches);
@@ -135,11 +138,11 @@ function listenToTheme(app) {
   return () => system.removeEventListener("change", follow);
 }
 
-function listenToRoom({ does, view, chosen, loop, parts }, compact) {
+function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
   listenToGestures(view.canvas, {
     ...does,
     begin: () => parts.hint.done(),
-    turn: (pixels) => does.turn(TURN_SPEED * pixels),
+    turn: scene.turns ? (pixels) => does.turn(TURN_SPEED * pixels) : null,
     release: (pixelsPerSecond) => does.release(TURN_SPEED * pixelsPerSecond),
     point(x, y) {
       const found = view.pointed(x, y);
@@ -159,9 +162,9 @@ function createParts({ scene, turning, view, does }, cube, compact) {
   return {
     header: createHeader(scene, does),
     quiet: createQuietLine(scene, view.note),
-    hint: createHint(),
+    hint: createHint(scene.turns),
     help: createHelp(scene.whole !== null),
-    controls: createControls(scene, turning.stops, does),
+    controls: scene.turns ? createControls(scene, turning.stops, does) : null,
     filmstrip: createFilmstrip(scene, does.picture),
     compare: compact ? null : createCompare(scene, does),
     scanline: compact ? null : createScanline(scene, cube, does.point),
@@ -172,7 +175,7 @@ function createParts({ scene, turning, view, does }, cube, compact) {
 
 function layoutOf(parts, compact) {
   const stage = element("div", { class: "stage" }, parts.room, parts.header, parts.hint.element);
-  const dock = element("div", { class: "dock" }, parts.controls.element, parts.filmstrip.element);
+  const dock = element("div", { class: "dock" }, parts.controls?.element ?? null, parts.filmstrip.element);
   const rest = [parts.said, parts.help.element];
   if (compact) return [stage, dock, ...rest];
   const cards = [parts.compare.element, parts.scanline.element, parts.quiet];
@@ -190,11 +193,14 @@ function showing(app) {
     const now = momentOf(scene, turning, view.exposures, chosen);
     const { place, row, column } = now.spot;
     view.draw(now.dark, chosen.row === null ? null : { screen: place, row, column }, scale);
-    parts.controls.update(now);
+    parts.controls?.update(now);
     parts.filmstrip.update(now);
     if (performance.now() - copied > COPY_EVERY) showCards(now);
-    if (told !== turning.angle) app.told?.(turning.angle);
-    told = turning.angle;
+    if (told !== turning.angle) {
+      told = turning.angle;
+      parts.hint.done();
+      app.told?.(told);
+    }
     return turning.moving;
   }
 

@@ -119,11 +119,10 @@ export function beforeEye({ eye, ahead }, [start, end], near) {
 /**
  * The pixel of a screen's lit side that a ray meets.
  * @param {object} room
- * @param {number[]} cubeSize unused
  * @param {{start: number[], way: number[]}} ray
  * @returns {{screen: number, row: number, column: number} | null} null too where another screen's back is nearer
  */
-export function pointed(room, cubeSize, { start, way }) {
+export function pointed(room, { start, way }) {
   let [found, nearest] = [null, Infinity];
   room.screens.forEach(({ corner, right, down, pixels, facing }, screen) => {
     const distance = dot(sub(corner, start), facing) / dot(way, facing);

@@ -5,23 +5,21 @@ import { fallingLight } from "./light.js";
 /**
  * Light of one pixel, [red, green, blue], linear, 1 = white, never clipped; black beside the screen.
  * @param {object} cube
- * @param {object} scene
  * @param {object} exposure of one screen
  * @param {number} row
  * @param {number} column
  */
-export function castPixel(cube, scene, exposure, row, column) {
+export function castPixel(cube, exposure, row, column) {
   return castInto([0, 0, 0], cube, exposure, row, column, castScratch(cube));
 }
 
 /**
  * A screen's whole picture.
  * @param {object} cube
- * @param {object} scene
  * @param {object} exposure of one screen
  * @returns {Float32Array} rows * columns * 3 of the raster, row 0 the top, linear light, never clipped
  */
-export function castPicture(cube, scene, exposure) {
+export function castPicture(cube, exposure) {
   const [rows, columns] = exposure.raster;
   const picture = new Float32Array(rows * columns * 3);
   for (let row = 0; row < rows; row++) picture.set(castRow(cube, exposure, row), 3 * row * columns);

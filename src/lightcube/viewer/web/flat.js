@@ -56,7 +56,7 @@ function keptShadow(kept, cube, scene, exposure) {
 }
 
 function flatShadow(cube, scene, exposure) {
-  const picture = castPicture(cube, scene, exposure);
+  const picture = castPicture(cube, exposure);
   const [[rows, columns], wide] = [exposure.window, exposure.raster[1]];
   const light = (row, column) => picture.subarray(3 * (row * wide + column), 3 * (row * wide + column) + 3);
   return flatPicture(rows, columns, light, scene.transfer);

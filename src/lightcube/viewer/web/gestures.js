@@ -12,7 +12,7 @@ const STUCK = 3;
  * One pointer turns; the right or middle button, Shift, or two fingers move the eye; wheel and pinch zoom.
  *
  * @param {HTMLElement} area
- * @param {Object} does what is called: `begin()` at every gesture, `turn(pixels)`, `release(pixelsPerSecond)`,
+ * @param {Object} does what is called: `begin()` at every gesture, `turn(pixels)` (or null, then every drag moves the eye), `release(pixelsPerSecond)`,
  *   `eye(across, down)` in pixels, `zoom(factor)` (above 1: nearer), `point(x, y)` in 0..1 from the upper left,
  *   `leave()`, `reset()`
  * @param {boolean} polite zoom by wheel only while Ctrl is held, so that what is around can be scrolled
@@ -25,7 +25,7 @@ export function listenToGestures(area, does, polite) {
     if (event.pointerType === "mouse" && fingers.size > 0) return;
     area.setPointerCapture(event.pointerId);
     fingers.set(event.pointerId, [event.clientX, event.clientY]);
-    const eye = fingers.size > 1 || event.button > 0 || event.shiftKey;
+    const eye = does.turn === null || fingers.size > 1 || event.button > 0 || event.shiftKey;
     const far = fingers.size > 1 ? Infinity : 0;
     drag = { eye, turned: drag !== null && drag.turned, trail: [[event.timeStamp, event.clientX]], far };
     does.begin();

@@ -30,12 +30,13 @@ export function createQuietLine(scene, note) {
 }
 
 function keptText({ voxels, kept }) {
-  const full = countText(kept.full);
-  const held = countText(voxels.shape);
-  const what = full === held
-    ? `A cube of ${full} voxels, kept in this page in 10 bits`
-    : `A cube of ${full} voxels, reduced to ${held} of 10 bits in this page`;
-  return `${what}: its shadows differ from the full cube's by at most ${oneDecimal(kept.worst_levels)} of 255 levels.`;
+  const [full, held] = [countText(kept.full), countText(voxels.shape)];
+  if (full === held) {
+    return `A cube of ${full} voxels, kept in this page in 10 bits: its shadows differ from the full cube's by at most ` +
+      `${oneDecimal(kept.worst_levels)} of 255 levels.`;
+  }
+  return `A cube of ${held} voxels, solved for the pictures of one of ${full}, which is too large for this page: at the ` +
+    `stops, their shadows differ by ${oneDecimal(kept.rms_levels)} of 255 levels on average.`;
 }
 
 /** "64³", or "60 × 64 × 64" (x, y, z). */

@@ -27,11 +27,12 @@ const KEYS = [
 /**
  * A hand that shows how to turn the cube, until `done` is called.
  *
+ * @param {boolean} turns whether anything turns; else one walks around it
  * @returns {{element: HTMLElement, done: function(): void}}
  */
-export function createHint() {
+export function createHint(turns) {
   const hand = element("span", { class: "hand", "aria-hidden": "true" }, icon("hand"));
-  const hint = element("div", { class: "hint" }, hand, element("span", { text: "Drag to turn the cube" }));
+  const hint = element("div", { class: "hint" }, hand, element("span", { text: turns ? "Drag to turn the cube" : "Drag to look around" }));
   return {
     element: hint,
     done() {

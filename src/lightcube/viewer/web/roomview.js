@@ -23,7 +23,7 @@ export class RoomView {
   constructor(scene, cube) {
     this.scene = scene;
     const { canvas, renderer, note } = rendererFor(scene, cube);
-    Object.assign(this, { canvas, renderer, note, size: cube.shape.map((count) => count * cube.mm) });
+    Object.assign(this, { canvas, renderer, note });
     this.comeBack();
     this.bases = {};
   }
@@ -62,7 +62,7 @@ export class RoomView {
 
   /** What a place on the canvas (0..1 from its upper left) lies on: {screen, row, column}, or null. */
   pointed(x, y) {
-    return pointed(this.room, this.size, rayAt(this.camera(), x, y));
+    return pointed(this.room, rayAt(this.camera(), x, y));
   }
 
   /** Copy the shadow on a screen, by its place in the list, into a canvas. */

@@ -1,5 +1,6 @@
 // The card that shows one scan-line from above: a slice of the cube, the beams through it, and the pixels they make.
 
+import { lampPowers } from "./compare.js";
 import { element } from "./elements.js";
 import { beamFacts, sheetOf } from "./sheet.js";
 import { SliceDrawing } from "./slice.js";
@@ -74,7 +75,7 @@ function beamText({ voxels, left }, column, channels) {
 /**
  * Offer the lamps that shine on a screen, where there are several; the view of the chosen one, null where none shines.
  *
- * Of a lamp that has many samples it is the middle one's.
+ * The brightest is chosen at first. Of a lamp that has many samples it is the middle one's.
  */
 function offerLamps(select, scene, exposure) {
   const views = new Map();
@@ -85,11 +86,16 @@ function offerLamps(select, scene, exposure) {
   if (offered.join() !== (select.dataset.offered ?? "")) {
     const chosen = select.value;
     select.replaceChildren(...offered.map((lamp) => element("option", { value: lamp, text: scene.lamps[lamp] })));
-    if (chosen !== "" && offered.includes(Number(chosen))) select.value = chosen;
+    select.value = chosen !== "" && offered.includes(Number(chosen)) ? chosen : brightestOf(exposure);
     select.dataset.offered = offered.join();
   }
   select.hidden = offered.length < 2;
   if (offered.length === 0) return null;
   const its = views.get(Number(select.value));
   return its[Math.floor(its.length / 2)];
+}
+
+function brightestOf(exposure) {
+  const lights = [...lampPowers(exposure)].map(([lamp, power]) => [lamp, Math.max(...power)]);
+  return lights.reduce((best, each) => (each[1] > best[1] ? each : best), [null, -Infinity])[0];
 }

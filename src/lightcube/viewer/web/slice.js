@@ -178,7 +178,7 @@ function placing(sheet, view, cube, width, height) {
   return Object.assign(place, { nearer: far.nearer, begin: left - scale * BEGIN * radius });
 }
 
-/** Where the pixels are drawn: the screen moved along the light towards the cube, as far as the shadow stays the same. */
+/** Where the pixels are drawn: the screen moved along the light towards the cube, its shadow the same. */
 function screenAt(beams, view, turned, radius) {
   const pixels = beams.map((beam) => turned(beam.pixel));
   const nearest = Math.min(...pixels.map((pixel) => pixel[0]));
@@ -201,7 +201,7 @@ function shrunkTo(lamp, turned, nearest, wanted) {
   return (pixel) => pixel.map((each, i) => lamp[i] + part * (each - lamp[i]));
 }
 
-/** A beam on the canvas: whence it comes, where it enters and leaves the cube (null where it misses), where it lands. */
+/** A beam on the canvas: whence it comes, where it enters and leaves the cube (null: it misses), where it lands. */
 function lineOf({ column, start, end, pixel }, view, place) {
   const to = place(place.nearer(pixel));
   const lamp = view.light.slice(0, 3);
