@@ -1,5 +1,6 @@
 # make demo   set everything up and run the demonstration, into out/
 # make test   set everything up and run the tests, compiled and interpreted
+#             (one thread for each of the processes that run side by side; tests of threads start their own)
 # make check  lint, format and types
 # Use another Python with: make demo PYTHON=python3.12
 
@@ -14,7 +15,7 @@ demo: .venv/.ready
 	$(BIN)/lightcube demo
 
 test: .venv/.ready-$(EXTRAS)
-	$(BIN)/python -m pytest -q -n auto
+	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -q -n auto
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n auto
 
 check: .venv/.ready-$(EXTRAS)

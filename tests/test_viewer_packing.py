@@ -200,7 +200,7 @@ def test_the_command_writes_a_page(run: Any, tmp_path: Path, monkeypatch: pytest
     ("asked", "said"),
     [
         (("nothing.zarr",), "there is no nothing.zarr"),
-        (("cube.zarr", "-o", "page.png"), "use one of .html"),
+        (("cube.zarr", "-o", "page.png"), "use .html"),
         (("cube.zarr", "-o", "no/page.html"), "there is no folder no"),
         (("notes.txt",), "no suffix"),
         (("begun.zarr.partial",), "start again"),

@@ -42,7 +42,7 @@ def report(
     stage = io.read_stage(frames, transfer=loaded.transfer)[0] if frames is not None and io.is_stage(frames) else None
     with progress("measuring", as_json=as_json) as advance:
         found = measure(loaded, wanted, stage, advance)
-    made = cube.removesuffix(".partial")
+    made = Path(cube.removesuffix(".partial")).name
     text = page(
         found, title, _compared(found, frames), reproducing(loaded, wanted, frames, made), [*_origins(cube, frames)]
     )
@@ -65,9 +65,10 @@ def _compared(found: Findings, frames: str | None) -> str:
             "resampled."
         )
     if found.apart == 0:
-        return f"Compared with the pictures in {frames}, which are those that the cube was made from."
+        return f"Compared with the pictures in {Path(frames).name}, which are those that the cube was made from."
     off = "" if found.apart is None else f": they differ from these by up to {found.apart} levels of 255"
-    return f"Compared with the pictures in {frames}, which are not known to be those that it was made from{off}."
+    about = "which are not known to be those that it was made from"
+    return f"Compared with the pictures in {Path(frames).name}, {about}{off}."
 
 
 def _origins(cube: str, frames: str | None) -> Iterator[Origin]:

@@ -9,8 +9,8 @@ import typer
 from lightcube import io
 from lightcube.cli_options import JSON, OVERWRITE
 from lightcube.console import done, err, progress
-from lightcube.cube import Cube
-from lightcube.viewer import described, packing, page, smaller
+from lightcube.viewer import page, smaller
+from lightcube.viewer.contents import contents
 
 
 def view(
@@ -30,24 +30,27 @@ def view(
     target = f"{title}.html" if output is None else output
     io.check_page_target(target, overwrite=overwrite)
     loaded = io.load(cube)
-    held = loaded if full else _smaller(loaded, as_json=as_json)
-    with err.status("putting the page together"):
-        packed = packing.pack(held)
-        description = described.describe(loaded, packed, title)
-        text = page.page_of(description, packed.data())
-    io.write_page(target, text, overwrite=overwrite)
-    if not as_json and held is not loaded:
-        err.print(
-            f"it holds {_voxels(held)} voxels, solved anew for the pictures of {_voxels(loaded)}: --full keeps all"
+    is_smaller = not full and max(loaded.grid.shape) > smaller.MOST_SIDE
+    doing = "solving a smaller cube for the page" if is_smaller else "putting the page together"
+    if not as_json:
+        err.print(f"{doing} ...")
+    with progress(doing, as_json=as_json) as advance:
+        description, packed = contents(
+            loaded, title, full=full, callback=lambda step: advance(round(1000 * step.done), 1000)
         )
-    kept, size = description["kept"], len(text.encode())
+    text = page.page_of(description, packed)
+    io.write_page(target, text, overwrite=overwrite)
+    held, kept, size = description["voxels"]["shape"], description["kept"], len(text.encode())
+    if not as_json and is_smaller:
+        both = _voxels(held), _voxels(loaded.grid.shape)
+        err.print(f"it holds {both[0]} voxels, solved anew for the pictures of {both[1]}: --full keeps all")
     done(
         as_json,
         f"{target}, {size / 1e6:.1f} MB; its shadows are off by at most {kept['worst_levels']:.1f} of 255 levels "
         f"({kept['rms_levels']:.2f} on average)",
         out=target,
         bytes=size,
-        shape=held.grid.shape,
+        shape=held,
         worst_levels=kept["worst_levels"],
         rms_levels=kept["rms_levels"],
     )
@@ -55,14 +58,6 @@ def view(
         webbrowser.open(target if "://" in target else Path(target).absolute().as_uri())
 
 
-def _smaller(cube: Cube, *, as_json: bool) -> Cube:
-    """What the page holds of a cube; a smaller one takes a while to solve."""
-    if max(cube.grid.shape) <= smaller.MOST_SIDE:
-        return cube
-    with progress("solving a smaller cube for the page", as_json=as_json) as advance:
-        return smaller.smaller(cube, lambda step: advance(round(1000 * step.done), 1000))
-
-
-def _voxels(cube: Cube) -> str:
-    nz, ny, nx = cube.grid.shape
+def _voxels(shape: tuple[int, int, int]) -> str:
+    nz, ny, nx = shape
     return f"{nx} x {ny} x {nz}"

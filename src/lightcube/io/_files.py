@@ -20,8 +20,9 @@ def suffix_entry(path: Place, table: Mapping[str, Entry], what: str) -> Entry:
     for suffix in sorted(table, key=len, reverse=True):
         if name.endswith(suffix) and len(name) > len(suffix):
             return table[suffix]
-    known = ", ".join(suffix for suffix in table if suffix)
-    raise InputError(f"{path} has no suffix that {what} can have: use one of {known}")
+    known = [suffix for suffix in table if suffix]
+    which = f"one of {', '.join(known)}" if len(known) > 1 else known[0]
+    raise InputError(f"{path} has no suffix that {what} can have: use {which}")
 
 
 def check_free(path: Place, *, overwrite: bool, replaceable: Callable[[Place], bool]) -> None:

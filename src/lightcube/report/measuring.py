@@ -15,7 +15,7 @@ from lightcube.forward import cast
 from lightcube.frames import Frames
 from lightcube.metrics import check_same_views, score_pictures
 from lightcube.reachable import sentences
-from lightcube.sheet import triple as triple
+from lightcube.sheet import triple
 from lightcube.stage import Stage
 from lightcube.stage_check import doubtful
 

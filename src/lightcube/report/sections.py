@@ -63,7 +63,7 @@ def _predicted(cube: Cube, name: str) -> str:
     """What was predicted, if it was."""
     predicted = cube.provenance.get("predicted")
     if predicted is None:
-        return "nothing was predicted"
+        return "mean over the pictures" if name == "psnr_mean" else ""
     return f"predicted: {number(predicted[name], 1)} dB" + " or more" * (predicted[name] >= MOST_DB)
 
 

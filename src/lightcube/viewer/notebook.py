@@ -17,7 +17,7 @@ def show(cube: Cube, *, full: bool = False) -> "CubeWidget":
     Parameters
     ----------
     full
-        Keep all voxels; else a cube of more than 128 along a side is reduced, and the widget says so.
+        Keep all voxels; else a smaller cube is solved for one of more than 128 along a side, and the widget says so.
 
     Raises
     ------

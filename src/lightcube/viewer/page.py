@@ -7,10 +7,9 @@ from typing import Any
 
 from lightcube.cube import Cube
 from lightcube.pieces import Watching
-from lightcube.viewer.described import describe, zipped
+from lightcube.viewer.contents import contents
+from lightcube.viewer.described import zipped
 from lightcube.viewer.modules import joined, source
-from lightcube.viewer.packing import pack
-from lightcube.viewer.smaller import smaller
 
 
 def page(cube: Cube, title: str, *, full: bool = False, callback: Watching | None = None) -> str:
@@ -30,12 +29,11 @@ def page(cube: Cube, title: str, *, full: bool = False, callback: Watching | Non
     InputError
         Where the cube has other than 1 or 3 colours, more voxels than a browser takes, or lamps at several elevations.
     """
-    packed = pack(cube if full else smaller(cube, callback))
-    return page_of(describe(cube, packed, title), packed.data())
+    return page_of(*contents(cube, title, full=full, callback=callback))
 
 
 def page_of(description: dict[str, Any], voxels: bytes) -> str:
-    """The same of what `describe` and `Packed.data` return."""
+    """The same of what `contents` returns."""
     parts = {
         "title": html.escape(description["title"]),
         "style": source("style.css"),

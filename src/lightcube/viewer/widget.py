@@ -8,10 +8,9 @@ import traitlets
 
 from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.viewer.described import describe, zipped
+from lightcube.viewer.contents import contents
+from lightcube.viewer.described import zipped
 from lightcube.viewer.modules import joined, source
-from lightcube.viewer.packing import pack
-from lightcube.viewer.smaller import smaller
 from lightcube.viewer.thumbnails import still
 
 
@@ -40,10 +39,9 @@ class CubeWidget(anywidget.AnyWidget):
     voxels = traitlets.Bytes().tag(sync=True)
 
     def __init__(self, cube: Cube, *, full: bool = False) -> None:
-        packed = pack(cube if full else smaller(cube))
-        scene = zipped(describe(cube, packed, "light cube"))
+        description, voxels = contents(cube, "light cube", full=full)
         self._cube = cube
-        super().__init__(angle=float(cube.angles[0]), scene=scene, voxels=packed.data())
+        super().__init__(angle=float(cube.angles[0]), scene=zipped(description), voxels=voxels)
 
     @traitlets.validate("angle")
     def _within_a_turn(self, proposal: dict[str, Any]) -> float:

@@ -81,7 +81,12 @@ function actionsOf(app) {
     neighbour: toNeighbour,
     nearest: toNearest,
     first: () => turning.glideTo(turning.stops[0]),
-    picture: (number) => turning.glideTo(scene.pictures[number].angle),
+    picture(number) {
+      const { screen, angle } = scene.pictures[number];
+      const place = view.exposures.findIndex((exposure) => exposure.screen === screen);
+      Object.assign(chosen, { place, row: null, column: null });
+      turning.glideTo(angle);
+    },
     play: () => (turning.playing ? turning.release(0) : turning.play()),
     speed: (factor) => (turning.speed = factor),
     slide: (angle) => turning.set(angle),
@@ -109,6 +114,8 @@ function actionsOf(app) {
     help: () => app.parts.help.toggle(),
     close: () => false, // dialogs and full screen close themselves
   };
+  const useless = scene.turns ? [] : ["turn", "release", "neighbour", "nearest", "first", "play", "snap"];
+  for (const name of useless) all[name] = () => false;
   return Object.fromEntries(Object.entries(all).map(([name, does]) => [name, (...given) => {
     const done = does(...given);
     app.loop.ask();
@@ -162,8 +169,8 @@ function createParts({ scene, turning, view, does }, cube, compact) {
   return {
     header: createHeader(scene, does),
     quiet: createQuietLine(scene, view.note),
-    hint: createHint(scene.turns),
-    help: createHelp(scene.whole !== null),
+    hint: createHint(scene),
+    help: createHelp(scene),
     controls: scene.turns ? createControls(scene, turning.stops, does) : null,
     filmstrip: createFilmstrip(scene, does.picture),
     compare: compact ? null : createCompare(scene, does),

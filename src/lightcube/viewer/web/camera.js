@@ -1,6 +1,6 @@
 // A camera on an orbit round the cube, and what its rays meet; lengths are mm, in the room.
-import { extentOf, halfSides } from "./furniture.js";
-import { add, applyInverse, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
+import { extentOf } from "./furniture.js";
+import { add, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
 
 /** Heights of the eye above its target's level, degrees: above the floor, and with an upright picture. */
 const ORBIT_LOWEST = 2;
@@ -134,20 +134,4 @@ export function pointed(room, { start, way }) {
     found = dot(way, facing) < 0 ? { screen, row, column } : null;
   });
   return found;
-}
-
-/** Whether a ray meets the cube. */
-export function meetsCube(room, scene, { start, way }) {
-  const [from, along] = [applyInverse(room.turn, start), applyInverse(room.turn, way)];
-  let [enter, leave] = [0, Infinity];
-  halfSides(scene).forEach((half, axis) => {
-    const ends = [(-half - from[axis]) / along[axis], (half - from[axis]) / along[axis]];
-    if (along[axis] === 0) {
-      if (Math.abs(from[axis]) > half) leave = -Infinity;
-      return;
-    }
-    enter = Math.max(enter, Math.min(...ends));
-    leave = Math.min(leave, Math.max(...ends));
-  });
-  return enter < leave;
 }

@@ -3,17 +3,6 @@ import { beamOf, mostPieces, walkInto } from "./beam.js";
 import { fallingLight } from "./light.js";
 
 /**
- * Light of one pixel, [red, green, blue], linear, 1 = white, never clipped; black beside the screen.
- * @param {object} cube
- * @param {object} exposure of one screen
- * @param {number} row
- * @param {number} column
- */
-export function castPixel(cube, exposure, row, column) {
-  return castInto([0, 0, 0], cube, exposure, row, column, castScratch(cube));
-}
-
-/**
  * A screen's whole picture.
  * @param {object} cube
  * @param {object} exposure of one screen

@@ -3,7 +3,8 @@
 import { clampTo, degreesText, element, figuresText, scoreText } from "./elements.js";
 import { wantedImage } from "./filmstrip.js";
 import { placeIn } from "./gestures.js";
-import { dot } from "./vectors.js";
+import { middleOfShadow } from "./stage.js";
+import { dot, sub } from "./vectors.js";
 
 const COLOURS = ["red", "green", "blue"];
 
@@ -50,8 +51,9 @@ export function createCompare(scene, does) {
 
 /** "33.8° · 0.4° from it · 54.1 dB". */
 function placeText(away, picture) {
-  const off = Math.abs(away) < 0.005 ? "here" : `${degreesText(Math.abs(away))} away`;
-  return [`stop ${degreesText(picture.angle)}`, off, scoreText(picture.psnr)].filter(Boolean).join(" · ");
+  const stop = `stop ${degreesText(picture.angle)}`;
+  if (Math.abs(away) >= 0.005) return `${stop} · ${degreesText(Math.abs(away))} away`;
+  return [stop, "here", scoreText(picture.psnr)].filter(Boolean).join(" · ");
 }
 
 /** The shown picture, on which pointing, dragging or the arrow keys choose a row. */
@@ -114,10 +116,10 @@ function within(number, count) {
 
 /** The picture's window [row, column, rows, columns] in the raster of the whole shadow. */
 function windowInWhole(scene, { picture, raster }) {
-  const { origin, right, down } = scene.views.find((view) => view.picture === picture);
+  const { light, origin, right, down } = scene.views.find((view) => view.picture === picture);
   const [rows, columns] = scene.pictures[picture].window;
-  const below = dot(origin, down) / dot(down, down);
-  const across = dot(origin, right) / dot(right, right);
+  const off = sub(origin, middleOfShadow(light, origin, right, down));
+  const [below, across] = [down, right].map((step) => dot(off, step) / dot(step, step));
   return [(raster[0] - rows) / 2 + below, (raster[1] - columns) / 2 + across, rows, columns];
 }
 

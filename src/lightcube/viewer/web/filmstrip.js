@@ -18,7 +18,7 @@ export function createFilmstrip(scene, chosen) {
   const buttons = new Map(order.map((number) => [number, thumbnail(scene, number, () => chosen(number))]));
   const strip = element("div", { class: "filmstrip", role: "group", "aria-label": "Wanted pictures" });
   strip.append(...buttons.values());
-  let marked = [];
+  let marked = null;
 
   strip.addEventListener("keydown", (event) => {
     const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
@@ -33,12 +33,13 @@ export function createFilmstrip(scene, chosen) {
   return {
     element: strip,
     update(now) {
-      if (now.pictures.join() === marked.join()) return;
-      for (const number of marked) mark(buttons.get(number), false);
-      marked = now.pictures;
-      for (const number of marked) mark(buttons.get(number), true);
-      for (const [number, button] of buttons) button.tabIndex = number === marked[0] ? 0 : -1;
-      scrollInto(strip, buttons.get(marked[0]));
+      const chosen = now.exposures[now.spot.place].picture;
+      if (chosen === marked) return;
+      if (marked !== null) mark(buttons.get(marked), false);
+      marked = chosen;
+      mark(buttons.get(marked), true);
+      for (const [number, button] of buttons) button.tabIndex = number === marked ? 0 : -1;
+      scrollInto(strip, buttons.get(marked));
     },
   };
 }

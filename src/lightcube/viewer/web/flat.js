@@ -11,6 +11,8 @@ import { add, applyInverse, dot, norm, scaled, sub, unit } from "./vectors.js";
 const FLAT_KEPT = 64;
 /** Rays along each side of the picture of the cube's glass, at rest and in motion. */
 const [FLAT_FINE, FLAT_COARSE] = [72, 28];
+/** Part of a picture that is seen through the screen's paper from behind. */
+const FLAT_THROUGH = 0.5;
 /** Patches along each side of a screen's picture, each drawn without perspective. */
 const FLAT_PATCHES = 8;
 
@@ -208,12 +210,6 @@ function drawFlatScreen(stage, { corner, right, down, pixels, facing, number }) 
   flatPath(stage, corners.map((each, i) => rimmed(each, outside[i])));
   context.fillStyle = flatColour(tones.frame);
   context.fill();
-  if (dot(sub(camera.eye, corner), facing) <= 0) {
-    flatPath(stage, corners);
-    context.fillStyle = flatColour(tones.back);
-    context.fill();
-    return;
-  }
   for (let i = 0; i < FLAT_PATCHES; i++) {
     for (let j = 0; j < FLAT_PATCHES; j++) {
       const at = (y, x) =>
@@ -223,6 +219,12 @@ function drawFlatScreen(stage, { corner, right, down, pixels, facing, number }) 
       drawFlatPatch(stage, shadows[number], patch, place, pixels);
     }
   }
+  if (dot(sub(camera.eye, corner), facing) > 0) return;
+  flatPath(stage, corners);
+  context.globalAlpha = 1 - FLAT_THROUGH;
+  context.fillStyle = flatColour(tones.back);
+  context.fill();
+  context.globalAlpha = 1;
 }
 
 /** A patch of a picture, a little larger on the right and below, so that no seams are seen. */

@@ -32,7 +32,7 @@ export function createQuietLine(scene, note) {
 function keptText({ voxels, kept }) {
   const [full, held] = [countText(kept.full), countText(voxels.shape)];
   if (full === held) {
-    return `A cube of ${full} voxels, kept in this page in 10 bits: its shadows differ from the full cube's by at most ` +
+    return `A cube of ${full} voxels, rounded for this page: its shadows differ from the original's by at most ` +
       `${oneDecimal(kept.worst_levels)} of 255 levels.`;
   }
   return `A cube of ${held} voxels, solved for the pictures of one of ${full}, which is too large for this page: at the ` +

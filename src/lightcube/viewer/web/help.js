@@ -2,21 +2,24 @@
 
 import { element, icon, iconButton } from "./elements.js";
 
-const WHAT_IT_IS =
-  "Light falls through a block of coloured glass. At each stop of the turntable its shadow is another picture.";
+const WHAT_IT_IS = "Light falls through a block of coloured glass.";
+const AT_STOPS = "At each stop of the turntable its shadow is another picture.";
+const ON_SCREENS = "Its shadows are pictures.";
 const GESTURES = [
-  ["drag", "turn the cube"],
   ["right drag · Shift drag · two fingers", "move the eye"],
   ["wheel · pinch", "go nearer or farther"],
   ["double click", "put the eye back"],
   ["point at a screen", "choose the scan-line"],
 ];
-const KEYS = [
+const TURNING_KEYS = [
   ["← →", "turn by 1°, with Shift by 0.1°"],
   ["Page Up, Page Down · , .", "previous, next picture"],
   ["Space", "play, pause"],
   ["N", "snap to the nearest picture"],
   ["Home", "first picture"],
+];
+const KEYS = [
+  ["arrows on “shown”", "choose the scan-line's row and pixel"],
   ["+ −", "nearer, farther"],
   ["W", "whole shadow"],
   ["F", "full screen"],
@@ -25,14 +28,14 @@ const KEYS = [
 ];
 
 /**
- * A hand that shows how to turn the cube, until `done` is called.
+ * A hand that shows what a drag does, until `done` is called.
  *
- * @param {boolean} turns whether anything turns; else one walks around it
+ * @param {Object} scene
  * @returns {{element: HTMLElement, done: function(): void}}
  */
-export function createHint(turns) {
+export function createHint(scene) {
   const hand = element("span", { class: "hand", "aria-hidden": "true" }, icon("hand"));
-  const hint = element("div", { class: "hint" }, hand, element("span", { text: turns ? "Drag to turn the cube" : "Drag to look around" }));
+  const hint = element("div", { class: "hint" }, hand, element("span", { text: `Drag to ${whatDragDoes(scene)}` }));
   return {
     element: hint,
     done() {
@@ -44,16 +47,17 @@ export function createHint(turns) {
 /**
  * The list of gestures and keys, in a dialog.
  *
- * @param {boolean} whole whether there is a whole shadow to show
+ * @param {Object} scene
  * @returns {{element: HTMLElement, toggle: function(): void}}
  */
-export function createHelp(whole) {
+export function createHelp(scene) {
   const close = iconButton("close", "Close", "Escape", () => dialog.close());
-  const keys = KEYS.filter(([, does]) => whole || does !== "whole shadow");
+  const gestures = scene.turns ? [["drag", whatDragDoes(scene)], ...GESTURES] : [["drag", "move the eye"], ...GESTURES.slice(1)];
+  const keys = [...(scene.turns ? TURNING_KEYS : []), ...KEYS].filter(([key]) => key !== "W" || scene.whole !== null);
   const dialog = element("dialog", { class: "help", "aria-labelledby": "lightcube-help" },
     element("header", {}, element("h2", { id: "lightcube-help", text: "Turning a light cube" }), close),
-    element("p", { text: WHAT_IT_IS }),
-    element("div", { class: "lists" }, listOf("Mouse and fingers", GESTURES), listOf("Keys", keys)));
+    element("p", { text: `${WHAT_IT_IS} ${scene.turns ? AT_STOPS : ON_SCREENS}` }),
+    element("div", { class: "lists" }, listOf("gestures", "Mouse and fingers", gestures), listOf("keys", "Keys", keys)));
   dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
   return {
     element: dialog,
@@ -64,8 +68,14 @@ export function createHelp(whole) {
   };
 }
 
-function listOf(title, pairs) {
-  return element("section", {}, element("h3", { text: title }),
+/** What turns under the hand: the cube, or what goes round it. */
+function whatDragDoes({ turns, carried }) {
+  if (!turns) return "look around";
+  return carried ? "turn the cube" : "turn the table";
+}
+
+function listOf(kind, title, pairs) {
+  return element("section", { class: kind }, element("h3", { text: title }),
     element("dl", {}, ...pairs.map(([what, does]) =>
       element("div", {}, element("dt", { text: what }), element("dd", { text: does })))));
 }

@@ -16,6 +16,7 @@ export function listenToKeys(area, does) {
   const pressed = (event) => {
     if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey) return;
     if (event.target.closest?.(TYPED_IN)) return;
+    if (event.target.closest?.("dialog") && event.key !== "?") return; // which closes itself by Escape
     if (event.key === " " && event.target.closest?.("button, a, summary")) return; // presses it
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (action === undefined || action(event) === false) return;

@@ -9,7 +9,7 @@ const COARSEST = 0.35;
 /** Milliseconds after the last frame at which things are at rest, and at most where frames take long. */
 const [AT_REST, LONG_REST] = [140, 400];
 /** Most milliseconds that one frame may move things on by: time spent in another tab does not count. */
-const LONGEST = 100;
+const LONGEST = 250;
 
 /** The part of the full resolution to go on with after a frame that took so many milliseconds. */
 function adapted(scale, cost) {

@@ -3,12 +3,12 @@
 import { mount } from "./app.js";
 import { fromBase64, readScene, readVoxels } from "./data.js";
 
-/** Say a sentence instead of the page. */
+/** Say a sentence instead of the page; it comes without capital and full stop. */
 function saySentence(root, sentence) {
   const said = document.createElement("p");
   said.className = "message";
   said.setAttribute("role", "alert");
-  said.textContent = sentence;
+  said.textContent = `${sentence[0].toUpperCase()}${sentence.slice(1)}.`;
   root.replaceChildren(said);
 }
 
@@ -16,7 +16,7 @@ function saySentence(root, sentence) {
 function bytesOf(id) {
   const part = document.getElementById(id);
   const text = part === null ? "" : part.textContent.trim();
-  if (text === "") throw new Error(`This page is incomplete: it ends before its ${id}.`);
+  if (text === "") throw new Error(`this page is incomplete, it ends before its ${id}: save or write it again`);
   return fromBase64(text);
 }
 
@@ -25,7 +25,7 @@ async function openPage(root) {
     const scene = await readScene(bytesOf("scene"));
     mount(root, scene, await readVoxels(bytesOf("voxels"), scene));
   } catch (error) {
-    saySentence(root, `${error.message} Save or write this page again.`);
+    saySentence(root, error.message);
   }
 }
 

@@ -16,6 +16,7 @@ import { SliceDrawing } from "./slice.js";
 export function createScanline(scene, cube, point) {
   const canvas = element("canvas", { class: "slice", role: "img" });
   const facts = element("p", { class: "facts", "aria-live": "polite" });
+  const heading = element("h2", { text: `Scan-line ${seenFrom(2)}` });
   const subtitle = element("p", { class: "facts" });
   const lamps = element("select", { "aria-label": "Lamp whose beams are drawn", change: () => showAgain() });
   const drawing = new SliceDrawing(canvas, cube);
@@ -43,6 +44,7 @@ export function createScanline(scene, cube, point) {
     }
     const sheet = sheetOf(cube, exposure, view, row);
     drawing.show(sheet, exposure.views[view], { column, dark: now.dark });
+    heading.textContent = `Scan-line ${seenFrom(sheet.axis)}`;
     canvas.setAttribute("aria-label", `${sheet.beams.length} beams through the cube, seen ${seenFrom(sheet.axis)}`);
     facts.textContent = column === null
       ? "Point at a beam, or at a pixel of the shown picture."
@@ -51,7 +53,7 @@ export function createScanline(scene, cube, point) {
 
   return {
     element: element("section", { class: "card scanline", "aria-label": "Scan-line" },
-      element("header", {}, element("h2", { text: "Scan-line from above" }), subtitle, lamps),
+      element("header", {}, heading, subtitle, lamps),
       canvas, facts),
     update(next) {
       now = next;

@@ -237,6 +237,8 @@ void drawFloor() {
   light = tone * (1.0 - shade * dark);
 }
 
+const float THROUGH = 0.35; // of a picture is seen through the screen's paper from behind
+
 void drawScreen(int i) {
   vec4 corner = things[4 * i], right = things[4 * i + 1];
   vec4 down = things[4 * i + 2], facing = things[4 * i + 3];
@@ -247,12 +249,10 @@ void drawScreen(int i) {
   vec2 rim = edge + facing.w / vec2(length(right.xyz), length(down.xyz));
   float inside = within(edge.x, place.grain.x) * within(edge.y, place.grain.y);
   float framed = within(rim.x, place.grain.x) * within(rim.y, place.grain.y);
-  vec3 tone = backTone;
-  if (dot(corner.xyz, facing.xyz) < 0.0) {
-    vec2 spot = clamp(place.at, vec2(0.5), pixels - 0.5) / vec2(textureSize(shadows, 0).xy);
-    float coarse = log2(max(max(place.grain.x, place.grain.y), 1.0));
-    tone = toLinear(textureLod(shadows, vec3(spot, down.w), coarse).rgb);
-  }
+  vec2 spot = clamp(place.at, vec2(0.5), pixels - 0.5) / vec2(textureSize(shadows, 0).xy);
+  float coarse = log2(max(max(place.grain.x, place.grain.y), 1.0));
+  vec3 tone = toLinear(textureLod(shadows, vec3(spot, down.w), coarse).rgb);
+  if (dot(corner.xyz, facing.xyz) >= 0.0) tone = mix(backTone, tone, THROUGH);
   light = mix(light, mix(frameTone, tone, inside), framed);
   if (framed > 0.5) solid = place.depth;
 }

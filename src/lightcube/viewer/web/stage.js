@@ -90,7 +90,7 @@ function stageTurns(scene, view, degrees) {
 }
 
 /** Where the parallel beam through the cube's middle meets the screen's plane. */
-function middleOfShadow(light, origin, right, down) {
+export function middleOfShadow(light, origin, right, down) {
   const normal = cross(right, down);
   return scaled(light, dot(origin, normal) / dot(light, normal));
 }
