@@ -139,6 +139,12 @@ def test_a_cube_shows_itself_as_widget_picture_and_text() -> None:
     assert bundle == parts
 
 
+@pytest.mark.usefixtures("kernel")
+def test_a_cube_too_large_for_a_page_shows_its_pictures_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(notebook, "MOST_SIDE", 1)
+    assert sorted(notebook.displayed(turning())) == ["image/png", "text/plain"]
+
+
 @pytest.mark.usefixtures("kernel", "no_anywidget")
 def test_without_anywidget_a_cube_is_a_picture_and_show_says_what_to_install() -> None:
     assert sorted(notebook.displayed(turning())) == ["image/png", "text/plain"]

@@ -1,11 +1,9 @@
 """Reading and writing files, by suffix."""
 
 from lightcube.io.cubes import UnfinishedCube, bare_name, check_cube_target, load, publish, save
-from lightcube.io.drawings import check_drawing_target, write_drawing
 from lightcube.io.figures import check_figure_target, write_figure
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures, check_pictures_target, write_pictures
-from lightcube.io.pages import check_page_target, write_page
 from lightcube.io.partial import (
     DiskStore,
     begun_units,
@@ -20,6 +18,7 @@ from lightcube.io.pictures import TransparentPictures, read_pictures
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.sheets import check_sheet_target, write_json, write_sheet
 from lightcube.io.stages import is_stage, read_stage, read_stage_frames
+from lightcube.io.texts import check_drawing_target, check_page_target, write_drawing, write_page
 
 __all__ = [
     "ClippedPictures",

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from lightcube.cube import Cube
 from lightcube.errors import InputError
+from lightcube.viewer.smaller import MOST_SIDE
 from lightcube.viewer.thumbnails import still
 
 if TYPE_CHECKING:
@@ -37,15 +38,16 @@ def show(cube: Cube, *, full: bool = False) -> "CubeWidget":
 
 
 def displayed(cube: Cube) -> dict[str, Any]:
-    """What a notebook shows of a cube that is the value of a cell, by MIME type.
+    """What a notebook shows of a cube that is the value of a cell, by MIME type, at once.
 
-    The widget, where one can be shown; a picture of what the cube shows at its stops, for notebooks that are opened
-    without a kernel, on the web or on paper; and a line of text.
+    The widget, where one can be shown and needs no smaller cube to be solved; a picture of what the cube shows at its
+    stops, for notebooks that are opened without a kernel, on the web or on paper; and a line of text.
     """
     if _is_terminal():
         return {"text/plain": repr(cube)}
     try:
-        shown = show(cube)._repr_mimebundle_() if _has_widgets() else None
+        quick = max(cube.grid.shape) <= MOST_SIDE
+        shown = show(cube)._repr_mimebundle_() if quick and _has_widgets() else None
     except InputError:  # there is no anywidget, or the cube is none for a page
         shown = None
     return still(cube) if shown is None else shown[0]
