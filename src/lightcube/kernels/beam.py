@@ -139,7 +139,7 @@ def trace_beam(
     touch the face. There must be room for one more piece than `max_pieces`.
     """
     on_x, on_y, on_z = on_face(px, dx), on_face(py, dy), on_face(pz, dz)
-    part = scale * 0.5 ** (on_x + on_y + on_z)
+    part = scale * 0.5 ** (int(on_x) + int(on_y) + int(on_z))
     for sx in range(2 if on_x else 1):
         for sy in range(2 if on_y else 1):
             for sz in range(2 if on_z else 1):

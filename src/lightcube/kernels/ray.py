@@ -107,7 +107,7 @@ def trace_ray(ray: Ray, shape: Triple, strides: Triple, scale: float, places: Ar
         return _trace_off_faces(ray, shape, strides, scale, places, weights, 0)
     px, py, pz, dx, dy, dz, first, last = ray
     on_x, on_y, on_z = on_face(px, dx), on_face(py, dy), on_face(pz, dz)
-    part = scale * 0.5 ** (on_x + on_y + on_z)
+    part = scale * 0.5 ** (int(on_x) + int(on_y) + int(on_z))
     count = 0
     for sx in range(2 if on_x else 1):
         for sy in range(2 if on_y else 1):
