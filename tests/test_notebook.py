@@ -4,7 +4,6 @@ import base64
 import builtins
 import json
 import math
-import os
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -32,10 +31,10 @@ from lightcube.viewer.described import describe, zipped
 from lightcube.viewer.modules import joined, source
 from lightcube.viewer.packing import pack
 from lightcube.viewer.thumbnails import thumbnails
+from tests.conftest import INTERPRETED
 
 ROOT = Path(__file__).parent.parent
 EXAMPLE = ROOT / "examples" / "light-cube.ipynb"
-INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 SHAPE = (3, 5, 7)
 WIDGET = "application/vnd.jupyter.widget-view+json"
 

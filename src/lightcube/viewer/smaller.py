@@ -23,8 +23,8 @@ def smaller(cube: Cube, callback: Watching | None = None) -> Cube:
     """The cube itself, or where it has more than 128 voxels along a side, one that has so many, of the same size in mm.
 
     It is solved anew for the pictures that the cube was made for, or where it has no targets, for those that it casts,
-    with pixels as large as its voxels, and scored against them. Measured, 16 photographs in 300 voxels: 37 dB, where
-    the mean over larger voxels leaves 24.
+    with pixels as large as its voxels, and scored against them. Measured there, 16 photographs in 300 voxels: 42.6 dB,
+    where the mean over larger voxels leaves 25.9.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ export function orbitFrom({ eye, target, field }) {
 }
 
 /** The orbit with its height within bounds: the eye stays above the floor, and up is up in its picture. */
-export function limited(orbit) {
+function limited(orbit) {
   return { ...orbit, height: Math.min(Math.max(orbit.height, ORBIT_LOWEST), ORBIT_HIGHEST) };
 }
 

@@ -179,7 +179,7 @@ function edgeLines(scene, room, eye, tones) {
 }
 
 /** The lamps that light a screen, by their numbers in the room, the brightest first. */
-export function lampsLighting(scene, exposure) {
+function lampsLighting(scene, exposure) {
   const numbers = [...new Set(scene.views.map((view) => view.lamp))].sort((a, b) => a - b);
   const light = numbers.map((lamp) =>
     exposure.views.filter((view) => view.lamp === lamp).reduce((sum, view) => sum + Math.max(...view.power), 0),
