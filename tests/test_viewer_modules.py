@@ -19,6 +19,7 @@ from lightcube.stage import Lamp, Screen, Shot, Stage
 from lightcube.stage import exposures as exposures_of
 from lightcube.standing import as_stage, standing
 from lightcube.transfer import decode, encode
+from lightcube.viewer import packing
 from lightcube.viewer.described import describe, zipped
 from lightcube.viewer.packing import Packed, pack
 from tests import plain
@@ -134,17 +135,21 @@ def failure(evaluate: Evaluate, expression: str, argument: Any) -> str:
 
 
 @pytest.mark.parametrize("native", [True, False])
+@pytest.mark.parametrize("bits", packing.BITS)
 @pytest.mark.parametrize("name", ["raised", "one colour"])
-def test_voxels_come_through(evaluate: Evaluate, name: str, native: bool) -> None:
-    _, packed, data = held_in_a_page(name)
+def test_voxels_come_through(
+    evaluate: Evaluate, name: str, bits: int, native: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(packing, "BITS", (bits,))
+    _, packed, data = paged(CUBES[name])
     without = "" if native else "delete Uint8Array.fromBase64, "
     found = asked(evaluate, data, f"{without}cube")
-    codes = np.array(found["codes"]).reshape(GRID.shape)
+    codes = np.array(found["codes"]).reshape(*GRID.shape, 3)
     for channel in range(3):
         own = channel % len(packed.codes)
-        np.testing.assert_array_equal(codes >> (10 * channel) & 1023, packed.codes[own])
+        np.testing.assert_array_equal(codes[..., channel], packed.codes[own])
         table = np.array(found["tables"][channel])
-        assert len(table) == 1024
+        assert len(table) == 2**bits
         np.testing.assert_allclose(table[packed.codes[own]], packed.cube.extinction[own], rtol=1e-6)
     assert (tuple(found["shape"]), found["mm"]) == (GRID.shape, GRID.voxel_mm)
 

@@ -17,6 +17,7 @@ from lightcube.geometry import Grid, turntable
 from lightcube.lighting import sampled
 from lightcube.stage import Lamp, Screen, Shot, Stage, exposures
 from lightcube.transfer import Transfer, decode, encode
+from lightcube.viewer import packing
 from lightcube.viewer.described import describe
 from lightcube.viewer.packing import pack
 
@@ -98,6 +99,16 @@ def on_turntable(name: str, **more: Any) -> Cube:
 def test_turntables(evaluate: Run, name: str, whole: bool) -> None:
     cube = on_turntable(name)
     assert worst(shadows(evaluate, cube, ANGLES, whole=whole), cube, ANGLES, whole=whole) <= OFF
+
+
+@pytest.mark.parametrize("kind", ["webgl", "flat"])
+@pytest.mark.parametrize("bits", packing.BITS[1:])
+@pytest.mark.parametrize("name", TURNTABLES)
+def test_codes_of_more_bits(evaluate: Run, name: str, bits: int, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(packing, "BITS", (bits,))
+    cube = on_turntable(name)
+    cube = replace(cube, extinction=cube.extinction * np.float32(5), lamp_powers=cube.powers * 3)
+    assert worst(shadows(evaluate, cube, ANGLES, kind=kind), cube, ANGLES) <= OFF
 
 
 @pytest.mark.parametrize("shape", [(4, 4, 4), (3, 5, 5), (4, 5, 6)])

@@ -63,7 +63,7 @@ def test_what_it_loses_is_what_its_pixels_show(solved: Cube, monkeypatch: pytest
     halves = play(solved).reshape(2, 3, 2, 4, 2, 3).mean(axis=(2, 4))  # 6 x 8 pixels in pairs
     np.testing.assert_allclose(shown_coarsely(solved, small), halves, rtol=1e-5)
     dark = replace(small, extinction=small.extinction + 10)
-    assert lost(solved, pack(dark))[0] > 100 > lost(solved, pack(small))[0]
+    assert lost(solved, dark)[0] > 100 > lost(solved, small)[0]
 
 
 @pytest.mark.parametrize("room", ["two coloured lamps", "aslant and by the inverse square"])
@@ -77,7 +77,7 @@ def test_a_stages_cube_gets_smaller_too(room: str, monkeypatch: pytest.MonkeyPat
     for window, fine in zip(small.lighting.window, cube.lighting.window, strict=True):
         assert np.all(window >= np.ceil(fine / ratio))
         assert np.all(window <= small.views.picture_shape)
-    assert lost(cube, pack(small))[1] < 40
+    assert lost(cube, small)[1] < 40
 
 
 def test_the_command_says_that_it_holds_less(

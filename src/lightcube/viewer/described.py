@@ -48,9 +48,9 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
     lighting = staged.lighting
     assert lighting is not None  # noqa: S101 - a stage's
     camera = camera_for(staged, _WIDE)
-    worst, mean = lost(cube, packed)
+    same = packed.cube.grid.shape == cube.grid.shape
+    worst, mean = packed.lost if same else lost(cube, packed.cube)
     wanted = _wanted(cube)
-    scored = cube if packed.cube.grid.shape == cube.grid.shape else packed.cube
     return {
         "format": FORMAT,
         "title": title if cube.status == "complete" else f"{title} (unfinished)",
@@ -58,6 +58,7 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
             "shape": packed.cube.grid.shape,
             "mm": packed.cube.grid.voxel_mm,
             "channels": len(packed.codes),
+            "bits": packed.bits,
             "least": packed.least,
             "rates": packed.rates,
         },
@@ -76,7 +77,7 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
             "target": [float(each) for each in camera.target],
             "field": camera.field_deg,
         },
-        "pictures": _pictures(scored, staged.names, lighting, bool(wanted)),
+        "pictures": _pictures(cube if same else packed.cube, staged.names, lighting, bool(wanted)),
         "views": _views(staged, lighting),
         "pairs": [
             {"picture": int(picture), "lamp": int(lamp), "power": power.tolist()}

@@ -43,10 +43,10 @@ export function transmittance(cube, voxels, lengths, count = voxels.length) {
   const [reds, greens, blues] = cube.tables;
   let [red, green, blue] = [0, 0, 0];
   for (let piece = 0; piece < count; piece++) {
-    const code = cube.codes[voxels[piece]];
-    red += lengths[piece] * reds[code & 1023];
-    green += lengths[piece] * greens[(code >>> 10) & 1023];
-    blue += lengths[piece] * blues[(code >>> 20) & 1023];
+    const first = 3 * voxels[piece];
+    red += lengths[piece] * reds[cube.codes[first]];
+    green += lengths[piece] * greens[cube.codes[first + 1]];
+    blue += lengths[piece] * blues[cube.codes[first + 2]];
   }
   return [Math.exp(-red), Math.exp(-green), Math.exp(-blue)];
 }

@@ -1,7 +1,6 @@
 // From the bytes that a page carries to its scene and its voxels, or one sentence that says what is damaged.
 
 const DATA_FORMAT = 1;
-const DATA_CODES = 1024;
 const DATA_AGAIN = "write or send the page again";
 
 /**
@@ -60,35 +59,38 @@ export async function readScene(bytes) {
 /**
  * The voxels, as a texture takes them.
  *
- * The bytes are first the high 8 bits of every code, [channel][z][y][x], then their low 2 bits, four to a byte.
+ * The bytes are first the high 8 bits of every code, [channel][z][y][x], then their low 2, 4 or 8 bits, as many to a
+ * byte as it holds, the first one lowest.
  * @param {Uint8Array} bytes gzipped
  * @param {object} scene
- * @returns {Promise<{shape: number[], mm: number, codes: Uint32Array, tables: Float32Array[]}>} codes of three channels
- *   packed as RGB10_A2, index (z * ny + y) * nx + x, and each channel's extinction (1/mm) by code
+ * @returns {Promise<{shape: number[], mm: number, bits: number, codes: Uint16Array, tables: Float32Array[]}>} three
+ *   codes of so many bits for each voxel, [z][y][x][channel], and each channel's extinction (1/mm) by code
  */
 export async function readVoxels(bytes, scene) {
-  const { shape, mm, channels, least, rates } = scene.voxels;
+  const { shape, mm, channels, bits, least, rates } = scene.voxels;
   const unpacked = await gunzip(bytes, "voxels");
   const count = shape[0] * shape[1] * shape[2];
-  const size = count * channels + Math.ceil((count * channels) / 4);
+  const low = bits - 8;
+  const size = count * channels + Math.ceil((count * channels * low) / 8);
   if (unpacked.length !== size) {
     const sizes = `${unpacked.length} bytes, not the ${size} of ${shape.join(" x ")} voxels in ${channels} channels`;
     throw new Error(`the page's voxels have ${sizes}: ${DATA_AGAIN}`);
   }
-  const codes = new Uint32Array(count);
+  const codes = new Uint16Array(3 * count);
   for (let channel = 0; channel < 3; channel++) {
     const first = (channels === 1 ? 0 : channel) * count;
     for (let voxel = 0; voxel < count; voxel++) {
       const place = first + voxel;
-      const low = (unpacked[count * channels + (place >> 2)] >> (2 * (place & 3))) & 3;
-      codes[voxel] |= ((unpacked[place] << 2) | low) << (10 * channel);
+      const ahead = place * low; // bits
+      const rest = (unpacked[count * channels + (ahead >>> 3)] >> (ahead & 7)) & ((1 << low) - 1);
+      codes[3 * voxel + channel] = (unpacked[place] << low) | rest;
     }
   }
-  const tables = [0, 1, 2].map((channel) => dataTable(least, rates[channels === 1 ? 0 : channel]));
-  return { shape, mm, codes, tables };
+  const tables = [0, 1, 2].map((channel) => dataTable(bits, least, rates[channels === 1 ? 0 : channel]));
+  return { shape, mm, bits, codes, tables };
 }
 
 /** Extinction (1/mm) by code: nearly even steps up to about `least`, beyond it they grow with the extinction. */
-function dataTable(least, rate) {
-  return Float32Array.from({ length: DATA_CODES }, (_, code) => least * Math.expm1(rate * code));
+function dataTable(bits, least, rate) {
+  return Float32Array.from({ length: 2 ** bits }, (_, code) => least * Math.expm1(rate * code));
 }

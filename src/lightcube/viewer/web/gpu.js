@@ -82,10 +82,7 @@ function gpuKit(gl, scene, cube) {
     things: gl.createBuffer(),
     small: { frame: gl.createFramebuffer(), texture: null, size: "" },
   };
-  gl.activeTexture(gl.TEXTURE0 + VOXEL_UNIT);
-  const [nz, ny, nx] = cube.shape;
-  const kind = [gl.RGBA_INTEGER, gl.UNSIGNED_INT_2_10_10_10_REV];
-  gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGB10_A2UI, nx, ny, nz, 0, ...kind, cube.codes);
+  uploadVoxels(kit, cube);
   const { rates, least, mm } = scene.voxels;
   for (const program of [kit.caster, kit.painter]) {
     gl.useProgram(program.made);
@@ -97,6 +94,22 @@ function gpuKit(gl, scene, cube) {
   gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, kit.things);
   gl.bufferData(gl.UNIFORM_BUFFER, 64 * MOST_THINGS, gl.DYNAMIC_DRAW);
   return kit;
+}
+
+/** Codes of 10 bits take four bytes a voxel; longer ones take six, in the browser, and often eight on the card. */
+function uploadVoxels({ gl }, { shape, bits, codes }) {
+  const size = [shape[2], shape[1], shape[0], 0];
+  gl.activeTexture(gl.TEXTURE0 + VOXEL_UNIT);
+  if (bits > 10) {
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 2); // rows of an odd number of voxels
+    gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGB16UI, ...size, gl.RGB_INTEGER, gl.UNSIGNED_SHORT, codes);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+    return;
+  }
+  const texels = new Uint32Array(codes.length / 3);
+  for (let i = 0; i < texels.length; i++) texels[i] = codes[3 * i] | (codes[3 * i + 1] << 10) | (codes[3 * i + 2] << 20);
+  const kind = [gl.RGBA_INTEGER, gl.UNSIGNED_INT_2_10_10_10_REV];
+  gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGB10_A2UI, ...size, ...kind, texels);
 }
 
 function gpuProgram(gl, fragments) {

@@ -69,7 +69,7 @@ export class SliceDrawing {
   drawCells({ axis, shape: [n, m], cells }, place) {
     const image = new ImageData(m, n);
     const texels = new Uint32Array(image.data.buffer);
-    for (let i = 0; i < cells.length; i++) if (cells[i] >= 0) texels[i] = this.colourOf(this.cube.codes[cells[i]]);
+    for (let i = 0; i < cells.length; i++) if (cells[i] >= 0) texels[i] = this.colourOf(cells[i]);
     Object.assign(this.cells, { width: m, height: n });
     this.cells.getContext("2d").putImageData(image, 0, 0);
     const fast = axis === 0 ? 1 : 0;
@@ -88,10 +88,10 @@ export class SliceDrawing {
     this.context.drawImage(this.cells, 0, 0);
   }
 
-  /** A code's colour as a texel. */
-  colourOf(code) {
-    const [red, green, blue] = this.colours;
-    return (255 << 24) | (blue[(code >>> 20) & 1023] << 16) | (green[(code >>> 10) & 1023] << 8) | red[code & 1023];
+  /** A voxel's colour as a texel. */
+  colourOf(voxel) {
+    const [red, green, blue] = this.colours.map((levels, channel) => levels[this.cube.codes[3 * voxel + channel]]);
+    return (255 << 24) | (blue << 16) | (green << 8) | red;
   }
 
   drawBeams(beams, { column, dark }) {
@@ -138,10 +138,10 @@ export class SliceDrawing {
  * lets through `DEEP`.
  */
 function voxelColours({ codes, tables, mm }) {
-  const step = Math.max(1, Math.floor(codes.length / LOOKED_AT));
+  const step = 3 * Math.max(1, Math.floor(codes.length / 3 / LOOKED_AT));
   const absorbed = [];
   for (let i = 0; i < codes.length; i += step) {
-    const each = tables.reduce((sum, table, channel) => sum + table[(codes[i] >>> (10 * channel)) & 1023], 0) / 3;
+    const each = tables.reduce((sum, table, channel) => sum + table[codes[i + channel]], 0) / 3;
     if (each > 0) absorbed.push(each * mm);
   }
   absorbed.sort((a, b) => a - b);
