@@ -176,6 +176,19 @@ def test_the_camera_prefers_the_lit_side_past_the_cube() -> None:
     assert not np.any(np.all(np.abs(line) < half, axis=1))
 
 
+@pytest.mark.parametrize("first", [0.0, 70.0, 190.0])
+def test_the_camera_faces_the_first_screen_of_a_lamp_that_circles(first: float) -> None:
+    lamp, wall = (
+        Lamp("sun", (1, 0, -0.2), turns=True),
+        Screen("wall", (25, 0, -4), (16, 8), 4.0, (-1, 0, 0), turns=True),
+    )
+    stops = tuple(np.arange(first, first + 360, 60))
+    shots = tuple(Shot(f"{stop}", "wall", ("sun",), i) for i, stop in enumerate(stops))
+    cube = cube_on(Stage(GRID, (lamp,), (wall,), shots, stops, cube_turns=False))
+    screen = standing(cube, float(np.unique(cube.angles)[0])).screens[0]
+    assert screen.facing @ (np.array(camera_for(cube).eye) - screen.corners.mean(axis=0)) > 0
+
+
 def test_a_screen_that_reaches_behind_the_eye_is_seen_as_far_as_it_lies_ahead() -> None:
     stage = one(Screen("floor", (0, 0, -30), (400, 300), 10.0, (0, 0, 1)), Lamp("sun", (1, 0, 0)))
     seen = room_picture(

@@ -22,8 +22,8 @@ _AROUND = tuple(np.arange(0.0, 360.0, 30.0))
 _FIELD, _HEIGHTS, _AZIMUTHS = 36.0, (27.0, 48.0), tuple(np.arange(7.5, 360.0, 15.0))
 #: Stops at which eyes are tried at most.
 _MOST_STOPS = 12
-#: Parts of the picture that stay free at its edges; what standing high costs.
-_MARGIN, _HIGH = 0.05, 0.12
+#: Parts of the picture that stay free at its edges; what standing high costs, and what the first stop is worth more.
+_MARGIN, _HIGH, _FIRST = 0.05, 0.12, 0.1
 #: A lamp's radius, in widths of the cube.
 _LAMP = 0.036
 #: Linear light of the room and of what stands in it.
@@ -66,7 +66,7 @@ def camera_for(cube: Cube, size: tuple[int, int] = (540, 960)) -> Camera:
     """A camera that sees the cube, all screens and all lamps at every angle of the table, from above.
 
     Of eyes all around, it is the one that sees most of the screens' lit sides at the cube's stops, past the cube, the
-    lamps and other screens.
+    lamps and other screens. Where that is alike all around, as with a lamp that circles, the first stop is seen best.
 
     Parameters
     ----------
@@ -85,7 +85,8 @@ def camera_for(cube: Cube, size: tuple[int, int] = (540, 960)) -> Camera:
         right = unit(np.cross(ahead, (0.0, 0.0, 1.0)))
         axes = np.stack([right, np.cross(right, ahead), ahead])
         eye = fitting(points, axes, (across, across * size[0] / size[1]), _MARGIN)
-        worth = float(np.mean([_worth(cube.grid, room, eye) for room in rooms])) - _HIGH * (height > _HEIGHTS[0])
+        seen = [_worth(cube.grid, room, eye) for room in rooms]
+        worth = float(np.mean(seen)) + _FIRST * seen[0] - _HIGH * (height > _HEIGHTS[0])
         if worth > best + 1e-9:
             best, chosen = worth, (eye, eye - (eye @ ahead) * ahead)
     eye, target = chosen
