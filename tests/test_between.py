@@ -2,6 +2,7 @@
 
 import builtins
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from lightcube.forward import lamp_at, play
 from lightcube.frames import Frames
 from lightcube.geometry import Grid, Views, turned, turntable
 from lightcube.metrics import psnr, score, ssim
+from lightcube.report.measuring import measure
 from lightcube.transfer import encode
 from tests.test_cli import run
 
@@ -226,6 +228,31 @@ def test_robust_scores_every_disturbance() -> None:
     lighter = [decibels(picture + 0.01, frames, view) for view, picture in enumerate(play(cube))]
     assert figures["black"] == pytest.approx({"psnr_mean": np.mean(lighter), "psnr_min": min(lighter)}, rel=1e-4)
     assert figures["all"]["psnr_mean"] < min(each["psnr_mean"] for name, each in figures.items() if name != "all")
+
+
+def marks(work: Callable[[Callable[[int, int], None]], object]) -> list[tuple[int, int]]:
+    """What a long work says of its progress."""
+    said: list[tuple[int, int]] = []
+    work(lambda done, of: said.append((done, of)))
+    return said
+
+
+def test_progress_counts_every_picture_to_the_end() -> None:
+    cube = make_cube([20.0, 75.0, 250.0], 35.0)
+    frames = cast_frames(cube, 0.02)
+    samples = len(curve(cube, frames).angles)
+    pictures = 3 * len(DISTURBANCES)
+    for said, last in (
+        (marks(lambda tell: curve(cube, frames, callback=tell)), samples),
+        (marks(lambda tell: robust(cube, frames, callback=tell)), pictures),
+        (marks(lambda tell: measure(cube, frames, callback=tell)), samples + pictures + 3),
+    ):
+        assert said[-1] == (last, last)
+        done, of = np.array(said).T
+        assert np.all(np.diff(done) > 0)
+        assert np.all(np.diff(of) >= 0)
+        assert np.all(done <= of)
+        assert len(said) > 0.8 * last
 
 
 @pytest.mark.parametrize(

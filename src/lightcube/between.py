@@ -1,6 +1,6 @@
 """What one sees between the frames, and what a set-up that is not perfect makes of them."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -57,7 +57,7 @@ class Curve:
     period: float
 
 
-def curve(cube: Cube, frames: Frames, steps: int = 8) -> Curve:
+def curve(cube: Cube, frames: Frames, steps: int = 8, *, callback: Callable[[int, int], None] | None = None) -> Curve:
     """Compare what is cast at, around and between the stops with the nearer of the two frames.
 
     Parameters
@@ -67,6 +67,8 @@ def curve(cube: Cube, frames: Frames, steps: int = 8) -> Curve:
     steps
         Parts that each gap between neighbouring stops is divided into. Near the stops, and where a picture
         falls below 30 dB, samples lie closer, down to 0.05 degrees.
+    callback
+        Called with how many samples are done, and how many there are as far as is known.
 
     Raises
     ------
@@ -92,7 +94,12 @@ def curve(cube: Cube, frames: Frames, steps: int = 8) -> Curve:
     samples = [(view, offset) for view in range(len(frames)) for offset in _offsets(reach[:, view], steps)]
     found = np.empty((0, 4))
     while samples:
-        found = np.concatenate([found, _compared(cube, frames, *np.array(samples).T)])
+        rows = []
+        for row in _compared(cube, frames, *np.array(samples).T):
+            rows.append(row)
+            if callback is not None:
+                callback(len(found) + len(rows), len(found) + len(samples))
+        found = np.concatenate([found, rows])
         ends = [(view, side, *_end(found, view, side)) for view in range(len(frames)) for side in (-1, 1)]
         samples = [
             (view, side * (inside + outside) / 2)
@@ -127,18 +134,15 @@ def _offsets(reach: Floats, steps: int) -> Floats:
     return np.concatenate([-sides[0], [0.0], sides[1]])
 
 
-def _compared(cube: Cube, frames: Frames, view: Floats, offset: Floats) -> Floats:
-    """``(samples, 4)``: view, offset in degrees, PSNR and SSIM of what is cast there against that view's frame."""
+def _compared(cube: Cube, frames: Frames, view: Floats, offset: Floats) -> Iterator[tuple[float, float, float, float]]:
+    """View, offset in degrees, PSNR and SSIM of what is cast there against that view's frame, sample by sample."""
     index = view.astype(np.intp)
     views = turned(cube.views.take(index), offset)
-    rows = np.empty((len(index), 4))
     wanted = encode(frames.pictures, frames.transfer)
-    for row, place, degrees, picture in zip(
-        rows, index, offset, cast(cube, views, lamp_at(cube, views.angles)), strict=True
-    ):
+    shown = cast(cube, views, lamp_at(cube, views.angles))
+    for place, degrees, picture in zip(index, offset, shown, strict=True):
         pair = encode(picture, frames.transfer), wanted[place], frames.weight[place]
-        row[:] = place, degrees, psnr(*pair), ssim(*pair)
-    return rows
+        yield float(place), float(degrees), psnr(*pair), ssim(*pair)
 
 
 def _end(found: Floats, view: int, side: int) -> tuple[float, float, float]:
@@ -235,11 +239,16 @@ def _rounded(extinction: NDArray[np.float32], levels: int) -> NDArray[np.float32
     return np.rint(extinction / step) * step
 
 
-def robust(cube: Cube, frames: Frames) -> dict[str, Any]:
+def robust(cube: Cube, frames: Frames, *, callback: Callable[[int, int], None] | None = None) -> dict[str, Any]:
     """What is left of the frames in a set-up that is a little off: ``psnr_mean`` and ``psnr_min`` by disturbance.
 
     The `DISTURBANCES` are: none, the cube turned by 0.2 degrees, half a voxel to the right, half a voxel up, every
     lamp power 2 % too high, extinction in 8 bits, a screen's black of 1 % of white, and all of these at once.
+
+    Parameters
+    ----------
+    callback
+        Called with how many pictures are compared, and how many there are.
 
     Raises
     ------
@@ -249,8 +258,11 @@ def robust(cube: Cube, frames: Frames) -> dict[str, Any]:
     check_same_views(cube, frames)
     wanted = encode(frames.pictures, frames.transfer)
     figures = {}
-    for name, disturbance in DISTURBANCES.items():
-        shown = (encode(picture, frames.transfer) for picture in disturbed(cube, disturbance))
-        each = [psnr(*triple) for triple in zip(shown, wanted, frames.weight, strict=True)]
+    for number, (name, disturbance) in enumerate(DISTURBANCES.items()):
+        each: list[float] = []
+        for picture, *pair in zip(disturbed(cube, disturbance), wanted, frames.weight, strict=True):
+            each.append(psnr(encode(picture, frames.transfer), *pair))
+            if callback is not None:
+                callback(number * len(frames) + len(each), len(DISTURBANCES) * len(frames))
         figures[name] = {"psnr_mean": float(np.mean(each)), "psnr_min": float(np.min(each))}
     return figures

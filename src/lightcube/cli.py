@@ -213,13 +213,15 @@ def score(
     wanted = frames_from_targets(loaded) if frames is None else cli_report.refitted(loaded, frames)
     scores = metrics.score(loaded, wanted)
     if between_frames or plot is not None:
-        curve = between.curve(loaded, wanted)
+        with progress("between the frames", as_json=False) as advance:  # what is printed is one document
+            curve = between.curve(loaded, wanted, callback=advance)
         columns = {"angles": curve.angles, "nearest": curve.nearest, "psnr": curve.psnr, "ssim": curve.ssim}
         scores["between"] = {name: column.tolist() for name, column in {**columns, "lobe_deg": curve.lobes}.items()}
         if plot is not None:
             io.write_figure(plot, plots.between_plot({"": curve}), overwrite=overwrite)
     if robust:
-        scores["robust"] = between.robust(loaded, wanted)
+        with progress("a set-up that is off", as_json=False) as advance:
+            scores["robust"] = between.robust(loaded, wanted, callback=advance)
     if sheet is not None:
         shown = forward.play(loaded)
         picture = contact_sheet(shown, wanted, [view["psnr"] for view in scores["views"]])

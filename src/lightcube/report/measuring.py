@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.between import Curve, curve, robust
+from lightcube.between import DISTURBANCES, Curve, curve, robust
 from lightcube.consistency import advice, check
 from lightcube.cube import Cube
 from lightcube.fitting import targets
@@ -24,8 +24,6 @@ Levels = NDArray[np.uint8]
 #: Pixels of all pictures together that a page holds without loss, and those that it holds at all (with a little loss):
 #: wanted, shown and difference of so many stay below 10 MB.
 EXACT, MOST = 700_000, 8_000_000
-#: Parts that the measuring consists of, for its progress.
-_PARTS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +73,7 @@ def measure(
     stage
         That the frames are from, if it is at hand.
     callback
-        Called with how many parts of the work are done, and how many there are.
+        Called with how many pictures are compared, and how many there are as far as is known.
 
     Raises
     ------
@@ -83,22 +81,20 @@ def measure(
         Where the frames do not fit the cube's views.
     """
     check_same_views(cube, frames)
-    done = callback or (lambda part, of: None)
-    done(0, _PARTS)
+    tell = callback or (lambda done, of: None)
+    rest = (len(DISTURBANCES) + 1) * len(frames)
+    turned = cube.lighting is None and len(np.unique(cube.views.elevations)) == 1
+    between = curve(cube, frames, callback=lambda done, of: tell(done, of + rest)) if turned else None
+    of = rest + (0 if between is None else len(between.angles))
+    left = robust(cube, frames, callback=lambda done, _: tell(of - rest + done, of))
     pictures: dict[int, list[Levels]] = {number: [] for number in chosen(frames)}
     shown = cast(cube, cube.views, cube.powers, cube.lighting)
     scores = score_pictures(_kept(shown, frames, pictures), frames)
-    done(1, _PARTS)
-    turned = cube.lighting is None and len(np.unique(cube.views.elevations)) == 1
-    between = curve(cube, frames) if turned else None
-    done(2, _PARTS)
-    left = robust(cube, frames)
-    done(3, _PARTS)
+    tell(of, of)
     facts = check(frames, cube.grid, most_power(cube)) if turned else None
     said = sentences(frames) if facts is None else advice(facts)
     if stage is not None:
         said = [*doubtful(stage), *said]
-    done(_PARTS, _PARTS)
     return Findings(cube, frames, stage, scores, pictures, between, left, facts, said, _apart(cube, frames))
 
 
