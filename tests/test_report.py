@@ -1,6 +1,7 @@
 """The report of a cube: what it claims is so, it loads nothing, names stay names, and its command makes the cube."""
 
 import base64
+import hashlib
 import html
 import json
 import shlex
@@ -348,6 +349,11 @@ def test_a_stage_has_its_room_and_no_curve(run: Run, frames: Path) -> None:
     assert [row[-1] for row in page.rows("Every picture")[1:]] == ["wall", "floor"]
     assert [row[2] for row in page.rows("Where the pictures stand")[1:]] == ["sun & <moon>", "top"]
     assert "What is seen between the stops is not measured for a stage: play the cube to see it." in page.texts("p")
+    read = [(row[0], row[1], row[-1]) for row in page.rows("What was read")[1:]]
+    inside = [Path("stage.toml"), Path("frames/1.png"), Path("frames/2.png")]
+    roles = ("stage", "pictures", "pictures")
+    hashed = [hashlib.sha256(path.read_bytes()).hexdigest() for path in inside]
+    assert read[1:] == [(role, path.name, each) for role, path, each in zip(roles, inside, hashed, strict=True)]
     alone = reported(run, "a.npz")
     assert any("give it as the pictures" in words for words in alone.texts("p"))
     sizes = [(a["width"], a["height"]) for t, a in page.elements if t == "img" and str(a["alt"]).startswith("wanted")]

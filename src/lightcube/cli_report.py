@@ -73,9 +73,14 @@ def _compared(found: Findings, frames: str | None) -> str:
 
 def _origins(cube: str, frames: str | None) -> Iterator[Origin]:
     """The files on this disk that were read."""
-    for role, name in (("cube", cube), ("pictures", frames)):
-        if name is not None and Path(name).exists():
-            yield _origin(role, Path(name))
+    read = [("cube", Path(cube))]
+    if frames is not None and io.is_stage(frames):
+        read += [("stage", Path(frames)), *(("pictures", path) for path in io.stage_pictures(frames))]
+    elif frames is not None:
+        read.append(("pictures", Path(frames)))
+    for role, path in read:
+        if path.exists():
+            yield _origin(role, path)
 
 
 def _origin(role: str, path: Path) -> Origin:

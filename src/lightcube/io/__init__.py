@@ -17,7 +17,7 @@ from lightcube.io.partial import (
 from lightcube.io.pictures import TransparentPictures, read_pictures
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.sheets import check_sheet_target, write_json, write_sheet
-from lightcube.io.stages import is_stage, read_stage, read_stage_frames
+from lightcube.io.stages import is_stage, read_stage, read_stage_frames, stage_pictures
 from lightcube.io.texts import check_drawing_target, check_page_target, write_drawing, write_page
 
 __all__ = [
@@ -49,6 +49,7 @@ __all__ = [
     "read_stage_frames",
     "save",
     "scene_names",
+    "stage_pictures",
     "write_drawing",
     "write_figure",
     "write_json",

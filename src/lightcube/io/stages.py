@@ -196,6 +196,12 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
     return replace(stage, shots=tuple(shots)), named, tuple(fits)
 
 
+def stage_pictures(path: str | Path) -> list[Path]:
+    """The files and folders of pictures that a stage file names, each once; `InputError` as from `read_stage`."""
+    file = Path(path)
+    return list(dict.fromkeys(file.parent / table.file for table in _parse(file).picture))
+
+
 def read_stage_frames(
     path: str | Path, *, lamp_samples: int = 1, pixel_samples: int = 1, transfer: Transfer = "srgb"
 ) -> tuple[Stage, Frames]:
