@@ -155,10 +155,12 @@ def _wanted(cube: Cube) -> list[str]:
         picture = levels[:rows, :columns]
         colours = np.broadcast_to(picture[..., :-1], (*picture.shape[:2], 3))
         images.append(Image.fromarray(np.dstack([colours, np.where(picture[..., -1:] > 0, 255, 0).astype(np.uint8)])))
-    exact = [_encoded(image, "png", optimize=True) for image in images]
-    if sum(map(len, exact)) <= _EXACT:
-        return exact
-    return [_encoded(image, "webp", quality=_QUALITY) for image in images]
+    exact: list[str] = []
+    for image in images:
+        exact.append(_encoded(image, "png", optimize=True))
+        if sum(map(len, exact)) > _EXACT:
+            return [_encoded(each, "webp", quality=_QUALITY) for each in images]
+    return exact
 
 
 def _encoded(image: Image.Image, kind: str, **options: Any) -> str:

@@ -7,6 +7,8 @@ import { PLAY_SPEED } from "./turning.js";
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 /** Steps of the slider, in degrees. */
 const SLIDER_STEP = 0.01;
+/** Ticks that stand apart even on a phone. */
+const MOST_TICKS = 60;
 
 /**
  * The row of controls.
@@ -70,14 +72,17 @@ function spokenPlace(now) {
   return `${degreesText(now.angle)}, ${off === "0.0°" ? "at" : `${off} from`} '${now.name}'`;
 }
 
+/** A tick for every stop, or evenly for some of very many. */
 function ticksOf(stops) {
+  const every = Math.ceil(stops.length / MOST_TICKS);
+  const marked = stops.filter((_, i) => i % every === 0);
   const space = "http://www.w3.org/2000/svg";
   const drawing = document.createElementNS(space, "svg");
   drawing.setAttribute("viewBox", "0 0 360 1");
   drawing.setAttribute("preserveAspectRatio", "none");
   drawing.setAttribute("aria-hidden", "true");
   const lines = document.createElementNS(space, "path");
-  lines.setAttribute("d", stops.map((stop) => `M${stop} 0V1`).join(""));
+  lines.setAttribute("d", marked.map((stop) => `M${stop} 0V1`).join(""));
   lines.setAttribute("vector-effect", "non-scaling-stroke");
   drawing.append(lines);
   return drawing;
