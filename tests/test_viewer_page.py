@@ -183,6 +183,37 @@ def test_a_widget_follows_its_model_and_leads_it(evaluate: Open) -> None:
     assert found == {"told": [60.0, 0, 222.5, 0, 33, 1], "parts": 3, "outside": True, "left": 0}
 
 
+GROUNDS = """(async () => {
+  const parts = Object.fromEntries(["scene", "voxels"].map((part) => [part, fromBase64(argument[part])]));
+  const model = { get: (name) => parts[name] ?? 60, on() {}, off() {} };
+  const around = document.createElement("div");
+  const inside = around.attachShadow({ mode: "open" }).appendChild(document.createElement("div"));
+  const still = () => new Promise((done) => setTimeout(done, 100));
+  const theme = () => inside.firstChild.dataset.theme;
+  const end = await render({ model, el: inside });
+  const themes = [theme()];
+  around.style.background = "oklch(0.2 0.05 250)";
+  document.body.append(around);
+  await still();
+  themes.push(theme());
+  for (const [transparent, body] of [[true, "#1e1e1e"], [true, "#fff"], [false, "#ffe"]]) {
+    around.style.background = transparent ? "#fff2" : "black";
+    document.body.style.background = body;
+    await still();
+    themes.push(theme());
+  }
+  end();
+  return themes;
+})()"""
+
+
+def test_a_widget_is_as_dark_as_its_notebook(evaluate: Open) -> None:
+    parts = given(turning())
+    scene = base64.b64encode(zipped(parts["scene"])).decode()
+    found = evaluate(("widget.js",), GROUNDS, {"scene": scene, "voxels": parts["voxels"]})
+    assert found == ["light", "dark", "dark", "light", "dark"]
+
+
 def test_the_style_stays_inside() -> None:
     """Every rule is below .lightcube: a notebook around it looks as before."""
     text = re.sub(

@@ -13,6 +13,7 @@ import { momentOf } from "./moment.js";
 import { RoomView } from "./roomview.js";
 import { createScanline } from "./scanline.js";
 import { stops } from "./stage.js";
+import { followTheme } from "./theme.js";
 import { nearestOf, neighbourOf, Turning } from "./turning.js";
 
 /** Degrees by which a pixel of a drag turns the cube. */
@@ -34,13 +35,13 @@ const COPY_EVERY = 80;
 export function mount(root, scene, cube, { compact = false } = {}) {
   const turning = new Turning(stops(scene), matchMedia("(prefers-reduced-motion: reduce)").matches);
   const view = new RoomView(scene, cube);
-  const app = { root, scene, turning, view, chosen: { place: 0, row: null, column: null, whole: false, dark: false } };
+  const app = { root, scene, turning, view, chosen: { place: 0, row: null, column: null, whole: false, dark: null } };
   app.does = actionsOf(app);
   app.parts = createParts(app, cube, compact);
   const [show, rested] = showing(app);
   app.loop = createLoop(show, rested);
   view.aim(turning.angle, false);
-  const ends = [listenToTheme(app), listenToKeys(compact ? root : document, app.does), listenToRoom(app, compact)];
+  const ends = [listenToTheme(app, compact), listenToKeys(compact ? root : document, app.does), listenToRoom(app, compact)];
 
   view.renderer.onRestored = app.loop.ask;
   root.classList.add("lightcube");
@@ -133,16 +134,13 @@ function setTheme(app, dark) {
   app.root.dataset.theme = dark ? "dark" : "light";
 }
 
-/** Follow the system's theme until another one is chosen. */
-function listenToTheme(app) {
-  const system = matchMedia("(prefers-color-scheme: dark)");
-  const follow = () => {
-    if (!app.ownTheme) setTheme(app, system.matches);
+/** Follow the theme of what is around until another one is chosen. */
+function listenToTheme(app, compact) {
+  return followTheme(app.root, compact, (dark) => {
+    if (app.ownTheme || app.chosen.dark === dark) return;
+    setTheme(app, dark);
     app.loop.ask();
-  };
-  setTheme(app, system.matches);
-  system.addEventListener("change", follow);
-  return () => system.removeEventListener("change", follow);
+  });
 }
 
 function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
