@@ -57,7 +57,7 @@ export async function readScene(bytes) {
 }
 
 /**
- * The voxels, as a texture takes them.
+ * The codes of the voxels, and what they stand for.
  *
  * The bytes are first the high 8 bits of every code, [channel][z][y][x], then their low 2, 4 or 8 bits, as many to a
  * byte as it holds, the first one lowest.
