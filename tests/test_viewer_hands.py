@@ -190,6 +190,18 @@ def test_space_plays_and_pauses(visit: Open) -> None:
     assert tab.get_by_role("button", name="Play").is_visible()
 
 
+def test_after_a_click_the_keys_are_the_cubes(visit: Open) -> None:
+    tab = visit()
+    tab.get_by_role("button", name="Snap").click()
+    tab.keyboard.press("Space")
+    until(tab, f"{CUBE}.angle > {STOPS[0] + 3}")
+    assert tab.get_by_role("button", name="Snap").get_attribute("aria-pressed") == "false"
+    snap = tab.get_by_role("button", name="Snap")
+    snap.focus()
+    tab.keyboard.press("Space")
+    assert snap.get_attribute("aria-pressed") == "true"
+
+
 def test_playing_rests_on_every_stop_and_keeps_its_speed(evaluate: Open) -> None:
     """A whole turn at 24° a second takes 15 s, half of them on stops; without snapping, none."""
     text = """[true, false].map((snap) => {
@@ -257,6 +269,32 @@ def test_the_film_strip_turns_to_its_pictures(visit: Open) -> None:
 def touch(session: Any, kind: str, *points: tuple[float, float]) -> None:
     spots = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(points)]
     session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": spots})
+
+
+@pytest.mark.parametrize("selector", [".choose", ".slice"])
+def test_what_a_finger_pointed_at_stays(visit: Open, selector: str) -> None:
+    tab = visit(**PHONE)
+    tab.locator(selector).scroll_into_view_if_needed()
+    fingers = tab.context.new_cdp_session(tab)
+    box = tab.locator(selector).bounding_box()
+    touch(fingers, "touchStart", (box["x"] + 0.52 * box["width"], box["y"] + 0.3 * box["height"]))
+    tab.wait_for_timeout(20)
+    touch(fingers, "touchEnd")
+    until(tab, "document.querySelector('.scanline > .facts').textContent.includes('passes')")
+    rested(tab)
+    assert "passes" in tab.locator(".scanline > .facts").inner_text()
+    if selector == ".choose":
+        assert "row 3 of 8" in tab.locator(".scanline header").inner_text()
+
+
+def test_the_film_strip_keeps_the_row(visit: Open) -> None:
+    tab = visit()
+    chooser = tab.get_by_role("slider", name="Row of the shown picture")
+    chooser.focus()
+    tab.keyboard.press("ArrowDown")
+    tab.locator(".thumbnail").nth(3).click()
+    stands(tab, 200.0)
+    assert chooser.get_attribute("aria-valuetext") == "row 6 of 8"
 
 
 def test_fingers_turn_and_pinch(visit: Open) -> None:

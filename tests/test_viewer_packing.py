@@ -221,6 +221,8 @@ def test_the_command_writes_a_page(run: Any, tmp_path: Path, monkeypatch: pytest
     ("asked", "said"),
     [
         (("nothing.zarr",), "there is no nothing.zarr"),
+        ((".",), "'.' names no cube"),
+        (("cube.zarr", "-o", "folder.html"), "folder.html is a folder of something else"),
         (("cube.zarr", "-o", "page.png"), "use .html"),
         (("cube.zarr", "-o", "no/page.html"), "there is no folder no"),
         (("notes.txt",), "no suffix"),
@@ -238,6 +240,7 @@ def test_bad_input_is_a_sentence(
     io.save(random_cube(*TURNTABLES[0]), "cube.zarr")
     Path("notes.txt").write_text("no cube")
     Path("begun.zarr.partial").mkdir()
+    Path("folder.html").mkdir()
     before = sorted(tmp_path.iterdir())
     done = run("view", *asked)
     assert done.code == 2

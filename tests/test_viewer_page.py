@@ -2,6 +2,7 @@
 
 import base64
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,13 @@ import pytest
 
 from lightcube.viewer.described import zipped
 from lightcube.viewer.modules import source
+from lightcube.viewer.page import page
 from tests.browser import opened
 from tests.test_viewer_shadows import given
 from tests.visiting import (
     CUBE,
     CUBES,
+    NAMES,
     PHONE,
     STOPS,
     Open,
@@ -26,6 +29,7 @@ from tests.visiting import (
     right,
     shown,
     stands,
+    turned_to,
     turning,
     unsnapped,
     until,
@@ -83,6 +87,30 @@ def test_on_a_phone_nothing_is_too_small_or_too_wide(visit: Open) -> None:
         assert min(box["width"], box["height"]) >= 40, control.get_attribute("aria-label")
 
 
+def test_on_a_phone_nothing_moves_while_it_turns(visit: Open) -> None:
+    tab = visit(**PHONE)
+    heights = []
+    for where in (8.0, 98.0, 358.8):
+        turned_to(tab, where)
+        heights.append(tab.locator(".controls").bounding_box()["height"])
+    assert len(set(heights)) == 1
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (390, 844)])
+def test_a_long_name_pushes_nothing_aside(browser: Any, tmp_path: Path, size: tuple[int, int]) -> None:
+    names = tuple(f"Screenshot 2026-01-01 at 12.34.56 ({name} {name} {name})" for name in NAMES)
+    (tmp_path / "long.html").write_text(page(replace(turning(), names=names), "long"), encoding="utf-8")
+    tab, heard = opened(browser, tmp_path / "long.html", width=size[0], height=size[1])
+    until(tab, CUBE)
+    for selector in (".side", "html"):
+        assert tab.evaluate(f"(e => e.scrollWidth <= e.clientWidth)(document.querySelector('{selector}'))")
+    for part in (".choose", ".lamps"):
+        box, card = tab.locator(part).bounding_box(), tab.locator(".card.compare").bounding_box()
+        assert box["x"] + box["width"] <= card["x"] + card["width"]
+    assert heard == []
+    tab.context.close()
+
+
 @pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_nobody_is_shut_out(visit: Open, theme: str, size: tuple[int, int]) -> None:
@@ -96,8 +124,14 @@ def test_nobody_is_shut_out(visit: Open, theme: str, size: tuple[int, int]) -> N
             assert found.violations_count == 0, found.generate_report()
 
 
+#: Words of the code, and what a flipped bit makes of them: one is met when data is read, one as the cards are drawn.
+GARBLED = {"return scene;": "return scEne;", "powers = lampPowers(": "powers = lampPowdrs("}
+
+
 def damaged(kind: str, text: str) -> str:
-    """The page with its scene or voxels garbled, or cut off somewhere."""
+    """The page with its scene, its voxels or a word of its code garbled, or cut off somewhere."""
+    if kind in GARBLED:
+        return text.replace(kind, GARBLED[kind], 1)
     if kind in ("scene", "voxels"):
         start = text.index(f'id="{kind}">') + len(f'id="{kind}">') + 200
         return text[:start] + "AAAA" + text[start + 4 :]
@@ -110,7 +144,9 @@ def damaged(kind: str, text: str) -> str:
     return text[: text.index(marks[kind.removeprefix("cut ")]) + 30]
 
 
-@pytest.mark.parametrize("kind", ["scene", "voxels", "cut style", "cut code", "cut in scene", "cut in voxels"])
+@pytest.mark.parametrize(
+    "kind", ["scene", "voxels", *GARBLED, "cut style", "cut code", "cut in scene", "cut in voxels"]
+)
 def test_a_damaged_page_says_so(browser: Any, pages: dict[str, Path], tmp_path: Path, kind: str) -> None:
     (tmp_path / "damaged.html").write_text(
         damaged(kind, pages["turntable"].read_text(encoding="utf-8")), encoding="utf-8"

@@ -41,10 +41,10 @@ def check_free(path: Place, *, overwrite: bool, replaceable: Callable[[Place], b
         other_folder = taken and is_folder(path) and not replaceable(path)
     if isinstance(path, Path) and not path.parent.is_dir():
         raise InputError(f"there is no folder {path.parent} to write {path.name} into: make it first")
+    if other_folder:
+        raise InputError(f"{path} is a folder of something else and is not overwritten: give another name")
     if taken and not overwrite:
         raise InputError(f"{path} exists already: give another name, or overwrite it (--overwrite)")
-    if other_folder:
-        raise InputError(f"{path} is a folder with other things in it and is not overwritten: give another name")
 
 
 @contextmanager

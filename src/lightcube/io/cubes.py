@@ -26,8 +26,10 @@ class UnfinishedCube(UserWarning):
 
 
 def bare_name(path: str | Path) -> str:
-    """Name of a cube's file without its suffix."""
+    """Name of a cube's file without its suffix; `InputError` where there is none."""
     name = name_of(place(path))
+    if not name:
+        raise InputError(f"{str(path)!r} names no cube: give a file or folder that ends with {', '.join(_FORMATS)}")
     found = [suffix for suffix in (*_FORMATS, PARTIAL_SUFFIX) if name.lower().endswith(suffix)]
     return bare_name(name[: -len(max(found, key=len))]) if found and name.lower() not in found else name
 

@@ -27,7 +27,20 @@ def check_page_target(path: str | Path, *, overwrite: bool = False) -> None:
 
 
 def write_page(path: Given, text: str, *, overwrite: bool = False) -> Given:
-    """Write the text of an HTML page; it appears when it is whole."""
+    """Write the text of an HTML page; it appears when it is whole.
+
+    Parameters
+    ----------
+    path
+        Ends with ``.html``.
+    overwrite
+        Whether a file that stands there may be replaced.
+
+    Raises
+    ------
+    InputError
+        Where the name has another suffix, something stands there already, or the system does not let it be written.
+    """
     return _write(path, text, _PAGES, overwrite)
 
 

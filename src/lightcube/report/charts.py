@@ -1,7 +1,7 @@
 """Curves and bars of a report as inline SVG, whose colours are those of the page (`style.css`)."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
 
@@ -107,7 +107,7 @@ def lamp_powers(places: Reals, powers: Reals, most: float, label: str) -> str:
     low, high = float(powers.min()), max(float(powers.max()), most)
     chart = _Chart((0.5, float(places.max()) + 0.5), (low / 1.25, high * 1.25), logarithmic=True)
     numbers = [number for number in _ticks(1, float(places.max())) if number == int(number) and number >= 1]
-    chart.axes(numbers, list(_doublings(*chart.up)), ("picture", "lamp power"))
+    chart.axes(numbers, _doublings(*chart.up), ("picture", "lamp power"))
     chart.line(most, "limit")
     size = 3.2 if len(places) < 120 else 1.8
     for colour, values in enumerate(powers.T):
@@ -134,8 +134,9 @@ def _ticks(low: float, high: float) -> list[float]:
     return [number * step for number in range(first, math.floor(high / step + 1e-9) + 1)]
 
 
-def _doublings(low: float, high: float) -> Iterator[float]:
-    """Powers of two between, every second or fourth where they are many."""
+def _doublings(low: float, high: float) -> list[float]:
+    """Powers of two between, every second or fourth where they are many; round numbers where there is but one."""
     exponents = range(math.ceil(math.log2(low)), math.floor(math.log2(high)) + 1)
     step = max(1, -(-len(exponents) // _TICKS))
-    return (2.0**exponent for exponent in exponents if exponent % step == 0)
+    found = [2.0**exponent for exponent in exponents if exponent % step == 0]
+    return found if len(found) > 1 else _ticks(low, high)

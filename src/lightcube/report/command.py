@@ -157,7 +157,7 @@ def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
     if source is None:
         doubts.insert(0, "The pictures are not recorded with the cube: put the name of theirs into the command.")
     if cube.lighting is None and "fit" not in made:
-        doubts.append("How the pictures were fitted is not recorded: the cube was not made on the command line.")
+        doubts.append("How the pictures were fitted is not recorded: the cube was not made by `lightcube solve`.")
     if made.get("dtype", "float32") != "float32":
         doubts.append(f"It was computed in {made['dtype']}, the command line computes in float32.")
     if cube.status != "complete":

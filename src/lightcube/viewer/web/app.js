@@ -43,6 +43,11 @@ export function mount(root, scene, cube, { compact = false } = {}) {
   view.aim(turning.angle, false);
   const ends = [listenToTheme(app, compact), listenToKeys(compact ? root : document, app.does), listenToRoom(app, compact)];
 
+  // keys are the cube's again after a click, but in the film strip; who walks by Tab stays where he is
+  root.onclick = (event) => {
+    const pressed = event.detail > 0 && event.target.closest("button:not(.thumbnail)") !== null;
+    if (pressed && !root.querySelector("dialog[open]")) view.canvas.focus({ preventScroll: true });
+  };
   view.renderer.onRestored = app.loop.ask;
   root.classList.add("lightcube");
   root.classList.toggle("compact", compact);
@@ -63,6 +68,7 @@ export function mount(root, scene, cube, { compact = false } = {}) {
     },
     dispose() {
       ends.forEach((end) => end());
+      root.onclick = null;
       app.loop.stop();
       view.dispose();
       root.replaceChildren();
@@ -85,7 +91,7 @@ function actionsOf(app) {
     picture(number) {
       const { screen, angle } = scene.pictures[number];
       const place = view.exposures.findIndex((exposure) => exposure.screen === screen);
-      Object.assign(chosen, { place, row: null, column: null });
+      if (place !== chosen.place) Object.assign(chosen, { place, row: null, column: null });
       turning.glideTo(angle);
     },
     play: () => (turning.playing ? turning.release(0) : turning.play()),
@@ -166,7 +172,7 @@ function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
 function createParts({ scene, turning, view, does }, cube, compact) {
   return {
     header: createHeader(scene, does),
-    quiet: createQuietLine(scene, view.note),
+    quiet: createQuietLine(scene, view.note, compact),
     hint: createHint(scene),
     help: createHelp(scene),
     controls: scene.turns ? createControls(scene, turning.stops, does) : null,
@@ -182,7 +188,10 @@ function layoutOf(parts, compact) {
   const stage = element("div", { class: "stage" }, parts.room, parts.header, parts.hint.element);
   const dock = element("div", { class: "dock" }, parts.controls?.element ?? null, parts.filmstrip.element);
   const rest = [parts.said, parts.help.element];
-  if (compact) return [stage, dock, ...rest];
+  if (compact) {
+    dock.append(...(parts.quiet === null ? [] : [parts.quiet]));
+    return [stage, dock, ...rest];
+  }
   const cards = [parts.compare.element, parts.scanline.element, parts.quiet];
   return [stage, dock, element("aside", { class: "side", "aria-label": "Details" }, ...cards), ...rest];
 }
@@ -216,6 +225,7 @@ function showing(app) {
   }
 
   function rested() {
+    app.root.dataset.drawn = "";
     const now = momentOf(scene, turning, view.exposures, chosen);
     showCards(now);
     view.canvas.setAttribute("aria-label", `The cube in its room, turned by ${degreesText(now.angle)}`);

@@ -70,11 +70,14 @@ function createShown(does) {
 
   const pointAt = (event) => {
     const [x, y] = placeIn(canvas, event);
-    does.point(within(Math.floor(y * rows), rows), within(Math.floor(x * columns), columns));
+    row = within(Math.floor(y * rows), rows); // at once: the mouse may leave before the next drawing
+    does.point(row, within(Math.floor(x * columns), columns));
   };
   area.addEventListener("pointerdown", pointAt);
   area.addEventListener("pointermove", pointAt);
-  area.addEventListener("pointerleave", () => does.point(row, null));
+  area.addEventListener("pointerleave", (event) => {
+    if (event.pointerType === "mouse") does.point(row, null); // what a finger has shown stays
+  });
   area.addEventListener("keydown", (event) => {
     const way = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] }[event.key];
     if (way === undefined) return;

@@ -23,9 +23,12 @@ export function createHeader(scene, does) {
  *
  * @param {Object} scene
  * @param {string|null} note a sentence more
- * @returns {HTMLElement}
+ * @param {boolean} brief only where all of the cube is not held, or there is a note
+ * @returns {HTMLElement|null}
  */
-export function createQuietLine(scene, note) {
+export function createQuietLine(scene, note, brief) {
+  const whole = countText(scene.kept.full) === countText(scene.voxels.shape);
+  if (brief && whole && note === null) return null;
   return element("p", { class: "quiet", text: [keptText(scene), note].filter(Boolean).join(" ") });
 }
 

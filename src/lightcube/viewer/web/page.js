@@ -25,7 +25,9 @@ async function openPage(root) {
     const scene = await readScene(bytesOf("scene"));
     mount(root, scene, await readVoxels(bytesOf("voxels"), scene));
   } catch (error) {
-    saySentence(root, error.message);
+    const damaged = error instanceof ReferenceError || error instanceof TypeError || error instanceof SyntaxError;
+    const said = `this page's program is damaged (${error.message}): write or send the page again`;
+    saySentence(root, damaged ? said : error.message);
   }
 }
 

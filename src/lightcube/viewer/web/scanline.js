@@ -24,7 +24,9 @@ export function createScanline(scene, cube, point) {
 
   canvas.addEventListener("pointermove", (event) => pointAt(event));
   canvas.addEventListener("pointerdown", (event) => pointAt(event));
-  canvas.addEventListener("pointerleave", () => point(now.spot.row, null));
+  canvas.addEventListener("pointerleave", (event) => {
+    if (event.pointerType === "mouse") point(now.spot.row, null);
+  });
 
   function pointAt(event) {
     const box = canvas.getBoundingClientRect();
