@@ -4,6 +4,7 @@ import base64
 import hashlib
 import html
 import json
+import re
 import shlex
 import sys
 from collections.abc import Callable, Iterator
@@ -24,6 +25,7 @@ from lightcube.fitting import frames_from_targets
 from lightcube.geometry import Grid, Views, spread_angles, turntable
 from lightcube.io import load, save
 from lightcube.metrics import score
+from lightcube.report.charts import lamp_powers
 from lightcube.report.command import reproducing
 from lightcube.report.html import image
 from lightcube.report.measuring import EXACT, MOST, chosen
@@ -420,3 +422,20 @@ def test_a_browser_finds_nothing_to_mend(run: Run, frames: Path, browser: Any) -
         assert tab.evaluate("document.documentElement.scrollWidth") <= width
         assert [each for each in heard if not each.startswith("file:")] == []
         tab.context.close()
+
+
+@pytest.mark.parametrize("darkest", [1000.0, 5.0])
+def test_single_dark_voxels_are_told(run: Run, frames: Path, darkest: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lightcube.report.sections._COARSE_DB", -100)
+    cube = made()
+    cube.extinction[:, 1, 2, 3] = darkest / cube.grid.voxel_mm
+    save(cube, "a.npz")
+    told = any("far darker" in words for words in reported(run, "a.npz").texts("p"))
+    assert told == (darkest > 10)
+
+
+@pytest.mark.parametrize(("low", "high"), [(14.3, 16.0), (0.6, 16.0)])
+def test_the_axis_of_lamp_powers_can_be_read(low: float, high: float) -> None:
+    drawing = lamp_powers(np.arange(1.0, 4.0), np.array([[low], [high], [high]]), high, "lamps")
+    labels = [float(said) for said in re.findall(r'text-anchor="end">([\d.]+)<', drawing)]
+    assert len([each for each in labels if low / 1.3 < each < 1.3 * high]) >= 2

@@ -243,6 +243,28 @@ GROUNDS = """(async () => {
 })()"""
 
 
+QUIET = """(async () => {
+  const parts = Object.fromEntries(["scene", "voxels"].map((part) => [part, fromBase64(argument[part])]));
+  const el = document.body.appendChild(document.createElement("div"));
+  const end = await render({ model: { get: (name) => parts[name] ?? 60, on() {}, off() {} }, el });
+  const said = el.querySelector(".quiet")?.textContent ?? null;
+  end();
+  return said;
+})()"""
+
+
+def test_a_widget_says_where_it_holds_a_smaller_cube(evaluate: Open) -> None:
+    parts = given(turning())
+    for full, said in (
+        (parts["scene"]["kept"]["full"], ""),
+        ((200, 200, 200), "solved for the pictures of one of 200³"),
+    ):
+        parts["scene"]["kept"]["full"] = full
+        scene = base64.b64encode(zipped(parts["scene"])).decode()
+        found = evaluate(("widget.js",), QUIET, {"scene": scene, "voxels": parts["voxels"]})
+        assert said in found if said else found is None
+
+
 def test_a_widget_is_as_dark_as_its_notebook(evaluate: Open) -> None:
     parts = given(turning())
     scene = base64.b64encode(zipped(parts["scene"])).decode()

@@ -18,6 +18,8 @@ from lightcube.stage_drawing import drawing
 
 #: Pictures in the strip at the top.
 _STRIP = 12
+#: What extinction in few levels costs where it is worth a word, dB, and the absorbance of a voxel that is dark enough.
+_COARSE_DB, _DARK = 20, 10
 
 
 def head(found: Findings, compared: str) -> str:
@@ -251,7 +253,20 @@ def disturbances(found: Findings) -> str:
         for name, left in found.robust.items()
     ]
     heads = ("what is off", "mean PSNR, dB", "worst, dB", "costs, dB")
-    return table("What is left of the pictures", heads, rows, "figures")
+    parts = [table("What is left of the pictures", heads, rows, "figures")]
+    darkest = float(found.cube.extinction.max()) * found.cube.grid.voxel_mm
+    if found.robust["extinction"]["psnr_mean"] < best - _COARSE_DB and darkest > 1.1 * _DARK:
+        bound = number(_DARK / found.cube.grid.voxel_mm)
+        parts.append(
+            element(
+                "p",
+                "A few voxels are far darker than the others, so 256 even levels are too coarse for these (below 0 dB "
+                f"the screen is much brighter than white). Solved with <code>--max-extinction {bound}</code>, no voxel "
+                f"darker than an absorbance of {_DARK}, such a cube is as good and bears them far better.",
+                class_="note",
+            )
+        )
+    return "\n".join(parts)
 
 
 def before(found: Findings) -> str:
