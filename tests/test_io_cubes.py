@@ -220,7 +220,7 @@ def test_a_folder_that_is_no_cube_is_never_replaced(tmp_path: Path, suffix: str)
     path = tmp_path / f"a{suffix}"
     path.mkdir()
     (path / "zarr.json").write_text('{"attributes": {"another": 1}}')
-    with pytest.raises(InputError, match="other things"):
+    with pytest.raises(InputError, match="of something else"):
         save(make(), path, overwrite=True)
     assert files_in(path) == ["zarr.json"]
 

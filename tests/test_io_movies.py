@@ -293,7 +293,7 @@ def test_a_folder_with_other_things_is_never_replaced(tmp_path: Path) -> None:
     for name in ("a", "b.gif"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "thesis.tex").write_text("years of work")
-        with pytest.raises(InputError, match="other things"):
+        with pytest.raises(InputError, match="of something else"):
             write_pictures(tmp_path / name, from_uint8(levels(2)), overwrite=True)
         assert (tmp_path / name / "thesis.tex").read_text() == "years of work"
 
