@@ -41,13 +41,13 @@ export function mount(root, scene, cube, { compact = false } = {}) {
   const [show, rested] = showing(app);
   app.loop = createLoop(show, rested);
   view.aim(turning.angle, false);
-  const ends = [listenToTheme(app, compact), listenToKeys(compact ? root : document, app.does), listenToRoom(app, compact)];
+  const ends = [
+    listenToTheme(app, compact),
+    listenToKeys(compact ? root : document, app.does),
+    listenToRoom(app, compact),
+    listenToClicks(app),
+  ];
 
-  // keys are the cube's again after a click, but in the film strip; who walks by Tab stays where he is
-  root.onclick = (event) => {
-    const pressed = event.detail > 0 && event.target.closest("button:not(.thumbnail)") !== null;
-    if (pressed && !root.querySelector("dialog[open]")) view.canvas.focus({ preventScroll: true });
-  };
   view.renderer.onRestored = app.loop.ask;
   root.classList.add("lightcube");
   root.classList.toggle("compact", compact);
@@ -68,7 +68,6 @@ export function mount(root, scene, cube, { compact = false } = {}) {
     },
     dispose() {
       ends.forEach((end) => end());
-      root.onclick = null;
       app.loop.stop();
       view.dispose();
       root.replaceChildren();
@@ -147,6 +146,16 @@ function listenToTheme(app, compact) {
     setTheme(app, dark);
     app.loop.ask();
   });
+}
+
+/** After a click the keys are the cube's again, but in the film strip; who walks by Tab stays where he is. */
+function listenToClicks({ root, view }) {
+  const clicked = (event) => {
+    const pressed = event.detail > 0 && event.target.closest("button:not(.thumbnail)") !== null;
+    if (pressed && !root.querySelector("dialog[open]")) view.canvas.focus({ preventScroll: true });
+  };
+  root.addEventListener("click", clicked);
+  return () => root.removeEventListener("click", clicked);
 }
 
 function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
