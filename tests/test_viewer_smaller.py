@@ -57,6 +57,44 @@ def test_the_smaller_cube_shows_the_same_pictures(solved: Cube, monkeypatch: pyt
     assert [each["psnr"] for each in told["pictures"]] == [each["psnr"] for each in small.scores["views"]]
 
 
+BOUNDS: dict[str, dict[str, Any]] = {
+    "as it comes": {},
+    "extinction": {"max_extinction": 0.02},
+    "a lamp of power 1": {"lamp_power": 1.0},
+    "one lamp": {"lamp": "global", "lamp_max": 3.0},
+    "weak lamps": {"lamp_max": 1.5},
+    "black": {"black": 0.3},
+    "all": {"lamp_power": 2.0, "max_extinction": 0.03, "black": 0.2},
+}
+
+
+@pytest.mark.parametrize("bounds", BOUNDS.values(), ids=BOUNDS.keys())
+def test_what_bounded_the_cube_bounds_the_smaller_one(
+    solved: Cube, bounds: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cube = backward.solve(frames_from_targets(solved), solved.grid, iterations=20, **bounds).cube
+    monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
+    small = smaller(cube)
+    assert small.extinction.max() <= bounds.get("max_extinction", np.inf) * (1 + 1e-6)
+    least, most = bounds.get("lamp_power", 0), bounds.get("lamp_power", bounds.get("lamp_max", 16))
+    assert np.all((least <= small.powers) & (small.powers <= most))
+    if bounds.get("lamp") == "global":
+        assert np.all(small.powers == small.powers[0])
+    for bound in ("lamp", "lamp_power", "lamp_max", "max_extinction", "black"):
+        assert small.provenance.get(bound) == cube.provenance.get(bound), bound
+
+
+def test_what_bounded_a_stages_cube_bounds_the_smaller_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    known_cube, wanted = known(stage("two coloured lamps"))
+    bounds: dict[str, Any] = {"lamp": "global", "max_extinction": 0.05, "black": 0.1}
+    cube = backward.solve(wanted, known_cube.grid, iterations=20, **bounds).cube
+    monkeypatch.setattr(page_cube, "MOST_SIDE", max(cube.grid.shape) - 1)
+    small = smaller(cube)
+    assert small.extinction.max() <= 0.05 * (1 + 1e-6)
+    for bound in ("lamp", "max_extinction", "black"):
+        assert small.provenance[bound] == cube.provenance[bound], bound
+
+
 def test_what_it_loses_is_what_its_pixels_show(solved: Cube, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(page_cube, "MOST_SIDE", 6)
     small = smaller(solved)
