@@ -12,8 +12,9 @@ import time
 
 import numpy as np
 
-from lightcube.geometry import Grid, spread_angles, turntable
-from lightcube.projector import Projector
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import spread_angles, turntable
+from lightcube.projection.projector import Projector
 
 SIZES = [64, 96, 128, 192, 256, 300]
 

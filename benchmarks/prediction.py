@@ -1,4 +1,4 @@
-"""Measure how well cubes show their pictures, fit the law of `lightcube.prediction` to it, and say how far off it is.
+"""Measure how well cubes show their pictures, fit the law of `planning.prediction` to it, and say how far off it is.
 
     python benchmarks/prediction.py
 
@@ -22,16 +22,17 @@ import skimage.data
 from numpy.typing import NDArray
 
 from lightcube import io
-from lightcube.backward import solve
-from lightcube.fitting import fit_to_views
-from lightcube.forward import cast
-from lightcube.frames import Frames, Pictures
-from lightcube.geometry import Grid, raster_shape, spread_angles, turntable
-from lightcube.metrics import psnr
-from lightcube.prediction import BIAS, GROWTH, MOST_DB, law, rehearse
-from lightcube.problem import Lamp
+from lightcube.backward.recipe import Powers
+from lightcube.backward.solving import solve
+from lightcube.forward.casting import cast
+from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.transfer import decode, encode
+from lightcube.optics.views import spread_angles, turntable
+from lightcube.pictures.fitting import fit_to_views
+from lightcube.pictures.frames import Frames, Pictures
+from lightcube.planning.prediction import BIAS, GROWTH, MOST_DB, law, rehearse
 from lightcube.scene.tracer import scene_frames
-from lightcube.transfer import decode, encode
+from lightcube.scoring.metrics import psnr
 
 OUT = Path("out/prediction")
 #: Photographs of even and of odd cases.
@@ -75,7 +76,7 @@ class Case(NamedTuple):
     picture: tuple[int, int]
     #: ``photo``, ``saturated``, ``gray``, or the name of a scene.
     style: str
-    lamp: Lamp
+    lamp: Powers
     lamp_max: float
     #: Only a disc in the middle of the pictures counts.
     disc: bool
@@ -105,9 +106,9 @@ def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
         ny, nx = nx, ny
     style = str(rng.choice(["photo", "photo", "photo", "saturated", "gray"]))
     lamp_max = float(rng.choice([1, 4, 16, 16, 16, 64]))
-    other: tuple[Lamp, ...] = ("global", "fixed")
+    other: tuple[Powers, ...] = ("global", "fixed")
     kind = int(rng.integers(8))
-    lamp: Lamp = "per-view" if kind < 6 else other[kind - 6]
+    lamp: Powers = "per-view" if kind < 6 else other[kind - 6]
     load = math.exp(rng.uniform(math.log(1.5 if held else 2.5), math.log(6 if held else 14)))
     disc, tour = bool(rng.random() < 0.16), bool(rng.random() < 0.2)
     width = load * math.sqrt(nx * ny) / views if level else math.sqrt(load * nx * ny * nz / n / views * aspect)

@@ -2,7 +2,7 @@
 
     python benchmarks/quality.py [TABLE ...] [--out FOLDER] [--figures FOLDER] [--passes N]
 
-Inputs are fixed: photographs that come with scikit-image, in the crops that `lightcube.demo.photographs` states, and
+Inputs are fixed: photographs that come with scikit-image, in the crops that `pictures.samples.photographs` states, and
 traced scenes. Tables, all of them unless some are named:
 
 must        what has to be reached, with the paper's own method and set-up as the first figure
@@ -32,11 +32,12 @@ import numpy as np
 from PIL import Image
 
 import lightcube as lc
-from lightcube import demo, plots
-from lightcube.conditioning import best_order
-from lightcube.fitting import fit_to_views
-from lightcube.metrics import psnr
-from lightcube.transfer import encode, to_uint8
+from lightcube.drawing import plots
+from lightcube.optics.transfer import encode, to_uint8
+from lightcube.pictures import samples
+from lightcube.pictures.fitting import fit_to_views
+from lightcube.planning.order import best_order
+from lightcube.scoring.metrics import psnr
 
 Row = dict[str, Any]
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
@@ -185,7 +186,7 @@ def frames_of(problem: Problem) -> tuple[lc.Frames, lc.Grid]:
     shape = (problem.rows, problem.columns)
     views = lc.turntable(grid, angles, elevation=problem.elevation, picture_shape=shape)
     if problem.pictures == "photographs":
-        return fit_to_views(demo.photographs(problem.count, problem.columns / problem.rows), views), grid
+        return fit_to_views(samples.photographs(problem.count, problem.columns / problem.rows), views), grid
     return lc.scene_frames(lc.read_scene(problem.pictures), views, grid), grid
 
 
@@ -230,7 +231,7 @@ def over_the_hold(cube: lc.Cube, frames: lc.Frames, degrees: float) -> Row:
 def by_command_line(problem: Problem, folder: Path) -> Row:
     """Solve photographs as someone does who has never read the manual: a folder, a name, and --n."""
     folder.mkdir(parents=True, exist_ok=True)
-    photos = demo.photographs(problem.count)
+    photos = samples.photographs(problem.count)
     for number, (name, image) in enumerate(zip(photos.names, photos.images, strict=True)):
         Image.fromarray(to_uint8(image)).save(folder / f"{number:02}-{name}.png")
     made = folder.with_suffix(".zarr")
@@ -333,7 +334,7 @@ def say_best_elevation(rows: list[Row]) -> None:
 
 
 def points(run: "Runs", curve: Curve, raised: float) -> list[tuple[float, float]]:
-    """Load, as `lightcube.consistency.load`, and mean PSNR of each width; level pictures are as high as the cube."""
+    """Load, as `planning.consistency.load`, and mean PSNR of each width; level pictures are as high as the cube."""
     rows = [run(problem) for problem in curve.problems(raised)]
     return [(row["count"] * row["columns"] * row["rows"] / row["n"] ** 2, row["psnr_mean"]) for row in rows]
 

@@ -17,10 +17,11 @@ import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
-from lightcube.geometry import Grid, Views
 from lightcube.kernels.ray import most_pieces
 from lightcube.kernels.rays import _trace_rows
-from lightcube.rays import Rays
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import Views
+from lightcube.projection.rays import Rays
 
 
 def views(n: int, count: int, pixels: int, *, point: bool) -> Views:

@@ -26,14 +26,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 import lightcube as lc
-from lightcube import demo
-from lightcube.fitting import fit_to_stage
+from lightcube.backward.problem import pose
 from lightcube.io import read_stage, read_stage_frames
-from lightcube.lighting import sampled
-from lightcube.metrics import score_pictures
-from lightcube.problem import pose
+from lightcube.optics.rig import sampled
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.pictures import samples
+from lightcube.pictures.fitting import fit_to_stage
+from lightcube.scoring.metrics import score_pictures
 from lightcube.solvers import METHODS
-from lightcube.stage import Lamp, Screen, Shot, Stage, exposures
 
 Row = dict[str, Any]
 EXAMPLES = Path(__file__).parents[1] / "examples" / "stages"
@@ -121,7 +121,7 @@ def hemisphere(n: int, passes: int) -> Iterator[Row]:
         "32 lamps all over": all_over(n, 32, 64),
     }
     for name, stage in stages.items():
-        yield measured(name, stage.grid, frames_of(stage, demo.photographs(32)), passes)[0]
+        yield measured(name, stage.grid, frames_of(stage, samples.photographs(32)), passes)[0]
 
 
 def points(n: int, passes: int) -> Iterator[Row]:
@@ -137,7 +137,7 @@ def points(n: int, passes: int) -> Iterator[Row]:
             (1.5, 180.0),
         ):
             stage = around(n, count, columns, distance, span, 16)
-            frames = frames_of(stage, demo.photographs(count, aspect=2 * columns / n))
+            frames = frames_of(stage, samples.photographs(count, aspect=2 * columns / n))
             said = "parallel" if math.isinf(distance) else f"{distance:g} widths"
             yield measured(f"{count} x {part}, {said}, {span:g}", stage.grid, frames, passes, load=count * part)[0]
 
@@ -147,10 +147,10 @@ def soft(n: int, passes: int) -> Iterator[Row]:
     for size in (0.5, 1.0, 2.0, 4.0):
         stage = tilts(n, 8, [35], 16, vertical=True)
         stage = replace(stage, lamps=tuple(replace(lamp, size_deg=size) for lamp in stage.lamps))
-        pictures = demo.photographs(8)
+        pictures = samples.photographs(8)
         true = frames_of(stage, pictures, 32)
-        for name, samples in (("not minded", 1), ("minded", 8)):
-            frames = frames_of(stage, pictures, samples)
+        for name, points in (("not minded", 1), ("minded", 8)):
+            frames = frames_of(stage, pictures, points)
             row, cube = measured(f"{size:g} degrees, {name}", stage.grid, frames, passes)
             assert true.lighting is not None  # noqa: S101 - a stage's frames have one
             shown = score_pictures(lc.cast(cube, true.views, cube.powers, true.lighting), true)
@@ -164,7 +164,7 @@ def starts(n: int, passes: int) -> Iterator[Row]:
         coarser = max(stage.grid.shape) / n
         screens = tuple(replace(screen, pitch_mm=screen.pitch_mm * coarser) for screen in stage.screens)
         stage = replace(stage, grid=lc.Grid((n, n, n), stage.grid.voxel_mm * coarser), screens=screens)
-        problem = pose(frames_of(stage, demo.photographs(8)), stage.grid, 0.0, "per-view")
+        problem = pose(frames_of(stage, samples.photographs(8)), stage.grid, 0.0, "per-view")
         assert problem.mixture is not None  # noqa: S101
         lamps = len(np.unique(problem.lamp_of_view))
         bounds = np.full((lamps, 3), 1e-4), np.full((lamps, 3), float(stage.lamps[0].power_max))

@@ -13,10 +13,11 @@ import numpy as np
 import pytest
 
 from lightcube.bench.products import columns_of, projector
-from lightcube.cube import Cube
-from lightcube.forward import player
-from lightcube.geometry import Grid, Views, spread_angles, turntable
-from lightcube.projector import Projector
+from lightcube.forward.casting import player
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import Views, spread_angles, turntable
+from lightcube.projection.projector import Projector
 
 N, VIEWS, ANY_VIEWS = 96, 96, 24
 

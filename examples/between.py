@@ -10,10 +10,13 @@ from pathlib import Path
 import numpy as np
 
 import lightcube as lc
-from lightcube import demo, plots
-from lightcube.between import DISTURBANCES, Curve, curve, robust
-from lightcube.metrics import mean_psnr
-from lightcube.transfer import to_uint8
+from lightcube.drawing import plots
+from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.transfer import to_uint8
+from lightcube.pictures import samples
+from lightcube.scoring.between import Curve, curve
+from lightcube.scoring.metrics import mean_psnr
+from lightcube.scoring.robust import robust
 
 #: Where the strips show a picture, as a fraction of the way to the next stop, and how much they are enlarged.
 PARTS, SCALE = (0.0, 1 / 64, 1 / 32, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 3 / 4, 1.0), 3
@@ -24,7 +27,7 @@ def block(n: int) -> lc.Grid:
 
 
 def photographs(grid: lc.Grid) -> lc.Frames:
-    return lc.fit(demo.photographs(), grid, elevation=35.0, frame_width=0.5)
+    return lc.fit(samples.photographs(), grid, elevation=35.0, frame_width=0.5)
 
 
 def juggler(grid: lc.Grid, count: int) -> lc.Frames:

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 import lightcube as lc
-from lightcube.transfer import to_uint8
+from lightcube.optics.transfer import to_uint8
 
 STOPS, SCALE = (0, 6, 13, 19, 26), 3
 

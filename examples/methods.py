@@ -4,7 +4,7 @@ python examples/methods.py
 """
 
 import lightcube as lc
-from lightcube import demo
+from lightcube.pictures import samples
 
 
 def main() -> None:
@@ -12,8 +12,8 @@ def main() -> None:
     raised = lc.turntable(grid, lc.spread_angles(32, elevation=35), elevation=35, picture_shape=(48, 48))
     level = lc.turntable(grid, lc.spread_angles(64), picture_shape=(64, 64))
     pictures = {
-        "photographs 32 x 32, 35 degrees": lc.fit(demo.photographs(), grid, elevation=35, frame_width=0.5),
-        "photographs 64 x 64, 0 degrees": lc.fit(demo.photographs(), grid, elevation=0),
+        "photographs 32 x 32, 35 degrees": lc.fit(samples.photographs(), grid, elevation=35, frame_width=0.5),
+        "photographs 64 x 64, 0 degrees": lc.fit(samples.photographs(), grid, elevation=0),
         "juggler 48 x 48, 35 degrees": lc.scene_frames(lc.read_scene("juggler"), raised, grid),
         "gems 64 x 64, 0 degrees": lc.scene_frames(lc.read_scene("gems"), level, grid),
     }

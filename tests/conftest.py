@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from tests.browser import bare_browser, browser, evaluate, launch
+from tests.helpers.browser import bare_browser, browser, evaluate, launch
 
 __all__ = ["bare_browser", "browser", "evaluate", "launch"]
 
@@ -14,10 +14,10 @@ INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 @pytest.fixture(autouse=True)
 def short_rehearsals(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where kernels run interpreted, whole commands rehearse and draft briefly; the compiled run does all of it."""
-    module = request.module.__name__.split(".")[-1]
-    if INTERPRETED and module.startswith(("test_cli", "test_docs", "test_resume", "test_cluster", "test_report")):
-        monkeypatch.setattr("lightcube.prediction.PASSES", 2)
-        monkeypatch.setattr("lightcube.conditioning._PASSES", 1)
-        monkeypatch.setattr("lightcube.conditioning._WALKS", 1)
-        monkeypatch.setattr("lightcube.conditioning._SWAPS", 1)
-        monkeypatch.setattr("lightcube.planning.WIDTHS", (0.5, 1.0))
+    room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
+    if INTERPRETED and (room in ("cli", "jobs", "report") or file == "test_docs"):
+        monkeypatch.setattr("lightcube.planning.prediction.PASSES", 2)
+        monkeypatch.setattr("lightcube.planning.order._PASSES", 1)
+        monkeypatch.setattr("lightcube.planning.order._WALKS", 1)
+        monkeypatch.setattr("lightcube.planning.order._SWAPS", 1)
+        monkeypatch.setattr("lightcube.planning.plan.WIDTHS", (0.5, 1.0))

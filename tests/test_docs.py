@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from lightcube import cli
+from lightcube.cli import main
 from lightcube.io import scene_names
-from tests.test_cli import run
+from tests.cli.test_cli import run
 
 ROOT = Path(__file__).parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md"]
@@ -68,7 +68,7 @@ def test_the_readme_names_every_scene() -> None:
 
 def test_the_readme_names_every_verb() -> None:
     readme = (ROOT / "README.md").read_text()
-    for command in cli.app.registered_commands:
+    for command in main.app.registered_commands:
         assert command.callback is not None
         name = command.name or command.callback.__name__
         assert f"| `{name}" in readme, name

@@ -1,36 +1,29 @@
 """Pictures in, a cube of coloured shadows out."""
 
-from lightcube.backward import solve
-from lightcube.conditioning import best_order
-from lightcube.consistency import check
-from lightcube.cube import Cube
+from lightcube.backward.solution import Solution
+from lightcube.backward.solving import solve
 from lightcube.errors import InputError
-from lightcube.fitting import fit, fit_to_stage
-from lightcube.forward import cast, exposures_at, lamp_at, play, player, views_at
-from lightcube.frames import Frames, Pictures
-from lightcube.geometry import Grid, Views, spread_angles, turntable
-from lightcube.io import (
-    load,
-    publish,
-    read_pictures,
-    read_scene,
-    read_stage,
-    read_stage_frames,
-    save,
-    write_page,
-    write_pictures,
-)
-from lightcube.lighting import Lighting, sampled
-from lightcube.metrics import score
-from lightcube.planning import Plan, plan
-from lightcube.prediction import Prediction, predict
-from lightcube.projector import Projector, dot_test
+from lightcube.forward.casting import cast, play, player
+from lightcube.forward.turning import exposures_at, lamp_at, views_at
+from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save, write_page, write_pictures
+from lightcube.jobs.cubes import load, publish
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Lighting, sampled
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.views import Views, spread_angles, turntable
+from lightcube.pictures.fitting import fit, fit_to_stage
+from lightcube.pictures.frames import Frames, Pictures
+from lightcube.planning.consistency import check
+from lightcube.planning.order import best_order
+from lightcube.planning.plan import Plan, plan
+from lightcube.planning.prediction import Prediction, predict
+from lightcube.projection.projector import Projector, dot_test
 from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_frames, scene_views
-from lightcube.solution import Solution
+from lightcube.scoring.metrics import score
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
-from lightcube.stage import Lamp, Screen, Shot, Stage, exposures
 from lightcube.viewer.notebook import displayed, show
 from lightcube.viewer.page import page
 

@@ -11,7 +11,7 @@ from lightcube.bench.others import peers
 from lightcube.bench.playing import playback
 from lightcube.bench.products import CHANNELS, product, projector
 from lightcube.bench.starting import starts
-from lightcube.geometry import Grid, raster_shape
+from lightcube.optics.grid import Grid, raster_shape
 
 #: Elevations of the lamp that are measured: the two at which cubes are made.
 ELEVATIONS = (0.0, 35.0)

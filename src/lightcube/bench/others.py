@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 
 from lightcube.bench.clock import seconds
 from lightcube.bench.products import columns_of, traced
-from lightcube.projector import Projector
+from lightcube.projection.projector import Projector
 
 #: Columns of a block, the number that served the sparse matrices best.
 BLOCK = 16

@@ -4,9 +4,10 @@ import numpy as np
 
 from lightcube.bench.clock import seconds
 from lightcube.bench.products import CHANNELS
-from lightcube.cube import Cube
-from lightcube.forward import player
-from lightcube.geometry import Grid, turntable
+from lightcube.forward.casting import player
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import turntable
 
 #: Angles that are looked at for each repeat.
 _ANGLES = 5

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.bench.clock import seconds, threads
-from lightcube.geometry import Grid, spread_angles, turntable
-from lightcube.kernels import projection
-from lightcube.projector import Projector
-from lightcube.stacked import StackedBeams
+from lightcube.kernels import stacked as kernels
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import spread_angles, turntable
+from lightcube.projection.projector import Projector
+from lightcube.projection.stacked import StackedBeams
 
 #: Colours of the cube and its pictures.
 CHANNELS = 3
@@ -59,14 +60,14 @@ def traced(
     matrix: Projector, first: int = 0, last: int | None = None
 ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.float32]]:
     """Where each beam's pieces begin, and their voxels, levels and lengths, for the lowest row of some views."""
-    stacked = StackedBeams(matrix.grid, matrix.views.take(slice(first, last)))
+    beams = StackedBeams(matrix.grid, matrix.views.take(slice(first, last)))
     width = matrix.views.picture_shape[1]
     _, ny, nx = matrix.grid.shape
-    where = (stacked.beams, width, nx, ny, matrix.grid.voxel_mm, stacked.rise)
-    offsets = np.zeros(len(stacked.beams) * width + 1, np.int64)
+    where = (beams.beams, width, nx, ny, matrix.grid.voxel_mm, beams.rise)
+    offsets = np.zeros(len(beams.beams) * width + 1, np.int64)
     none = np.empty(0, np.int32)
-    projection.trace_all(*where, offsets, none, none, np.empty(0, np.float32))
+    kernels.trace_all(*where, offsets, none, none, np.empty(0, np.float32))
     pieces = int(offsets[-1])
     voxels, levels, lengths = np.empty(pieces, np.int32), np.empty(pieces, np.int32), np.empty(pieces, np.float32)
-    projection.trace_all(*where, offsets, voxels, levels, lengths)
+    kernels.trace_all(*where, offsets, voxels, levels, lengths)
     return offsets, voxels, levels, lengths

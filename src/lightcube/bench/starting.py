@@ -10,8 +10,9 @@ import numpy as np
 
 from lightcube import io
 from lightcube.bench.clock import seconds
-from lightcube.cube import Cube
-from lightcube.geometry import Grid, turntable
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import turntable
 
 
 def starts() -> list[dict[str, Any]]:
@@ -27,7 +28,7 @@ def starts() -> list[dict[str, Any]]:
 
 def _second(words: list[str]) -> float:
     """Run a command twice; return the seconds of the second time, when everything compiled is on the disk."""
-    command = [sys.executable, "-c", "from lightcube.cli import main; main()", *words]
+    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", *words]
 
     def run() -> None:
         subprocess.run(command, check=True, capture_output=True)  # noqa: S603

@@ -9,9 +9,12 @@ from pathlib import Path
 from typing import TypeVar
 
 from lightcube.errors import InputError
-from lightcube.io._remote import Place, exists, is_folder, name_of, send
+from lightcube.io._places import Place, exists, is_folder, name_of, send
 
 Entry = TypeVar("Entry")
+
+#: What the name of a cube that is still being made ends with.
+PARTIAL_SUFFIX = ".partial"
 
 
 def suffix_entry(path: Place, table: Mapping[str, Entry], what: str) -> Entry:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from lightcube.lighting import Lighting
+from lightcube.optics.rig import Lighting
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Pair = Annotated[list[_Number | None], Field(min_length=2, max_length=2)]
@@ -15,7 +15,7 @@ _Count = Annotated[int, Field(ge=0)]
 
 
 class LightingJson(BaseModel):
-    """`lightcube.lighting.Lighting`, one list per array; infinity, which JSON has not, is null."""
+    """`lightcube.optics.rig.Lighting`, one list per array; infinity, which JSON has not, is null."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
 

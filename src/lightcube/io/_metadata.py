@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from lightcube.cube import Cube, Status
 from lightcube.errors import InputError
-from lightcube.geometry import Grid, Views
 from lightcube.io._lighting import LightingJson, lighting_to_json
-from lightcube.transfer import Transfer
+from lightcube.optics.cube import Cube, Status
+from lightcube.optics.grid import Grid
+from lightcube.optics.transfer import Transfer
+from lightcube.optics.views import Views
 
 #: Of the files that this version writes; it reads all versions up to this one.
 FORMAT_VERSION = 2
@@ -24,7 +25,7 @@ _Strict = ConfigDict(extra="forbid", strict=True)
 
 
 class _ViewsJson(BaseModel):
-    """`lightcube.geometry.Views`, one list per view."""
+    """`lightcube.optics.views.Views`, one list per view."""
 
     model_config = _Strict
 
@@ -36,7 +37,7 @@ class _ViewsJson(BaseModel):
 
 
 class _CubeJson(BaseModel):
-    """Everything of `lightcube.cube.Cube` that is no large array."""
+    """Everything of `lightcube.optics.cube.Cube` that is no large array."""
 
     model_config = _Strict
 

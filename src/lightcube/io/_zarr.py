@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from zarr.codecs import ZstdCodec
 from zarr.storage import LocalStore, ZipStore
 
-from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.io import _metadata
 from lightcube.io._files import system_errors
+from lightcube.optics.cube import Cube
 
 Value = TypeVar("Value")
 Parts = tuple[object, NDArray[np.float32], NDArray[np.uint8] | None]

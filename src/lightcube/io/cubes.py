@@ -1,7 +1,6 @@
 """Saving and loading cubes, by suffix."""
 
 import json
-import warnings
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -9,20 +8,14 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.io import _metadata
-from lightcube.io._files import check_free, suffix_entry, system_errors, written_whole
-from lightcube.io._remote import Place, child, fetched, name_of, place, read_bytes
+from lightcube.io._files import PARTIAL_SUFFIX, check_free, suffix_entry, system_errors, written_whole
+from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
 from lightcube.io._zarr import read_zarr, read_zarr_zip, write_zarr, write_zarr_zip
-from lightcube.io.partial import PARTIAL_SUFFIX, DiskStore, discard_partial, load_job, published_path
-from lightcube.solution import merged
+from lightcube.optics.cube import Cube
 
 Given = TypeVar("Given", bound=str | Path)
-
-
-class UnfinishedCube(UserWarning):
-    """A cube that was loaded is a partial one, or its solver was stopped early."""
 
 
 def bare_name(path: str | Path) -> str:
@@ -74,16 +67,8 @@ def save(cube: Cube, path: Given, *, overwrite: bool = False) -> Given:
     return path
 
 
-def load(path: str | Path) -> Cube:
-    """Load a cube from a file that `save` wrote, or from a ``.partial`` folder of one that is being made.
-
-    Of the latter there is what is finished, the state of the unit that is being solved, and for the rest what it
-    would start from.
-
-    Warns
-    -----
-    UnfinishedCube
-        Where the cube is a partial one, or its solver was stopped early.
+def read_cube(path: str | Path) -> Cube:
+    """The cube of a file that `save` wrote.
 
     Raises
     ------
@@ -91,28 +76,12 @@ def load(path: str | Path) -> Cube:
         Where there is no such file, it is no light cube, it is damaged, or a newer version wrote it.
     """
     at = place(path)
-    partial = name_of(at).lower().endswith(PARTIAL_SUFFIX)
-    if partial:
-        cube = _load_partial(at)
-    else:
-        suffix_entry(at, _FORMATS, "a cube")
-        with fetched(at) as local:
-            cube = _load(local)
-    if partial or cube.status != "complete":
-        why = "it is still being made" if partial else "its solver was stopped early"
-        warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=2)
-    return cube
+    suffix_entry(at, _FORMATS, "a cube")
+    with fetched(at) as local:
+        return _read(local)
 
 
-def _load_partial(at: Place) -> Cube:
-    """The cube of what there is of an unfinished one."""
-    store = DiskStore(at)
-    if store.is_empty():
-        raise InputError(f"{at} has nothing of a cube in it yet: start again without it")
-    return merged(load_job(at), store).cube
-
-
-def _load(path: Path) -> Cube:
+def _read(path: Path) -> Cube:
     """The cube of a file or folder on this disk."""
     read, _ = suffix_entry(path, _FORMATS, "a cube")
     with system_errors(path, "reading"):
@@ -122,26 +91,6 @@ def _load(path: Path) -> Cube:
     if is_folder != (read is read_zarr):
         raise InputError(f"{path} is a {'folder' if is_folder else 'file'}, and no cube of that suffix is one")
     return read(path)
-
-
-def publish(partial: str | Path, *, overwrite: bool = False) -> Place:
-    """Turn ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``) into NAME, and return NAME.
-
-    What there is of it, as `load` puts it together, is saved under its name, with the status ``"interrupted"`` unless
-    all is finished; then the partial folder is removed.
-
-    Raises
-    ------
-    InputError
-        Where there is no such folder, nothing of a cube in it, or NAME exists and `overwrite` is not asked for;
-        the partial folder is kept then.
-    """
-    out = published_path(partial)
-    cube = _load_partial(place(partial))
-    check_cube_target(out, overwrite=overwrite)
-    save(cube, out, overwrite=overwrite)
-    discard_partial(out)
-    return out
 
 
 def _write_npz(path: Path, cube: Cube) -> None:

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lightcube.errors import InputError
-from lightcube.fitting import distinct_angles
-from lightcube.geometry import Views, check_elevation, spread_angles
 from lightcube.io._files import system_errors
+from lightcube.optics.grid import check_elevation
+from lightcube.optics.views import Views, distinct_angles, spread_angles
 
 VIEWS_FILE = "views.toml"
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff")

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.geometry import Views
 from lightcube.io import _encoders
 from lightcube.io._files import check_free, suffix_entry, written_whole
-from lightcube.io._remote import Place, name_of, names_in, place
+from lightcube.io._places import Place, name_of, names_in, place
 from lightcube.io.frames_folder import VIEWS_FILE, views_text
-from lightcube.transfer import Transfer, check_transfer, encode
+from lightcube.optics.transfer import Transfer, check_transfer, encode
+from lightcube.optics.views import Views
 
 Picture = NDArray[np.float32]
 Given = TypeVar("Given", bound=str | Path)

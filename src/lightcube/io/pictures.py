@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.frames import Pictures
 from lightcube.io._decode import Budget, Levels, Take, read_animation, read_single
 from lightcube.io._files import suffix_entry, system_errors
-from lightcube.io._remote import fetched, place
+from lightcube.io._places import fetched, place
 from lightcube.io._video import read_video
 from lightcube.io.frames_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
-from lightcube.transfer import Transfer, check_transfer, decode
+from lightcube.optics.transfer import Transfer, check_transfer, decode
+from lightcube.pictures.frames import Pictures
 
 _READERS: dict[str, Callable[[Path, Budget, Take], None]] = {
     ".gif": read_animation,

@@ -14,15 +14,16 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from lightcube.errors import InputError
-from lightcube.fitting import Fit, fit_to_stage
-from lightcube.frames import Frames, Pictures
-from lightcube.geometry import Grid, spread_angles
 from lightcube.io._files import system_errors
 from lightcube.io.pictures import read_pictures
-from lightcube.lighting import sampled
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import sampled
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.transfer import Transfer, check_transfer, decode
+from lightcube.optics.views import spread_angles
+from lightcube.pictures.fitting import Fit, fit_to_stage
+from lightcube.pictures.frames import Frames, Pictures
 from lightcube.scene.description import Count, Line, Number, Point, Positive, hex_colour, sentence
-from lightcube.stage import Lamp, Screen, Shot, Stage, exposures
-from lightcube.transfer import Transfer, check_transfer, decode
 
 _LISTS = ("lamp", "screen", "picture")
 
@@ -74,7 +75,7 @@ class TurntableTable(_Table):
 
 
 class LampTable(_Table):
-    """A lamp, as `lightcube.stage.Lamp`, which checks what its numbers may be."""
+    """A lamp, as `lightcube.optics.stage.Lamp`, which checks what its numbers may be."""
 
     name: Name
     direction: Point | None = None
@@ -96,7 +97,7 @@ class LampTable(_Table):
 
 
 class ScreenTable(_Table):
-    """A screen, as `lightcube.stage.Screen`; `pitch_mm` is the cube's voxel side where it is left out."""
+    """A screen, as `lightcube.optics.stage.Screen`; `pitch_mm` is the cube's voxel side where it is left out."""
 
     name: Name
     centre: Point
@@ -210,7 +211,7 @@ def read_stage_frames(
     Parameters
     ----------
     lamp_samples, pixel_samples
-        As in `lightcube.lighting.sampled`.
+        As in `lightcube.optics.rig.sampled`.
 
     Raises
     ------

@@ -7,17 +7,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.between import DISTURBANCES, Curve, curve, robust
-from lightcube.consistency import advice, check
-from lightcube.cube import Cube
-from lightcube.fitting import targets
-from lightcube.forward import cast
-from lightcube.frames import Frames
-from lightcube.metrics import check_same_views, score_pictures
-from lightcube.reachable import sentences
-from lightcube.sheet import triple
-from lightcube.stage import Stage
-from lightcube.stage_check import doubtful
+from lightcube.drawing.sheet import triple
+from lightcube.forward.casting import cast
+from lightcube.optics.cube import Cube
+from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.stage import Stage
+from lightcube.pictures.fitting import targets
+from lightcube.pictures.frames import Frames
+from lightcube.planning.consistency import advice, check
+from lightcube.planning.placement import doubtful
+from lightcube.planning.reachable import sentences
+from lightcube.scoring.between import Curve, curve
+from lightcube.scoring.metrics import check_same_views, score_pictures
+from lightcube.scoring.robust import robust
 
 Levels = NDArray[np.uint8]
 
@@ -35,15 +37,15 @@ class Findings:
     cube, frames, stage
         The cube, what was wanted of it, and the stage that the frames are from.
     scores
-        As `lightcube.metrics.score`.
+        As `lightcube.score`.
     pictures
         By their number: wanted, shown and difference, 8-bit RGB; evenly chosen ones where there are too many.
     curve
         What is seen between the stops; None where nothing is between them.
     robust
-        As `lightcube.between.robust`.
+        As `lightcube.scoring.robust.robust`.
     preflight
-        As `lightcube.consistency.check`; None on a stage, or with lamps at several elevations.
+        As `lightcube.check`; None on a stage, or with lamps at several elevations.
     advice
         What is wrong with the pictures, a sentence each.
     apart

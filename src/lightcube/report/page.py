@@ -3,15 +3,14 @@
 import hashlib
 import platform
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from importlib.resources import files
 
 import numpy as np
 
-from lightcube.cube import Cube
+from lightcube.optics.cube import Cube
 from lightcube.report import sections
-from lightcube.report.command import Command
 from lightcube.report.html import element, pairs, plain, sentences, table, text
 from lightcube.report.measuring import Findings
 
@@ -43,6 +42,22 @@ class Origin:
     count: int
     size: int
     sha256: str
+
+
+@dataclass
+class Command:
+    """What makes a cube again, bit for bit, unless there are doubts.
+
+    Parameters
+    ----------
+    lines
+        Commands, one after the other, each as its parts: what is to be done, and the options with their values.
+    doubts
+        Sentences: what is not known of the cube, or what the command line cannot say.
+    """
+
+    lines: list[list[str]] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
 
 
 def page(found: Findings, title: str, compared: str, command: Command, origins: Sequence[Origin]) -> str:

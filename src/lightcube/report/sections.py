@@ -7,14 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.between import DISTURBANCES, LOBE_DB
-from lightcube.cube import Cube
-from lightcube.prediction import MOST_DB
-from lightcube.report import charts
+from lightcube.drawing import charts
+from lightcube.drawing.stage import drawing
+from lightcube.optics.cube import Cube
+from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.planning.placement import facts
+from lightcube.planning.prediction import MOST_DB
 from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
 from lightcube.report.measuring import EXACT, Findings, most_power
-from lightcube.stage_check import facts
-from lightcube.stage_drawing import drawing
+from lightcube.scoring.between import LOBE_DB
 
 #: Pictures in the strip at the top.
 _STRIP = 12
@@ -300,7 +301,7 @@ def _told(found: Findings) -> Iterator[str]:
 
 
 def _checked(known: dict[str, Any]) -> dict[str, object]:
-    """What `lightcube.consistency.check` found, in words."""
+    """What `lightcube.check` found, in words."""
     totals = known["moments"]
     white = sum(last - first + 1 for runs in known["white_rows"].values() for first, last in runs)
     down = f", {totals['down']:.1%} of the height" if known["elevation"] else ""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.optics.transfer import decode
 from lightcube.scene.description import (
     Box,
     Capsule,
@@ -29,7 +30,6 @@ from lightcube.scene.kernels.world import World
 from lightcube.scene.meshes import tree
 from lightcube.scene.motion import placement
 from lightcube.scene.scene import Scene
-from lightcube.transfer import decode
 
 #: A shape squeezed below this factor along any axis is not there.
 _GONE = 1e-9

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.frames import Frames
-from lightcube.geometry import Grid, Views, spread_angles, turntable
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import Views, spread_angles, turntable
+from lightcube.pictures.frames import Frames
 from lightcube.scene.compiled import compiled, sight
 from lightcube.scene.description import ShadowCamera
 from lightcube.scene.kernels.render import shaded, shadowed

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.absorption import absorbance
+from lightcube.optics.absorption import absorbance
+from lightcube.optics.transfer import Transfer, encode
 from lightcube.solvers.contract import Floats
-from lightcube.transfer import Transfer, encode
 
 
 def lamp_per_entry(lamp_powers: Floats, view_of_row: NDArray[np.integer[Any]] | None, shape: tuple[int, int]) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from lightcube.errors import InputError
-from lightcube.layout import copied
+from lightcube.kernels.layout import copied
 from lightcube.solvers._absorbance import absorbance_wanted
 from lightcube.solvers.contract import Floats, Mixture, Operator, State
 

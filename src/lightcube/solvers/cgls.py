@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.optics.transfer import Transfer
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
-from lightcube.transfer import Transfer
 
 #: A column has converged once the gradient that the bounds leave is this part of ``A.T W b``, in the 2-norm.
 _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}

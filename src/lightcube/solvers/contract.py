@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from lightcube.transfer import Transfer
+from lightcube.optics.transfer import Transfer
 
 Floats = NDArray[np.floating[Any]]
 #: Everything that a stopped solver needs to go on, beside what it was called with: plain arrays by name.

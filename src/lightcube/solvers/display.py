@@ -1,6 +1,6 @@
 """What the eye sees: least squares in display values, made convex.
 
-With ``u = ln P - A x`` the ln of the light on the screen, ``u*`` the wanted one and ``g`` the display value as a
+With ``u = ln P - A x`` the ln of the light on the goal, ``u*`` the wanted one and ``g`` the display value as a
 function of ``u``, the residual is ``g(u) - g(u*)`` where a beam is too bright, and its tangent ``g'(u*) (u - u*)``,
 of slope at least 0.03, where it is too dark. Display values alone would leave a beam that became much too dark
 without a gradient, a black speck for ever; logarithms alone would spend everything on darks that nobody can
@@ -15,17 +15,12 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from lightcube.kernels import descent, momentum
-from lightcube.layout import copied, empty
-from lightcube.solvers._checks import (
-    check_bounds,
-    check_iterations,
-    check_start,
-    check_state,
-)
-from lightcube.solvers._mixed_screen import MixedScreen
-from lightcube.solvers._screen import Screen
+from lightcube.kernels.layout import copied, empty
+from lightcube.optics.transfer import Transfer
+from lightcube.solvers._checks import check_bounds, check_iterations, check_start, check_state
+from lightcube.solvers._convex import ConvexObjective
+from lightcube.solvers._objective import Objective
 from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
-from lightcube.transfer import Transfer
 
 #: The metric is renewed after 1, 2, 4, 7, 11, 17, 26, ... iterations: each time costs as much as an iteration.
 _RENEWAL = 1.5
@@ -79,7 +74,7 @@ def display_values(
     -----
     With a `mixture` the ln light is that of a sum, ``u = ln sum_v P_v (1 - a_v (1 - e^-(A x)_v))``: the objective is
     no longer convex, no lower bound is known, and lamps are found by bounded Newton steps, a few in each pass. All
-    else is the same, with curvatures that bound those of the sum (`lightcube.kernels.mixing`).
+    else is the same, with curvatures that bound those of the sum (`lightcube.kernels.objective`).
 
     References
     ----------
@@ -90,49 +85,49 @@ def display_values(
     and greedier, SIAM J. Sci. Comput. 44 (2022) A1069-A1091, for momentum and stride.
     G. Golub, V. Pereyra, Separable nonlinear least squares, Inverse Problems 19 (2003) R1-R26, for the lamp.
     """
-    screen: Screen | MixedScreen
+    goal: ConvexObjective | Objective
     if mixture is None:
-        screen = Screen.of(A, B, weights, view_of_row, lamp_bounds, transfer)
+        goal = ConvexObjective.of(A, B, weights, view_of_row, lamp_bounds, transfer)
     else:
-        screen = MixedScreen.of(A, B, weights, mixture, lamp_bounds, transfer)
+        goal = Objective.of(A, B, weights, mixture, lamp_bounds, transfer)
     bounds = check_bounds(bounds)
     iterations = check_iterations(iterations)
     shape = A.shape[1], B.shape[1]
     limits: tuple[Any, ...] = tuple(B.dtype.type(bound) for bound in bounds)
     if state is None:
-        at = _State.first(check_start(x0, shape, bounds, B.dtype), screen.low, screen.high)
+        at = _State.first(check_start(x0, shape, bounds, B.dtype), goal.low, goal.high)
     else:
-        at = _State.kept(state, iterations, shape, B.dtype, screen.low.shape)
+        at = _State.kept(state, iterations, shape, B.dtype, goal.low.shape)
     ax = A.forward(at.x)
     ay = A.forward(at.before) if np.any(at.ahead) else copied(ax)
     momentum.run_ahead(ay, ax, at.ahead)
     if state is None:
-        at.lamp = screen.best_lamp(ay, at.lamp)
-    enough = _PERFECT * float(np.sum(screen.weights, dtype=np.float64))
+        at.lamp = goal.best_lamp(ay, at.lamp)
+    enough = _PERFECT * float(np.sum(goal.weights, dtype=np.float64))
     stop_reason = at.stop_reason(iterations, enough)
     while not stop_reason:
         if np.any(at.ahead):  # else these are the lamps already
-            at.lamp = screen.best_lamp(ay, at.lamp)
+            at.lamp = goal.best_lamp(ay, at.lamp)
         if at.iteration + 1 == at.renewal:
-            at.renew(A, screen, ay)
-        slopes = screen.descend(ay, at.lamp)
+            at.renew(A, goal, ay)
+        slopes = goal.descend(ay, at.lamp)
         uphill = descent.step(at.x, at.before, at.ahead, A.adjoint(slopes), at.steps, at.stride, *limits) > 0
         del ay, slopes  # make room
         at.x, at.before = at.before, at.x
         a_new = A.forward(at.x)
-        at.lamp = screen.best_lamp(a_new, at.lamp)
-        objective, least = screen.arrive(ax, a_new, at.lamp)
+        at.lamp = goal.best_lamp(a_new, at.lamp)
+        objective, least = goal.arrive(ax, a_new, at.lamp)
         at.judge(objective, uphill, least)
         momentum.run_ahead(ax, a_new, at.ahead)
         ax, ay = a_new, ax
         asked = callback is not None and callback(
-            Progress(at.iteration, iterations, at.x, ax, at.history[-1], screen.powers(at.lamp), at.arrays)
+            Progress(at.iteration, iterations, at.x, ax, at.history[-1], goal.powers(at.lamp), at.arrays)
         )
         stop_reason = "callback" if asked else at.stop_reason(iterations, enough)
     x, lamp, history = at.x, at.lamp, np.array(at.history)
     del at, ay  # make room
-    bound = screen.lower_bound(A, ax, lamp, bounds)
-    return Result(x, screen.powers(lamp), history, stop_reason=stop_reason, lower_bound=bound)
+    bound = goal.lower_bound(A, ax, lamp, bounds)
+    return Result(x, goal.powers(lamp), history, stop_reason=stop_reason, lower_bound=bound)
 
 
 @dataclass
@@ -195,11 +190,11 @@ class _State:
         """How many are done."""
         return len(self.history)
 
-    def renew(self, A: Operator, screen: Screen | MixedScreen, ay: Floats) -> None:
+    def renew(self, A: Operator, goal: ConvexObjective | Objective, ay: Floats) -> None:
         """Take the metric of where the solver stands now."""
         expected = self.steps
         descent.expect(self.x, _EXPECTED, expected)
-        self.steps = A.adjoint(screen.curved(A.forward(expected), ay, self.lamp))
+        self.steps = A.adjoint(goal.curved(A.forward(expected), ay, self.lamp))
         descent.divide(expected, self.steps)
         self.renewal = int((self.iteration + 1) * _RENEWAL) + 1
 

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from lightcube.kernels.row_action import sweep
+from lightcube.optics.transfer import Transfer
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
 from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
-from lightcube.transfer import Transfer
 
 #: A column has settled once a sweep changes it by at most this part of its largest number.
 _SETTLED = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, eye_array, hstack
 
 from lightcube.errors import InputError
+from lightcube.optics.transfer import Transfer
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
-from lightcube.transfer import Transfer
 
 #: The largest matrix, in equations times unknowns.
 LARGEST = 250_000

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.optics.transfer import Transfer
 from lightcube.solvers._checks import check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
 from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
-from lightcube.transfer import Transfer
 
 #: A column has converged once a step is shorter than this part of its right-hand side (both in the method's norms).
 _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}

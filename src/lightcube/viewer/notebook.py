@@ -3,10 +3,10 @@
 import sys
 from typing import TYPE_CHECKING, Any
 
-from lightcube.cube import Cube
+from lightcube.drawing.strip import still
 from lightcube.errors import InputError
+from lightcube.optics.cube import Cube
 from lightcube.viewer.smaller import MOST_SIDE
-from lightcube.viewer.thumbnails import still
 
 if TYPE_CHECKING:
     from lightcube.viewer.widget import CubeWidget

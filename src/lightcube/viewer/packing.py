@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.cube import Cube
 from lightcube.errors import InputError
-from lightcube.forward import cast, exposures_at, lamp_at, views_at
-from lightcube.transfer import encode
+from lightcube.forward.casting import cast
+from lightcube.forward.turning import exposures_at, lamp_at, views_at
+from lightcube.optics.cube import Cube
+from lightcube.optics.transfer import encode
 from lightcube.viewer.smaller import shown_coarsely
 
 #: Bits of a code: the first of these that keep the shadows within a level. Three of 10 are four bytes of a texture.

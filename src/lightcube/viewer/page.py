@@ -5,11 +5,12 @@ import html
 import re
 from typing import Any
 
-from lightcube.cube import Cube
-from lightcube.pieces import Watching
-from lightcube.viewer.contents import contents
-from lightcube.viewer.described import zipped
+from lightcube.backward.pieces import Watching
+from lightcube.optics.cube import Cube
+from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.modules import joined, source
+from lightcube.viewer.packing import pack
+from lightcube.viewer.smaller import smaller
 
 
 def page(cube: Cube, title: str, *, full: bool = False, callback: Watching | None = None) -> str:
@@ -42,3 +43,11 @@ def page_of(description: dict[str, Any], voxels: bytes) -> str:
         "voxels": base64.b64encode(voxels).decode(),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], source("page.html"))
+
+
+def contents(
+    cube: Cube, title: str, *, full: bool = False, callback: Watching | None = None
+) -> tuple[dict[str, Any], bytes]:
+    """Description and voxels, as the page's modules read them; takes and raises what `page` does."""
+    packed = pack(cube if full else smaller(cube, callback))
+    return describe(cube, packed, title), packed.data()

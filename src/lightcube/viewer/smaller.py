@@ -6,14 +6,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube import backward, metrics
-from lightcube.coarse import coarser
-from lightcube.cube import Cube
-from lightcube.fitting import frames_from_targets
-from lightcube.forward import cast
-from lightcube.frames import Frames
-from lightcube.pieces import Watching
-from lightcube.problem import BLACK
+from lightcube.backward import solving
+from lightcube.backward.pieces import Watching
+from lightcube.forward.casting import cast
+from lightcube.optics.cube import Cube
+from lightcube.optics.transfer import BLACK
+from lightcube.pictures.fitting import frames_from_targets
+from lightcube.pictures.frames import Frames
+from lightcube.pictures.resampling import coarser
+from lightcube.scoring import metrics
 
 #: Voxels along the longest side of what a page holds, unless all of them are asked for.
 MOST_SIDE = 128
@@ -39,7 +40,7 @@ def smaller(cube: Cube, callback: Watching | None = None) -> Cube:
         return cube
     wanted = _cast(cube) if cube.targets is None else frames_from_targets(cube)
     frames, grid = coarser(wanted, cube.grid, ratio)
-    solution = backward.solve(
+    solution = solving.solve(
         frames,
         grid,
         hold=cube.hold_deg,
@@ -51,7 +52,7 @@ def smaller(cube: Cube, callback: Watching | None = None) -> Cube:
 
 
 def _bounds(cube: Cube) -> dict[str, Any]:
-    """What bounded a cube, as `lightcube.backward.solve` takes it; a stage's lamps are bounded by its lighting."""
+    """What bounded a cube, as `lightcube.solve` takes it; a stage's lamps are bounded by its lighting."""
     made = cube.provenance
     most = made.get("max_extinction")
     bounds = {"max_extinction": np.inf if most is None else most, "black": made.get("black", BLACK)}

@@ -6,12 +6,12 @@ from typing import Any
 import anywidget
 import traitlets
 
-from lightcube.cube import Cube
+from lightcube.drawing.strip import still
 from lightcube.errors import InputError
-from lightcube.viewer.contents import contents
-from lightcube.viewer.described import zipped
+from lightcube.optics.cube import Cube
+from lightcube.viewer.description import zipped
 from lightcube.viewer.modules import joined, source
-from lightcube.viewer.thumbnails import still
+from lightcube.viewer.page import contents
 
 
 class CubeWidget(anywidget.AnyWidget):

@@ -159,7 +159,7 @@ def shadowed(
 ) -> None:
     """Fill `pictures` ``(f, row, column, 3)`` with the transmission of the beam that lands in each pixel's centre.
 
-    View ``f`` sees instant ``f`` of `world`; lengths are in scene units, see `lightcube.geometry.Views`.
+    View ``f`` sees instant ``f`` of `world`; lengths are in scene units, see `lightcube.optics.views.Views`.
     """
     count, rows, columns, _ = pictures.shape
     for line in prange(count * rows):

@@ -1,0 +1,200 @@
+"""What a job needs: memory, units that fit into it, and time."""
+
+import inspect
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from lightcube.backward.job import Job, shares
+from lightcube.backward.problem import Problem, held_views, pose
+from lightcube.backward.units import coarse_shape, coarser, most_units, split
+from lightcube.kernels.layout import is_worth_lines
+from lightcube.optics.grid import Grid
+from lightcube.pictures.frames import Frames
+from lightcube.solvers import METHODS
+
+#: Bytes that a job may need unless it is said: a fixed number, so that cubes do not depend on machines.
+MEMORY = 4_000_000_000
+#: Bytes of the program itself, with numpy, numba and what they compile (measured).
+PROGRAM = 260_000_000
+#: Arrays as large as the unknowns, and as the pictures' beams, that a solver holds at its peak, what poses the problem
+#: included (measured).
+ARRAYS = {
+    "display": (4.3, 6.5),
+    "sirt": (7.7, 9.0),
+    "cgls": (16.0, 10.5),
+    "gauss-seidel": (5.0, 11.0),
+    "row-reduction": (5.0, 11.0),
+}
+#: Bytes for each equation of a column: which lamp it belongs to, and the like (measured).
+_EQUATION = 36
+#: Bytes for each voxel that a beam runs through, where the method holds the matrix (measured).
+_ENTRY = 40
+#: Degrees of elevation that stand for beams that are not level in other ways.
+_ANY = 35.0
+#: Bytes for each pixel of a view where light adds up: what falls on it, and how strong its shadow is (measured).
+_MIXED = 16
+#: Methods that hold the matrix.
+_SPARSE = ("gauss-seidel", "row-reduction")
+#: The time of a pass is measured where it has about so many multiply-adds, over so many passes.
+_REHEARSED, _TIMED = 1e9, 12
+
+
+def memory_needed(
+    method: str,
+    grid: Grid,
+    picture_shape: tuple[int, int],
+    views: int,
+    elevation: float = 0.0,
+    *,
+    angles: int = 1,
+    levels: int = 0,
+    units: int = 1,
+    channels: int = 3,
+    dtype: str = "float32",
+) -> int:
+    """Bytes that the program needs at its peak, from measured counts of arrays; finished units lie on disk.
+
+    Parameters
+    ----------
+    method, grid, units
+        As in `lightcube.backward.job.Job`.
+    picture_shape, views, channels
+        ``(rows, columns)`` of the pictures, how many they are, and their colours.
+    elevation
+        Of the lamp, degrees.
+    angles
+        At how many each picture is held.
+    levels
+        How often the cube is halved for its start.
+    """
+    rows, columns = picture_shape
+    size = np.dtype(dtype).itemsize
+    raised = elevation if elevation != 0 or rows != grid.shape[0] else None
+    pictures = 4 * views * rows * columns * (channels + 1)
+    cube = 4 * channels * math.prod(grid.shape)
+    parts = split(grid.shape, channels, units, level=raised is None)
+    share = max(part.columns for part in parts) / sum(part.columns for part in parts)
+    needed = _solver(method, grid.shape, picture_shape, views * angles, channels * size * share, raised)
+    if levels:
+        half, small = coarse_shape(grid.shape, 1), (-(-rows // 2), -(-columns // 2))
+        level = pictures / 4 + _solver(method, half, small, views * angles, channels * size, raised)
+        needed = max(needed + size * channels * (math.prod(half) + math.prod(grid.shape) * share), level)
+    merging = cube * (1 + max(0.25, size / 2 * share)) + pictures / 4
+    return int(PROGRAM + pictures + max(needed, merging))
+
+
+def _solver(
+    method: str,
+    shape: tuple[int, int, int],
+    picture_shape: tuple[int, int],
+    views: int,
+    depth: float,
+    elevation: float | None,
+) -> float:
+    """Bytes that a solver holds, `depth` of them for each voxel and each pixel; elevation None = slice by slice."""
+    unknowns, beams = ARRAYS[method]
+    rows, columns = picture_shape
+    nz, ny, nx = shape
+    equations = views * columns * (1 if elevation is None else rows)
+    if elevation is None and method not in _SPARSE and is_worth_lines(nz * depth):
+        beams += 1  # a product's copy with whole lines
+    arrays = depth * (unknowns * nz * ny * nx + beams * views * rows * columns) + _EQUATION * equations
+    if method not in _SPARSE:
+        return arrays
+    pieces = 1.3 * max(ny, nx)
+    if elevation is not None:
+        pieces += min(nz, pieces * math.tan(math.radians(abs(elevation))))
+    return arrays + _ENTRY * pieces * equations
+
+
+def job_memory(job: Job) -> int:
+    """`memory_needed` of a job."""
+    views, lighting = job.frames.views, job.frames.lighting
+    steepest = float(np.max(np.abs(views.elevations)))
+    angles = len(held_views(job.frames, job.hold, job.grid)[0]) // len(views)
+    mixed = (
+        0 if lighting is None or lighting.is_plain else _MIXED * angles * len(views) * math.prod(views.picture_shape)
+    )
+    return mixed + memory_needed(
+        job.method,
+        job.grid,
+        views.picture_shape,
+        len(views),
+        0.0 if job.level else steepest or _ANY,
+        angles=angles,
+        levels=job.levels,
+        units=job.units,
+        channels=job.channels,
+        dtype=job.dtype,
+    )
+
+
+def fewest_units(job: Job, memory: int) -> int:
+    """Into how many units to split a job: as few as fit into so many bytes; where none fits, as few as need least."""
+    most = most_units(job.grid.shape, job.channels, level=job.level)
+    needed = [job_memory(replace(job, units=units)) for units in range(1, most + 1)]
+    fitting = [units for units, each in enumerate(needed, 1) if each <= memory]
+    return fitting[0] if fitting else needed.index(min(needed)) + 1
+
+
+def expected_passes(job: Job) -> float | None:
+    """At most so many passes of the whole cube, coarse ones counting by their work; None for a direct method."""
+    if job.method == "row-reduction":
+        return None
+    own = inspect.signature(METHODS[job.method]).parameters["iterations"].default
+    return sum(shares(replace(job, iterations=job.iterations or own)).values())
+
+
+def seconds_a_pass(job: Job) -> float:
+    """Seconds that a pass of the whole cube is expected to take: a smaller one is measured and scaled by its work.
+
+    Products grow with their multiply-adds, all else with the numbers of unknowns and pixels. The measurement takes a
+    second or two, besides what numba compiles.
+    """
+    frames, grid = job.frames, job.grid
+    while _work(job, frames, grid)[0] > _REHEARSED:
+        frames, grid = coarser(frames, grid, 1)
+    problem = pose(frames, grid, job.hold, job.lamp, job.black, job.dtype)
+    low, high = job.lamp_bounds
+    marks: list[float] = []
+    METHODS[job.method](
+        problem.matrix,
+        problem.light,
+        weights=problem.weights,
+        view_of_row=problem.lamp_of_row,
+        lamp_bounds=(high, high) if job.frozen else (low, high),
+        bounds=(0.0, job.max_extinction),
+        iterations=_TIMED,
+        callback=lambda progress: marks.append(time.perf_counter()),
+        transfer=frames.transfer,
+        mixture=problem.mixture,
+    )
+    if len(marks) < 2:
+        return 0.0
+    products = _seconds_of_products(problem)
+    rest = max(0.0, float(np.median(np.diff(marks))) - products)
+    more = [
+        whole / small for whole, small in zip(_work(job, job.frames, job.grid), _work(job, frames, grid), strict=True)
+    ]
+    return products * more[0] + rest * more[1]
+
+
+def _seconds_of_products(problem: Problem) -> float:
+    """The least that one product in either direction has taken."""
+    times = []
+    beams = np.ones((problem.matrix.shape[0], problem.light.shape[1]), problem.light.dtype)
+    for _ in range(3):
+        began = time.perf_counter()
+        problem.matrix.forward(problem.matrix.adjoint(beams))
+        times.append(time.perf_counter() - began)
+    return min(times)
+
+
+def _work(job: Job, frames: Frames, grid: Grid) -> tuple[float, float]:
+    """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
+    rows, columns = frames.views.picture_shape
+    pixels = len(held_views(frames, job.hold, grid)[0]) * rows * columns * job.channels
+    return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)

@@ -1,0 +1,234 @@
+"""Solving the pieces of a job, one call of a solver each: watched, checkpointed, and continued where they stopped."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.backward.job import Job, level_name, shares
+from lightcube.backward.problem import Problem, pose, volume_from_unknowns
+from lightcube.backward.store import Arrays, Store
+from lightcube.backward.units import Part, coarse_shape, coarser
+from lightcube.pictures.resampling import enlarged
+from lightcube.solvers import METHODS
+from lightcube.solvers.contract import Progress, Result
+
+#: Seconds from the start of a piece to its first checkpoint, and at most between later ones; gaps double in between.
+FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
+#: Checkpoints that take long are rarer: between two lie so many times as many seconds as one took, at most so many.
+_PATIENCE, _LATEST_S = 20.0, 60.0
+#: What a checkpoint holds beside the solver's own arrays, none of which is called so.
+POWERS = "lamp-powers"
+
+Floats = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True)
+class Step:
+    """Where a running job stands."""
+
+    #: Of the unit that is being solved; 0 while coarser cubes are solved for its start.
+    iteration: int
+    iterations: int
+    #: Part of all the work, in [0, 1].
+    done: float
+    #: What the method minimises, or the norm it reports: of the unit.
+    residual: float
+    #: What the screen shows now in the `window` of its pictures: a function that returns ``(view, row, column,
+    #: channel)``, linear light; None while coarser cubes are solved.
+    shown: Callable[[], NDArray[np.float32]] | None
+    #: Rows and colours of the pictures that the unit is seen in.
+    window: tuple[slice, slice]
+
+
+#: Called after each iteration; True stops the job.
+Watching = Callable[[Step], bool | None]
+
+
+def solve_pieces(
+    job: Job, names: list[str], store: Store, callback: Watching | None = None, *, checkpoints: bool = True
+) -> bool:
+    """Solve pieces one after the other, as `solve_piece` does; False where the callback stopped it."""
+    asked = False
+
+    def watching(step: Step) -> bool:
+        nonlocal asked
+        asked = asked or (callback is not None and bool(callback(step)))
+        return asked
+
+    return all(not asked and solve_piece(job, name, store, watching, checkpoints=checkpoints) for name in names)
+
+
+def solve_piece(
+    job: Job, name: str, store: Store, callback: Watching | None = None, *, checkpoints: bool = True
+) -> bool:
+    """Solve a piece, or what is left of it, unless it is finished; False where the callback stopped it.
+
+    Parameters
+    ----------
+    name
+        One of ``job.pieces``, those it needs being finished.
+    store
+        Has what is finished and the piece's checkpoint, and gets the result. A piece that was stopped or killed and
+        then continued comes out the same, bit for bit.
+    checkpoints
+        Whether unfinished work is kept while it goes on, after 2 s and then ever more seldom up to every 30 s, and
+        not only where the callback stops it.
+    """
+    if name in store.names():
+        return True
+    problem, start, bounds, iterations = _posed(job, name, store)
+    state = _handed(store.state(name))
+    watch = _Watch(job, name, problem, store, callback, checkpoints=checkpoints)
+    options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
+    result = METHODS[job.method](
+        problem.matrix,
+        problem.light,
+        weights=problem.weights,
+        view_of_row=problem.lamp_of_row,
+        lamp_bounds=bounds,
+        x0=None if state is not None else start(),
+        bounds=(0.0, job.max_extinction),
+        callback=watch,
+        transfer=job.frames.transfer,
+        state=state,
+        mixture=problem.mixture,
+        **options,
+    )
+    if watch.stopped:
+        return False
+    store.finish(name, _bundle(problem, result, "enough" if watch.enough else result.stop_reason))
+    return True
+
+
+def _posed(
+    job: Job, name: str, store: Store
+) -> tuple[Problem, Callable[[], Floats | None], tuple[Floats, Floats], int | None]:
+    """Problem of a piece, the function that makes its start, bounds of its lamps and number of iterations."""
+    kind, number = name.split("-")
+    if kind == "level":
+        level, (frames, grid), part = int(number), coarser(job.frames, job.grid, int(number)), None
+    else:
+        level, (frames, grid), part = 0, (job.frames, job.grid), job.parts[int(number)]
+    problem = pose(frames, grid, job.hold, job.lamp, job.black, job.dtype, part)
+    bounds = job.lamp_bounds
+    if kind == "unit" and job.frozen:
+        powers = _finished(store, level_name(1))[POWERS]
+        bounds = (powers, powers)
+    low, high = (bound[:, problem.part.colours] for bound in bounds)
+
+    def start() -> Floats | None:
+        if level >= job.levels:
+            return None
+        return problem.unknowns(start_of(job, store, level, problem.part))
+
+    return problem, start, (low, high), job.coarse_passes if kind == "level" else job.iterations
+
+
+def start_of(job: Job, store: Store, level: int, part: Part) -> Floats:
+    """Extinction of a part of the cube halved `level` times, enlarged from the next smaller one, which is finished."""
+    smaller = coarse_shape(job.grid.shape, level + 1)
+    whole = volume_from_unknowns(_finished(store, level_name(level + 1))["x"], smaller, job.channels)
+    return enlarged(whole[part.colours], coarse_shape(job.grid.shape, level), part.slices)
+
+
+def _handed(arrays: Arrays | None) -> Mapping[str, NDArray[Any]] | None:
+    return None if arrays is None else _Handed(arrays)
+
+
+class _Handed(Mapping[str, NDArray[Any]]):
+    """Arrays that are given away once: they need not stay beside the copies that a solver makes of them."""
+
+    def __init__(self, arrays: Arrays) -> None:
+        self._arrays = dict(arrays)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self._arrays.pop(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._arrays
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+
+def _finished(store: Store, name: str) -> Arrays:
+    found = store.finished(name)
+    if found is None:
+        raise KeyError(f"{name} is needed and not finished")
+    return found
+
+
+def _bundle(problem: Problem, result: Result, stop_reason: str) -> dict[str, NDArray[Any]]:
+    """What is kept of a piece that is finished; ``"x"`` are the unknowns as in its checkpoints."""
+    bundle: dict[str, NDArray[Any]] = {
+        "x": result.x,
+        POWERS: result.lamp_powers,
+        "history": result.residuals,
+        "rejected": problem.pixels(result.rejected),
+        "undetermined": np.array(0 if result.undetermined is None else np.sum(result.undetermined)),
+        "stop_reason": np.array(stop_reason),
+    }
+    return bundle if result.lower_bound is None else bundle | {"lower_bound": np.array(result.lower_bound)}
+
+
+class _Watch:
+    """What the solver of a piece calls after each iteration: checkpoints, and the caller's callback.
+
+    Attributes
+    ----------
+    enough
+        Whether the picture is as good as was asked for.
+    stopped
+        Whether the callback said so before that.
+    """
+
+    def __init__(
+        self, job: Job, name: str, problem: Problem, store: Store, callback: Watching | None, *, checkpoints: bool
+    ) -> None:
+        self._name, self._problem, self._store, self._callback = name, problem, store, callback
+        work = shares(job)
+        names = list(work)
+        self._before = sum(work[earlier] for earlier in names[: names.index(name)]) / sum(work.values())
+        self._own = work[name] / sum(work.values())
+        self._level, self._most = name.startswith("level"), job.iterations or 0
+        self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
+        self._wanted = -1.0  # an exact 0 is not enough by itself
+        if not self._level and job.method == "display" and job.enough_db < np.inf:
+            weight = float(np.sum(problem.weights, dtype=np.float64))
+            self._wanted = 0.5 * 10 ** (-job.enough_db / 10) * weight
+        self.enough = self.stopped = False
+
+    def __call__(self, progress: Progress) -> bool:
+        """Tell the solver whether it is to stop."""
+        self.enough = progress.residual <= self._wanted
+        asked = self._callback is not None and bool(self._callback(self._step(progress)))
+        if self.enough:  # finished, whatever the callback says of the pieces to come
+            return True
+        self.stopped = asked
+        if asked or (self._checkpoints and time.monotonic() - self._last > self._gap):
+            self._keep(progress)
+        return asked
+
+    def _keep(self, progress: Progress) -> None:
+        began = time.monotonic()
+        self._store.keep(self._name, {**progress.state(), POWERS: progress.lamp_powers})
+        self._last = time.monotonic()
+        self._gap = min(max(min(2 * self._gap, CHECKPOINT_S), _PATIENCE * (self._last - began)), _LATEST_S)
+
+    def _step(self, progress: Progress) -> Step:
+        done = self._before + self._own * progress.iteration / progress.iterations
+        window = self._problem.rows, self._problem.part.colours
+        if self._level:
+            return Step(0, self._most, done, progress.residual, None, window)
+
+        def shown() -> NDArray[np.float32]:
+            return self._problem.shown(progress.absorbance, progress.lamp_powers)
+
+        return Step(progress.iteration, progress.iterations, done, progress.residual, shown, window)

@@ -1,0 +1,220 @@
+"""Frames and a grid as a solver sees them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from lightcube.backward.recipe import Powers
+from lightcube.backward.units import Part
+from lightcube.kernels.layout import (
+    columns_from_pictures,
+    columns_from_volume,
+    pictures_from_columns,
+    volume_from_columns,
+)
+from lightcube.optics.grid import Grid, dense_step
+from lightcube.optics.law import falling_light
+from lightcube.optics.rig import Lighting, held_lighting
+from lightcube.optics.transfer import BLACK, Transfer, decode
+from lightcube.optics.views import Views, held
+from lightcube.pictures.frames import Frames
+from lightcube.projection.projector import Projector
+from lightcube.projection.stacked import StackedBeams, is_stacked
+from lightcube.solvers._objective import mixed_light
+from lightcube.solvers.contract import Mixture
+
+Floats = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """The matrix, the wanted light of every beam, and which lamp it belongs to, for a part of the cube.
+
+    Columns are independent of each other.
+
+    Parameters
+    ----------
+    matrix
+        Of all views, those of a stop one after the other.
+    light, weights
+        Linear light above 0, and at least 0: of every beam, ``(matrix.shape[0], columns)``, or where beams add up, of
+        every pixel.
+    lamp_of_view
+        ``(views,)``: the lamp power that each view of the matrix has.
+    mixture
+        How views add up to pictures, or None where each one is a picture.
+    part
+        Colours and slices of the cube; their columns are all that is here.
+    rows
+        Rows of the pictures that the part is seen in.
+    stops, angles
+        Pictures, and at how many angles each of them is asked for.
+    transfer
+        How display values follow from light.
+    """
+
+    matrix: Projector
+    light: Floats
+    weights: Floats
+    lamp_of_view: NDArray[np.intp]
+    mixture: Mixture | None
+    part: Part
+    rows: slice
+    stops: int
+    angles: int
+    transfer: Transfer
+
+    @property
+    def channels(self) -> int:
+        """Colours of the part: column ``j`` is of the colour ``j % channels`` of these."""
+        return self.part.colours.stop - self.part.colours.start
+
+    @property
+    def slices(self) -> int:
+        """Slices of the part."""
+        return self.part.slices.stop - self.part.slices.start
+
+    def extinction(self, x: Floats) -> Floats:
+        """``(channel, z, y, x)`` of the unknowns `x`: those of the part."""
+        return volume_from_unknowns(x, (self.slices, *self.matrix.grid.shape[1:]), self.channels)
+
+    def unknowns(self, extinction: Floats) -> Floats:
+        """Inverse of `extinction`."""
+        return columns_from_volume(extinction).reshape(self.matrix.shape[1], -1)
+
+    @property
+    def lamp_of_row(self) -> NDArray[np.intp]:
+        """``(matrix.shape[0],)``: the lamp power that each equation has."""
+        return self.lamp_of_view[self.matrix.view_of_row]
+
+    def shown(self, absorbance: Floats, powers: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
+        """What ``A x`` and the lamps' powers, ``(lamps, channels)``, show at the stops themselves, linear light.
+
+        ``(stop, row, column, channel)`` of the part: `rows` and colours only.
+        """
+        shape = self.rows.stop - self.rows.start, self.matrix.views.picture_shape[1]
+
+        def at_stops(values: Floats) -> Floats:
+            return values.reshape(self.stops, self.angles, shape[1], -1)[:, self.angles // 2]
+
+        if self.mixture is None:
+            light = np.exp(-at_stops(absorbance))
+            light *= np.tile(powers[self.lamp_of_view[self.angles // 2 :: self.angles]], shape[0])[:, None, :]
+        else:
+            light = at_stops(mixed_light(self.mixture, powers, absorbance))
+        pictures = pictures_from_columns(light.reshape(self.stops * shape[1], -1), shape, self.channels)
+        return pictures.astype(np.float32)
+
+    def pixels(self, rejected: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(stop, row, column, channel) of rejected (equation, column) pairs, each once."""
+        flat = rejected[:, 0] * self.light.shape[1] + rejected[:, 1]
+        rows, colours = self.rows, self.part.colours
+        shape = (self.stops * self.angles, self.matrix.views.picture_shape[1], rows.stop - rows.start, self.channels)
+        view, column, lifted, channel = np.unravel_index(flat, shape)
+        pixels = [view // self.angles, rows.stop - 1 - lifted, column, colours.start + channel]
+        return np.unique(np.stack(pixels, axis=1).astype(np.int64), axis=0)
+
+
+def volume_from_unknowns(x: Floats, shape: tuple[int, int, int], channels: int) -> Floats:
+    """``(channel, z, y, x)`` of a grid of `shape` ``(nz, ny, nx)`` from the unknowns that a solver finds."""
+    return volume_from_columns(x.reshape(shape[1] * shape[2], -1), shape, channels)
+
+
+def is_level(grid: Grid, views: Views) -> bool:
+    """Tell whether each slice of the cube casts one row of the pictures, by itself."""
+    return is_stacked(grid, views) and StackedBeams(grid, views).level
+
+
+def pose(
+    frames: Frames,
+    grid: Grid,
+    hold: float,
+    lamp: Powers,
+    black: float = BLACK,
+    dtype: DTypeLike = np.float32,
+    part: Part | None = None,
+) -> Problem:
+    """Pose the problem of the cube `grid` whose shadows are `frames`, held for so many degrees on either side.
+
+    Only the columns of `part` are made: None = all colours and slices; some slices only where `is_level`.
+
+    Pixels darker than `black`, a display value, are wanted at it. The ends of a hold, with nothing to hold on to
+    beyond, count twice: else they are what falls apart first (measured).
+    """
+    views, lighting, kept = held_views(frames, hold, grid)
+    angles = (len(views) if lighting is None else lighting.pictures) // len(frames)
+    heard = np.repeat(frames.weight > 0, angles, axis=0)
+    matrix = Projector(grid, views, heard if lighting is None else heard[lighting.picture])
+    darkest = decode(np.array([black], np.float32), frames.transfer)
+    high, channels = views.picture_shape[0], frames.pictures.shape[-1]
+    part = part or Part(slice(0, channels), slice(0, grid.shape[0]))
+    rows = slice(0, high)
+    if part.slices != slice(0, grid.shape[0]):
+        rows = slice(high - part.slices.stop, high - part.slices.start)
+
+    def block(pictures: Floats) -> Floats:
+        columns = columns_from_pictures(np.repeat(pictures.astype(dtype), angles, axis=0))
+        return columns.reshape(columns.shape[0] * (1 if matrix.level else high), -1)
+
+    importance = np.ones(angles, dtype)
+    if angles > 1:
+        importance[[0, -1]] = 2
+    weights = block(np.repeat(frames.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
+    weights *= np.repeat(np.tile(importance, len(frames)), len(weights) // (len(frames) * angles))[:, None]
+    lamp_of_view = lamp_numbers(frames, lamp)[kept]
+    mixture = None
+    if lighting is not None and not lighting.is_plain:
+        mixture = mixture_of(views, lighting, lamp_of_view, part.colours, rows)
+    return Problem(
+        matrix=matrix,
+        light=block(np.maximum(frames.pictures[:, rows, :, part.colours], darkest)),
+        weights=weights,
+        lamp_of_view=lamp_of_view,
+        mixture=mixture,
+        part=part,
+        rows=rows,
+        stops=len(frames),
+        angles=angles,
+        transfer=frames.transfer,
+    )
+
+
+def held_views(frames: Frames, hold: float, grid: Grid) -> tuple[Views, Lighting | None, NDArray[np.intp]]:
+    """Views and lighting of every picture at the angles that a hold asks for, the angles of a picture in a row.
+
+    Also returns ``(views,)``: the number of the frames' view that each one is a copy of.
+    """
+    if frames.lighting is not None:
+        return held_lighting(frames.views, frames.lighting, hold, dense_step(grid))
+    views = held(frames.views, hold, grid)
+    return views, None, np.repeat(np.arange(len(frames)), len(views) // len(frames))
+
+
+def lamp_numbers(frames: Frames, lamp: Powers) -> NDArray[np.intp]:
+    """``(views,)``: which power each view has: every lamp has one for each of its pictures, or one (``"global"``)."""
+    lighting = frames.lighting
+    if lighting is None:
+        return np.zeros(len(frames), np.intp) if lamp == "global" else np.arange(len(frames))
+    return lighting.lamp if lamp == "global" else lighting.pair
+
+
+def mixture_of(
+    views: Views,
+    lighting: Lighting,
+    lamp_of_view: NDArray[np.intp],
+    colours: slice = slice(None),
+    rows: slice = slice(None),
+) -> Mixture:
+    """How views add up, for solvers: pixels in the order of the matrix's equations and columns; some colours and rows.
+
+    Parameters
+    ----------
+    lamp_of_view
+        Which lamp power each view has.
+    """
+    light, shadow = (
+        columns_from_pictures(each[:, rows, :, None]).reshape(len(views), -1) for each in falling_light(views, lighting)
+    )
+    return Mixture(lighting.starts, lamp_of_view, lighting.share[:, colours], light, shadow)

@@ -1,0 +1,184 @@
+"""From the pieces of a job to a cube, finished or not."""
+
+import math
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.backward.job import Job, level_name
+from lightcube.backward.pieces import POWERS
+from lightcube.backward.problem import held_views, volume_from_unknowns
+from lightcube.backward.store import Arrays, Store
+from lightcube.backward.units import Part, coarse_shape
+from lightcube.kernels.layout import clear_volume
+from lightcube.optics.cube import Cube
+from lightcube.pictures.fitting import targets
+from lightcube.pictures.resampling import enlarged
+
+Floats = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A cube and how the solver arrived at it.
+
+    Parameters
+    ----------
+    cube
+        What was solved for.
+    residuals
+        One figure per iteration, in the norm of the method; of several units the sum, those that stopped early
+        counting with their last figure. Empty where the cube itself was not begun.
+    rejected
+        ``(count, 4)`` whole numbers: (view, row, column, channel) of pixels thrown out as inconsistent.
+    undetermined
+        How many voxel colours no remaining equation determines; they are transparent.
+    stop_reason
+        One of ``"converged"``, ``"enough"``, ``"iterations"``, ``"callback"``.
+    lower_bound
+        What no cube and no lamps (where these were found at half the size: no cube with these lamps) can bring the
+        last residual below, or None where the method does not tell or was interrupted.
+    """
+
+    cube: Cube
+    residuals: NDArray[np.float64]
+    rejected: NDArray[np.int64]
+    undetermined: int
+    stop_reason: str
+    lower_bound: float | None = None
+
+    @property
+    def optimality(self) -> dict[str, float] | None:
+        """The objective, what it cannot be below, and how many dB at most are left to gain on average, if known."""
+        if self.lower_bound is None:
+            return None
+        reached = float(self.residuals[-1])
+        most = 10 * math.log10(reached / self.lower_bound) if 0 < self.lower_bound < reached else None
+        return {"objective": reached, "lower_bound": self.lower_bound} | ({} if most is None else {"left_db": most})
+
+
+def merged(job: Job, store: Store) -> Solution:
+    """Put together what a store has of a job: units, checkpoints of others, for the rest the start, enlarged."""
+    extinction = clear_volume(job.grid.shape, job.channels)
+    powers = _coarse_powers(job, store)
+    facts = []
+    for name, part in zip(job.unit_names, job.parts, strict=True):
+        facts.append(_place(job, store, name, part, extinction, powers))
+    complete = all("stop_reason" in each for each in facts)
+    stop_reason = _slowest([str(each["stop_reason"]) for each in facts]) if complete else "callback"
+    residuals = _together(job, [each["history"] for each in facts if "history" in each])
+    rejected = np.concatenate([each.get("rejected", np.empty((0, 4), np.int64)) for each in facts])
+    bounds = [float(each["lower_bound"]) for each in facts if "lower_bound" in each]
+    made = {"iterations": len(residuals), "stop_reason": stop_reason, "rejected": len(rejected)}
+    cube = Cube(
+        extinction=extinction,
+        grid=job.grid,
+        views=job.frames.views,
+        lamp_powers=_of_pictures(job, powers),
+        targets=targets(job.frames),
+        names=job.frames.names,
+        transfer=job.frames.transfer,
+        status="complete" if complete else "interrupted",
+        hold_deg=float(job.hold),
+        lighting=job.frames.lighting,
+        provenance=_made_with(job) | made,
+    )
+    undetermined = sum(int(each.get("undetermined", 0)) for each in facts)
+    bound = sum(bounds) if complete and len(bounds) == len(facts) else None
+    return Solution(cube, residuals, rejected, undetermined, stop_reason, bound)
+
+
+def _of_pictures(job: Job, powers: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The powers of each picture's lamps, as a cube keeps them, from those that the job solves for."""
+    if job.lamp != "global":
+        return powers
+    if job.frames.lighting is None:
+        return np.repeat(powers, len(job.frames), axis=0)
+    return powers[job.frames.lighting.pairs[:, 1]]
+
+
+def _place(
+    job: Job, store: Store, name: str, part: Part, extinction: NDArray[np.float32], powers: NDArray[np.float64]
+) -> Arrays:
+    """Write what there is of a unit into the cube and the lamp powers; returns what else is known of it."""
+    found = store.finished(name) or store.state(name)
+    if found is None:
+        newest = _newest_level(job, store)
+        if newest is not None:
+            extinction[part.colours, part.slices] = _enlarged(job, *newest, part)
+        return {}
+    shape = (part.slices.stop - part.slices.start, *job.grid.shape[1:])
+    volume = volume_from_unknowns(found["x"], shape, part.colours.stop - part.colours.start)
+    extinction[part.colours, part.slices] = volume
+    powers[:, part.colours] = found[POWERS]
+    return {key: found[key] for key in _FACTS if key in found}
+
+
+#: What is remembered of a unit once its voxels stand in the cube.
+_FACTS = ("history", "rejected", "undetermined", "stop_reason", "lower_bound")
+
+
+def _newest_level(job: Job, store: Store) -> tuple[int, Arrays] | None:
+    """The largest of the coarse cubes that there is anything of: how often it is halved, and what there is."""
+    for level in range(1, job.levels + 1):
+        found = store.finished(level_name(level)) or store.state(level_name(level))
+        if found is not None:
+            return level, found
+    return None
+
+
+def _coarse_powers(job: Job, store: Store) -> NDArray[np.float64]:
+    """The lamp powers of the newest coarse cube, ``(lamps, channels)``; as strong as allowed where there is none."""
+    newest = _newest_level(job, store)
+    return np.array(job.lamp_bounds[1] if newest is None else newest[1][POWERS], np.float64)
+
+
+def _enlarged(job: Job, level: int, found: Arrays, part: Part) -> Floats:
+    """A coarse cube through all sizes up to the cube itself; this part of it."""
+    volume = volume_from_unknowns(found["x"], coarse_shape(job.grid.shape, level), job.channels)[part.colours]
+    for larger in range(level - 1, -1, -1):
+        volume = enlarged(volume, coarse_shape(job.grid.shape, larger), part.slices if larger == 0 else None)
+    return volume
+
+
+def _together(job: Job, histories: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """One history of several: objectives of method display add up, the norms of the others as their squares do."""
+    if not histories:
+        return np.empty(0)
+    if len(histories) == 1:
+        return histories[0]
+    longest = max(map(len, histories))
+    padded = np.array([np.pad(history, (0, longest - len(history)), "edge") for history in histories])
+    return np.sum(padded, axis=0) if job.method == "display" else np.sqrt(np.sum(padded**2, axis=0))
+
+
+def _slowest(reasons: list[str]) -> str:
+    return next(reason for reason in ("iterations", "enough", "converged") if reason in reasons)
+
+
+def _lamp_power(job: Job) -> dict[str, float]:
+    """The power of a fixed lamp, or the largest one; a stage's lamps have bounds of their own, in its lighting."""
+    if job.frames.lighting is not None:
+        return {}
+    return {"lamp_power" if job.lamp == "fixed" else "lamp_max": float(job.lamp_power)}
+
+
+def _made_with(job: Job) -> dict[str, Any]:
+    """What the cube remembers of how it was made."""
+    return {
+        "lightcube": version("lightcube"),
+        "method": job.method,
+        "lamp": job.lamp,
+        **_lamp_power(job),
+        "max_extinction": None if np.isinf(job.max_extinction) else float(job.max_extinction),
+        "black": float(job.black),
+        "passes": job.iterations,
+        "enough_db": None if np.isinf(job.enough_db) else float(job.enough_db),
+        "dtype": job.dtype,
+        "angles_per_view": len(held_views(job.frames, job.hold, job.grid)[0]) // len(job.frames.views),
+        "units": job.units,
+        **job.provenance,
+    }

@@ -1,0 +1,85 @@
+"""What the texts and numbers of the command line mean."""
+
+import re
+from pathlib import PurePath
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.errors import InputError
+from lightcube.forward import turning
+from lightcube.optics.cube import Cube
+from lightcube.optics.views import check_angles
+
+
+def numbers(text: str, option: str) -> tuple[float, ...]:
+    """Numbers separated by commas."""
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"{option} {text}: give numbers separated by commas, such as 0,12.5,90") from None
+
+
+def whole_numbers(text: str, separator: str, option: str, count: int) -> tuple[int, ...]:
+    """As many whole numbers of at least 1 as `count` says."""
+    parts = text.split(separator)
+    if len(parts) != count or not all(
+        part.strip().isascii() and part.strip().isdigit() and int(part) for part in parts
+    ):
+        example = separator.join(["64", "48", "32"][:count])
+        raise InputError(f"{option} {text}: give {count} whole numbers of at least 1, such as {example}")
+    return tuple(int(part) for part in parts)
+
+
+def memory(text: str) -> int:
+    """Bytes that a text such as 2GB, 512MB or 1.5GiB means."""
+    match = re.fullmatch(r"([0-9]+(?:\.[0-9]*)?)\s*([KMGT]?)(i?)B?", text.strip(), re.IGNORECASE)
+    size = float(match[1]) * (1024 if match[3] else 1000) ** " KMGT".index(match[2].upper() or " ") if match else 0
+    if not 1 <= size < 1e18:
+        raise InputError(f"--memory {text}: give a number with its unit, such as 2GB, 512MB or 1.5GiB")
+    return int(size)
+
+
+def unit(text: str) -> tuple[int, int]:
+    """``(I, N)`` of a text I/N with 1 <= I <= N."""
+    which, of = whole_numbers(text, "/", "--unit", 2)
+    if which > of:
+        raise InputError(f"--unit {text}: give the number of a unit and how many there are, such as 1/{of}")
+    return which, of
+
+
+def play_angles(
+    cube: Cube, angles: str | None, start: float | None, end: float | None, count: int | None, *, stops: bool
+) -> NDArray[np.float64]:
+    """Stops, given angles, or a turn in which each stop is met exactly."""
+    turn = [start, end, count] != [None] * 3
+    if stops + (angles is not None) + turn > 1:
+        raise InputError("--stops, --angles, and --from, --to and --count are three ways to say the same: use one")
+    if stops:
+        return cube.angles
+    if angles is not None:
+        return check_angles(numbers(angles, "--angles"))
+    if cube.lighting is not None and not turn and not np.any(cube.lighting.turning):
+        return cube.angles[:1]  # nothing turns: all angles look alike
+    first, last, pictures = (
+        start or 0.0,
+        360.0 if end is None else end,
+        max(120, 2 * len(cube.names)) if count is None else count,
+    )
+    if pictures < 1:
+        raise InputError(f"--count {pictures}: give at least 1 picture")
+    if not (np.isfinite([first, last]).all() and first != last):
+        raise InputError(f"--from {first} --to {last}: give two different finite numbers of degrees")
+    return turning.turn(cube, pictures, first, last)
+
+
+def movie_scale(output: str, rows: int) -> int:
+    """An even scale that makes a movie at least 256 pixels high; single pictures and numbers stay as they are."""
+    return 1 if PurePath(output).suffix in ("", ".npy", ".png") else 2 * -(-128 // rows) if rows < 256 else 1
+
+
+def short(value: object) -> str:
+    """Numbers with six digits, nothing as a dash."""
+    if isinstance(value, list):
+        return ", ".join(short(item) for item in value)
+    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,154 @@
+"""What the commands print and how they are stopped: sentences, progress, JSON lines, Ctrl-C."""
+
+import io
+import json
+import math
+import signal
+import sys
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+from lightcube import events
+from lightcube.events import Said, Tell
+
+#: Results go to standard output, all else to standard error.
+out = Console(soft_wrap=True, highlight=False, markup=False, emoji=False)
+
+err = Console(soft_wrap=True, highlight=False, markup=False, emoji=False, stderr=True)
+
+#: Seconds between two lines of progress.
+_BEAT = 0.5
+
+
+def json_line(event: str, **fields: Any) -> None:
+    """Print one line of JSON: ``{"event": event, ...}``; NaN becomes null."""
+    sys.stdout.write(json.dumps({"event": event, **_plain(fields)}) + "\n")
+    sys.stdout.flush()
+
+
+def json_document(document: dict[str, Any]) -> None:
+    """Print a document as JSON, indented; NaN becomes null."""
+    sys.stdout.write(json.dumps(_plain(document), indent=2) + "\n")
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+@contextmanager
+def plain_warnings() -> Iterator[None]:
+    """Print warnings as one sentence each, the same one only once."""
+    said: set[str] = set()
+
+    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+        if str(message) not in said:
+            said.add(str(message))
+            err.print(f"note: {message}")
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", UserWarning)
+        warnings.showwarning = show
+        yield
+
+
+@contextmanager
+def progress(task: str, *, as_json: bool) -> Iterator[Callable[..., None]]:
+    """Yield ``advance(done, of, **figures)``: a bar with the time left, or at most two JSON lines a second."""
+    last = -math.inf
+    if as_json:
+
+        def advance(done: int, of: int, **figures: float) -> None:
+            nonlocal last
+            if time.monotonic() - last > _BEAT or done == of:
+                last = time.monotonic()
+                json_line("progress", task=task, done=done, of=of, **figures)
+
+        yield advance
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[figures]}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as bar:
+        running = bar.add_task(task, total=None, figures="")
+
+        def show(done: int, of: int, **figures: float) -> None:
+            text = "  ".join(f"{name} {value:.4g}" for name, value in figures.items())
+            bar.update(running, completed=done, total=of, figures=text or bar.tasks[0].fields["figures"])
+
+        yield show
+
+
+@contextmanager
+def ctrl_c() -> Iterator[Callable[[], bool]]:
+    """Yield a function that tells whether Ctrl-C was pressed; a second Ctrl-C stops at once. SIGTERM is the same."""
+    pressed = False
+
+    def handle(number: int, frame: Any) -> None:
+        nonlocal pressed
+        if pressed:
+            raise KeyboardInterrupt
+        pressed = True
+        err.print("stopping after this pass; press Ctrl-C again to stop at once")
+
+    before = {number: signal.signal(number, handle) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield lambda: pressed
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def prepare() -> None:
+    """Let no letter that the terminal lacks stop a command, and let SIGTERM clean up as Ctrl-C does."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+    def stop(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, stop)
+
+
+class Stopped(Exception):  # noqa: N818 - nothing is wrong
+    """Ctrl-C, where something is kept: says what."""
+
+
+@contextmanager
+def listening(task: str, *, as_json: bool) -> Iterator[Tell]:
+    """Yield what long work tells: it prints, and stops the work where Ctrl-C was pressed."""
+    with ctrl_c() as pressed, progress(task, as_json=as_json) as advance:
+
+        def tell(event: events.Progress | Said) -> bool:
+            if isinstance(event, Said) and as_json:
+                json_line(event.what, **event.facts)
+            elif isinstance(event, Said):
+                err.print(event.sentence)
+            else:  # the bar reckons for itself how long it takes
+                left = {"left_s": event.left_s} if as_json and event.left_s is not None else {}
+                advance(event.done, event.of, **event.figures, **left)
+            return pressed()
+
+        yield tell
+
+
+def done(as_json: bool, sentence: str, **fields: object) -> None:
+    """Say what a command has made: a sentence, or a line of JSON."""
+    if as_json:
+        json_line("result", **fields)
+    else:
+        out.print(sentence)

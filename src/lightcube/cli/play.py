@@ -1,0 +1,85 @@
+"""The command `lightcube play`."""
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Annotated
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from lightcube import io
+from lightcube.cli import arguments
+from lightcube.cli.console import done, err, progress
+from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, flag
+from lightcube.errors import InputError
+from lightcube.jobs.cubes import load
+from lightcube.verbs import playing, staging
+
+
+def play(
+    cube: Annotated[str, typer.Argument(help="A cube.")],
+    output: Annotated[str, OUT],
+    angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
+    start: Annotated[float | None, typer.Option("--from", help="First angle in degrees.  [default: 0]")] = None,
+    end: Annotated[float | None, typer.Option("--to", help="Where the turn ends, in degrees.  [default: 360]")] = None,
+    count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120 or more]")] = None,
+    stops: Annotated[bool, typer.Option("--stops", help="Play just the views that the cube was made for.")] = False,
+    scale: Annotated[
+        int | None, typer.Option(help="Enlarge each pixel to a square of so many.  [default: movies about 256 high]")
+    ] = None,
+    target: Annotated[
+        bool, typer.Option("--target", help="Put the wanted picture of the nearest stop to the right.")
+    ] = False,
+    no_mask: Annotated[bool, typer.Option("--no-mask", help="Show the whole screen, not the picture window.")] = False,
+    screens: Annotated[
+        bool, typer.Option("--screens", help="Show all screens of a stage side by side; with --stops each stop once.")
+    ] = False,
+    room: Annotated[
+        bool, typer.Option("--room", help="Show the room in perspective: cube, lamps, and screens with their shadows.")
+    ] = False,
+    lamp_samples: Annotated[int, flag("lamp_samples")] = 1,
+    pixel_samples: Annotated[int, flag("pixel_samples")] = 1,
+    fps: Annotated[float, FPS] = 25.0,
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix."""
+    io.check_pictures_target(output, overwrite=overwrite)
+    if target and no_mask:
+        raise InputError("--target shows the picture window: leave out --no-mask")
+    if room and (target or no_mask or screens):
+        raise InputError("--room shows all there is: leave out --screens, --target and --no-mask")
+    loaded = playing.with_samples(load(cube), lamp_samples, pixel_samples)
+    if (target or no_mask) and loaded.lighting is not None:
+        raise InputError(f"{cube} was made on a stage: leave out --target and --no-mask, and see score --sheet")
+    turned = arguments.play_angles(loaded, angles, start, end, count, stops=stops)
+    if room:
+        show = playing.of_room(loaded, np.unique(turned) if stops else turned)
+    elif loaded.lighting is None and not screens:
+        show = playing.of_turntable(loaded, turned, stops=stops, target=target, whole_screen=no_mask)
+    else:
+        show = playing.of_stage(loaded, turned, stops=stops, side_by_side=screens)
+    for sentence in staging.unsampled(loaded.lighting):
+        if not as_json:
+            err.print(sentence)
+    with progress("playing", as_json=as_json) as advance:
+        io.write_pictures(
+            output,
+            _counted(show.pictures, show.count, advance),
+            count=show.count,
+            transfer=loaded.transfer,
+            fps=fps,
+            scale=arguments.movie_scale(output, show.rows) if scale is None else scale,
+            views=show.views,
+            names=show.names,
+            overwrite=overwrite,
+        )
+    done(as_json, f"{show.count} pictures in {output}", out=str(output), frames=show.count)
+
+
+def _counted(
+    pictures: Iterable[NDArray[np.float32]], count: int, advance: Callable[..., None]
+) -> Iterator[NDArray[np.float32]]:
+    for number, picture in enumerate(pictures, 1):
+        yield picture
+        advance(number, count)

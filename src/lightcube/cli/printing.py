@@ -1,0 +1,53 @@
+"""What is printed of a solved cube and of its scores."""
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from lightcube.backward.solution import Solution
+from lightcube.cli.console import out
+from lightcube.optics.disturbance import DISTURBANCES
+
+
+def facts(solution: Solution) -> dict[str, Any]:
+    """How a solver arrived, for JSON."""
+    return {
+        "iterations": len(solution.residuals),
+        "residual": float(solution.residuals[-1]),
+        "optimality": solution.optimality,
+        "stop_reason": solution.stop_reason,
+        "rejected": solution.rejected.tolist(),
+        "undetermined": solution.undetermined,
+    }
+
+
+def solved(solution: Solution, scores: dict[str, Any], output: str | Path, seconds: float) -> None:
+    """Print how good the cube is and how long it took."""
+    if len(solution.rejected):
+        most = Counter(solution.cube.names[view] for view in solution.rejected[:, 0]).most_common(5)
+        views = ", ".join(f"{count} in {name}" for name, count in most)
+        out.print(f"{len(solution.rejected)} inconsistent pixel values thrown out: {views}")
+    if solution.undetermined:
+        out.print(f"{solution.undetermined} voxel values that nothing determines are transparent")
+    out.print(
+        f"{output}: PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), "
+        f"SSIM {scores['ssim_mean']:.3f}, colour difference {scores['delta_e_mean']:.1f}; "
+        f"{len(solution.residuals)} passes in {seconds:.0f} s",
+    )
+
+
+def scored(scores: dict[str, Any]) -> None:
+    """Print one line per view, the means, and what was asked for besides."""
+    lobes = scores["between"]["lobe_deg"] if "between" in scores else []
+    out.print(f"{'view':>20} {'angle':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}" + " 30 dB over" * bool(lobes))
+    for number, view in enumerate(scores["views"]):
+        figures = f"{view['angle']:9.3f} {view['psnr']:7.2f} {view['ssim']:7.4f} {view['delta_e']:7.2f}"
+        lobe = f" {lobes[number]:9.2f}°" if lobes else ""
+        out.print(f"{view['name'][:20]:>20} {figures}{lobe}")
+    worst, mean = scores["psnr_min"], scores["psnr_mean"]
+    out.print(
+        f"mean PSNR {mean:.2f} dB (worst {worst:.2f}), SSIM {scores['ssim_mean']:.4f}, dE {scores['delta_e_mean']:.2f}"
+    )
+    for name, left in scores.get("robust", {}).items():
+        figures = f"{left['psnr_mean']:6.2f} dB (worst {left['psnr_min']:5.2f})"
+        out.print(f"  {figures}  {DISTURBANCES[name]}")

@@ -1,0 +1,43 @@
+"""The command `lightcube trace`."""
+
+from typing import Annotated
+
+import typer
+
+from lightcube import io
+from lightcube.cli import arguments
+from lightcube.cli.console import done, progress
+from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE
+from lightcube.scene.tracer import scene_frames, scene_views
+from lightcube.verbs import solving
+
+
+def trace(
+    scene: Annotated[
+        str, typer.Argument(help="A scene file (TOML), or the name of a scene that comes with lightcube.")
+    ],
+    output: Annotated[str, OUT],
+    frames: Annotated[int | None, typer.Option(help="Number of pictures; default the scene's own.")] = None,
+    size: Annotated[
+        str | None, typer.Option(help="Size of the pictures, WIDTHxHEIGHT; default the scene's own.")
+    ] = None,
+    span: Annotated[float | None, typer.Option(help="Degrees that the views are spread over.")] = None,
+    elevation: Annotated[float | None, typer.Option(help="Elevation of the lamp in degrees.")] = None,
+    fps: Annotated[float, FPS] = 25.0,
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Ray-trace a moving scene: a folder of PNGs, or a movie by suffix."""
+    described = io.read_scene(scene)
+    io.check_pictures_target(output, overwrite=overwrite)
+    shape = None
+    if size is not None:
+        width, height = arguments.whole_numbers(size, "x", "--size", 2)
+        shape = (width, height)
+    grid, views = scene_views(described, frames, shape, span, elevation)
+    solving.check_memory(24 * len(views) * views.picture_shape[0] * views.picture_shape[1])
+    with progress("tracing", as_json=as_json) as advance:
+        made = scene_frames(described, views, grid, callback=advance)
+    io.write_pictures(output, made.pictures, fps=fps, views=views, overwrite=overwrite)
+    rows, columns = views.picture_shape
+    done(as_json, f"{len(views)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(views))

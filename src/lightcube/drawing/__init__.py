@@ -1,0 +1,1 @@
+"""Pictures for people: sheets, plots, plans, charts, the room in perspective."""

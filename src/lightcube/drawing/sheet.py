@@ -1,0 +1,93 @@
+"""Contact sheets: wanted, shown and the difference of every view, as one picture."""
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from lightcube.optics.transfer import encode, to_uint8
+from lightcube.pictures.frames import Frames
+
+#: Shorter side that a picture is enlarged to, by whole pixels; gap and line height in pixels.
+_SIDE, _GAP, _LINE = 128, 8, 16
+_PAPER, _INK = (250, 250, 248), (40, 40, 40)
+#: Views shown at most: of more, so many evenly chosen ones.
+MOST = 32
+
+
+def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float]) -> NDArray[np.uint8]:
+    """Draw wanted, shown and difference of each view, with its name and PSNR (dB).
+
+    Parameters
+    ----------
+    shown
+        ``(view, row, column, channel)`` in linear light.
+    frames
+        What was wanted.
+    psnr
+        One figure per view.
+
+    Returns
+    -------
+    ``(row, column, 3)`` 8-bit sRGB. The difference of display values is drawn around mid grey. Of more than 32
+    views, 32 are shown.
+    """
+    count = len(frames)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
+    rows, columns = frames.views.picture_shape
+    scale = max(1, round(_SIDE / min(rows, columns)))
+    cell_height, cell_width = rows * scale * 3 + 2 * _LINE + 2 * _GAP, max(columns * scale, 96) + _GAP
+    per_line = max(1, min(len(chosen), 1800 // cell_width))
+    lines = -(-len(chosen) // per_line)
+    per_line = -(-len(chosen) // lines)
+    sheet = Image.new("RGB", (per_line * cell_width + _GAP, lines * cell_height + _GAP + _LINE), _PAPER)
+    draw = ImageDraw.Draw(sheet)
+    font = ImageFont.load_default(11)
+    draw.text((_GAP, 3), "from top to bottom: wanted, shown, difference (around grey; flat grey is free)", _INK, font)
+    for place, view in enumerate(chosen):
+        left = _GAP + place % per_line * cell_width
+        top = _GAP + _LINE + place // per_line * cell_height
+        label = f"{frames.names[view]}"[:16]
+        draw.text((left, top), label, _INK, font)
+        draw.text((left, top + _LINE - 3), f"{frames.angles[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
+        for index, picture in enumerate(triple(shown[view], frames, int(view))):
+            tile = Image.fromarray(picture).resize((columns * scale, rows * scale), Image.Resampling.NEAREST)
+            sheet.paste(tile, (left, top + 2 * _LINE + index * (rows * scale + 2)))
+    return np.asarray(sheet)
+
+
+def triple(shown: NDArray[np.float32], frames: Frames, view: int) -> list[NDArray[np.uint8]]:
+    """Wanted, shown and difference of one view, 8-bit RGB; grey where there is nothing wanted."""
+    wanted, weight = frames.pictures[view], frames.weight[view][..., None] > 0
+    difference = 0.5 + encode(shown, frames.transfer) - encode(wanted, frames.transfer)
+    eighth = np.clip(np.rint(difference * 255), 0, 255).astype(np.uint8)
+    pictures = [to_uint8(wanted, frames.transfer), to_uint8(shown, frames.transfer), eighth]
+    return [np.broadcast_to(np.where(weight, p, 128), (*p.shape[:2], 3)).astype(np.uint8) for p in pictures]
+
+
+def beside_targets(
+    shown: Iterable[NDArray[np.float32]], frames: Frames, angles: NDArray[np.float64]
+) -> Iterator[NDArray[np.float32]]:
+    """Yield each picture with the wanted one of the nearest stop to its right, ``(row, 2 column + 2, channel)``.
+
+    Pictures are in linear light; `angles` are theirs, in degrees. Pixels that nobody cares about are grey.
+    """
+    for picture, angle in zip(shown, angles, strict=True):
+        apart = np.abs(np.remainder(frames.angles - angle + 180, 360) - 180)
+        nearest = int(np.argmin(apart))
+        wanted = np.where(frames.weight[nearest][..., None] > 0, frames.pictures[nearest], np.float32(0.2))
+        gap = np.zeros((len(picture), 2, picture.shape[2]), np.float32)
+        yield np.concatenate([picture, gap, wanted], axis=1)
+
+
+def beside_each_other(pictures: list[NDArray[np.float32]], windows: NDArray[np.integer[Any]]) -> NDArray[np.float32]:
+    """One picture of several, each cut to its window ``(rows, columns)`` from its upper left, with black gaps."""
+    cut = [picture[:rows, :columns] for picture, (rows, columns) in zip(pictures, windows, strict=True)]
+    high, gap = max(len(picture) for picture in cut), 2
+    padded = [
+        np.pad(picture, ((high - len(picture), 0), (0, gap if number + 1 < len(cut) else 0), (0, 0)))
+        for number, picture in enumerate(cut)
+    ]
+    return np.concatenate(padded, axis=1)

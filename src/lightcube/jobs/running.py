@@ -1,0 +1,41 @@
+"""Running the pieces of a job in this program: how far it is, how good the pictures are, what it goes on from."""
+
+import time
+
+from lightcube.backward.job import Job
+from lightcube.backward.pieces import Step, solve_pieces
+from lightcube.events import Progress, Said, Tell
+from lightcube.jobs.partial import DiskStore
+from lightcube.scoring import metrics
+
+#: Seconds between two looks at the screen: one costs as much as half a pass.
+_LOOK_S = 1.0
+
+
+def run(job: Job, pieces: list[str], store: DiskStore, tell: Tell) -> bool:
+    """Solve what is not finished of some pieces of a job; False where `tell` stopped it."""
+    resumed, done = not store.is_empty(), store.names()
+    began, first, looked = time.monotonic(), -1.0, 0.0
+
+    def watching(step: Step) -> bool:
+        nonlocal first, looked
+        if first < 0:
+            first = step.done
+            if resumed:
+                tell(_resumed(step, len(done.intersection(job.unit_names)), job.units))
+        figures = {}
+        if step.shown is not None and time.monotonic() - looked > _LOOK_S:
+            figures["PSNR"] = metrics.mean_psnr(step.shown(), job.frames, step.window)
+            looked = time.monotonic()
+        left = (time.monotonic() - began) * (1 - step.done) / (step.done - first) if step.done > first else None
+        return bool(tell(Progress(round(step.done * step.iterations), step.iterations, figures, left)))
+
+    return solve_pieces(job, pieces, store, watching)
+
+
+def _resumed(step: Step, units: int, of: int) -> Said:
+    """Where a job goes on that was stopped or killed."""
+    passes = max(step.iteration - 1, 0)
+    place = f"from {units} of {of} units, pass {passes} of {step.iterations}" if step.iteration else "at a smaller size"
+    facts = {"units_done": units, "units": of, "passes_done": passes, "passes": step.iterations}
+    return Said(f"going on {place}", "resumed", facts)

@@ -1,0 +1,1 @@
+"""What stands in the room (block, lamps, screens, turntable), and how light goes through it."""

@@ -1,0 +1,125 @@
+"""The light cube: extinction of every voxel and colour, and what it was made for."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.errors import InputError
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Lighting
+from lightcube.optics.transfer import Transfer
+from lightcube.optics.views import Views
+
+Status = Literal["complete", "interrupted"]
+
+
+@dataclass(frozen=True, eq=False)
+class Cube:
+    """A block of coloured semi-transparent voxels and the views it was made for.
+
+    Parameters
+    ----------
+    extinction
+        ``(channel, z, y, x)`` float32 in 1/mm, at least 0; its axes may lie in memory in any order.
+    grid
+        Shape ``(nz, ny, nx)`` and voxel side.
+    views
+        Lamp and screen of each picture the cube was made for.
+    lamp_powers
+        ``(view, channel)`` float64 above 0, linear light, 1 = the paper's white lamp; default all 1. On a stage one for
+        each picture and lamp, in the order of ``lighting.pairs``.
+    targets
+        The wanted pictures as 8-bit display levels ``(picture, row, column, channel + 1)``; the last channel is
+        the weight (0 = don't care, 255 = full). None where the cube was not made from pictures.
+    names
+        One name per picture.
+    transfer
+        How display values follow from linear light.
+    scores
+        Figures of the fit, by name (see `lightcube.scoring.metrics`).
+    provenance
+        How the cube was made: method, options, version of this package.
+    hold_deg
+        Degrees on either side of its stop over which a picture was asked to stand; the lamp does not change there.
+    lighting
+        Which views make which picture on a stage; None = each view is a picture.
+    status
+        ``"complete"``, or ``"interrupted"`` where the solver was stopped early.
+
+    Raises
+    ------
+    InputError
+        Where shapes disagree, or a number is negative, NaN or infinite.
+    """
+
+    extinction: NDArray[np.float32]
+    grid: Grid
+    views: Views
+    lamp_powers: NDArray[np.float64] | None = None
+    targets: NDArray[np.uint8] | None = None
+    names: tuple[str, ...] = ()
+    transfer: Transfer = "srgb"
+    scores: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    status: Status = "complete"
+    hold_deg: float = 0.0
+    lighting: Lighting | None = None
+    #: What a notebook shows of a cube, by MIME type; set by what can draw one, which stands above this module.
+    shown_by: ClassVar[Callable[["Cube"], dict[str, Any]] | None] = None
+
+    def __post_init__(self) -> None:
+        extinction = np.asarray(self.extinction, dtype=np.float32)
+        if extinction.ndim != 4 or extinction.shape[1:] != self.grid.shape or not extinction.shape[0]:
+            raise InputError(
+                f"extinction has shape {extinction.shape}, not (channels, {', '.join(map(str, self.grid.shape))})"
+            )
+        if not np.all(np.isfinite(extinction)) or np.any(extinction < 0):
+            raise InputError(
+                "extinction holds negative or non-finite numbers: every voxel needs a finite value of at least 0"
+            )
+        pictures, lamps = len(self.views), len(self.views)
+        if self.lighting is not None:
+            pictures, lamps = self.lighting.pictures, len(self.lighting.pairs)
+            if len(self.lighting.picture) != len(self.views) or self.lighting.share.shape[1] != len(extinction):
+                raise InputError(f"a lighting of {len(self.lighting.picture)} views does not fit {len(self.views)}")
+        shape = (lamps, len(extinction))
+        powers = np.ones(shape) if self.lamp_powers is None else np.array(self.lamp_powers, dtype=np.float64)
+        if powers.shape != shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):
+            raise InputError(f"lamp powers must be positive finite numbers of shape {shape}, not {powers.shape}")
+        if self.targets is not None:
+            wanted = (pictures, *self.views.picture_shape, len(extinction) + 1)
+            if self.targets.shape != wanted or self.targets.dtype != np.uint8:
+                raise InputError(f"targets must be 8-bit numbers of shape {wanted}, not {self.targets.shape}")
+        names = self.names or tuple(str(i + 1) for i in range(pictures))
+        if len(names) != pictures:
+            raise InputError(f"{pictures} views have {len(names)} names: give one name per view")
+        if self.status not in get_args(Status):
+            raise InputError(f"a cube's status is one of {', '.join(get_args(Status))}, not {self.status!r}")
+        if not 0 <= self.hold_deg <= 180:
+            raise InputError(f"a cube's hold lies between 0 and 180 degrees, not {self.hold_deg}")
+        object.__setattr__(self, "extinction", extinction)
+        object.__setattr__(self, "lamp_powers", powers)
+        object.__setattr__(self, "names", tuple(names))
+
+    @property
+    def powers(self) -> NDArray[np.float64]:
+        """The lamp powers, never None."""
+        assert self.lamp_powers is not None  # noqa: S101 - __post_init__ filled it
+        return self.lamp_powers
+
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Turntable angle of each picture's stop, degrees."""
+        return self.views.angles if self.lighting is None else self.lighting.angle
+
+    def __repr__(self) -> str:
+        nz, ny, nx = self.grid.shape
+        return f"<light cube of {nz} x {ny} x {nx} voxels for {len(self.names)} pictures, {self.status}>"
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
+        """What a notebook shows of the cube; front ends choose among it."""
+        shown_by = type(self).shown_by
+        return {"text/plain": repr(self)} if shown_by is None else shown_by(self)

@@ -1,0 +1,65 @@
+"""A set-up that is a little off: turned, moved, too bright, coarse, not quite black."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lightcube.errors import InputError
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """How a real set-up differs from the one that a cube was made for.
+
+    Parameters
+    ----------
+    turn_deg
+        Degrees by which the cube stands turned at every stop.
+    right_voxels, up_voxels
+        Voxels by which it stands off the axis, to the right and up as seen from the lamp.
+    lamp
+        Fraction by which the lamp is too strong.
+    levels
+        Highest of the whole numbers that extinction is rounded to, per colour, the largest extinction being
+        that number; 0 = not rounded.
+    black
+        Light on the screen where it should be black, as a fraction of white, added in linear light.
+    """
+
+    turn_deg: float = 0.0
+    right_voxels: float = 0.0
+    up_voxels: float = 0.0
+    lamp: float = 0.0
+    levels: int = 0
+    black: float = 0.0
+
+    def __post_init__(self) -> None:
+        numbers = self.turn_deg, self.right_voxels, self.up_voxels, self.lamp, self.black
+        if not np.all(np.isfinite(numbers)) or self.lamp <= -1 or self.black < 0 or self.levels < 0:
+            raise InputError(
+                f"no set-up is off by {self!r}: give finite numbers, lamp above -1, levels and black of at least 0"
+            )
+
+    def __str__(self) -> str:
+        said = {
+            f"turned {self.turn_deg:g}°": self.turn_deg,
+            f"{self.right_voxels:g} voxel to the right": self.right_voxels,
+            f"{self.up_voxels:g} voxel up": self.up_voxels,
+            f"lamp {100 * self.lamp:+.3g} %": self.lamp,
+            f"extinction in {self.levels + 1} levels": self.levels,
+            f"black at {100 * self.black:.3g} % of white": self.black,
+        }
+        return ", ".join(words for words, number in said.items() if number) or "as made"
+
+
+#: What `robust` tries, by name.
+DISTURBANCES = {
+    "undisturbed": Disturbance(),
+    "turned": Disturbance(turn_deg=0.2),
+    "sideways": Disturbance(right_voxels=0.5),
+    "up": Disturbance(up_voxels=0.5),
+    "lamp": Disturbance(lamp=0.02),
+    "extinction": Disturbance(levels=255),
+    "black": Disturbance(black=0.01),
+    "all": Disturbance(0.2, 0.5, 0.5, 0.02, 255, 0.01),
+}

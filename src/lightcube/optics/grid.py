@@ -1,0 +1,112 @@
+"""The block of voxels, and the raster of a screen that holds its shadow."""
+
+import math
+from dataclasses import dataclass
+
+from lightcube.errors import InputError
+
+#: A direction component smaller than this counts as zero (the tie rule of docs/conventions.md).
+PARALLEL = 1e-12
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A block of cubic voxels, centred at the origin; z is the turntable's axis and z = 0 the bottom slice.
+
+    Parameters
+    ----------
+    shape
+        Number of voxels ``(nz, ny, nx)``, each at least 1.
+    voxel_mm
+        Side of a voxel in mm.
+    """
+
+    shape: tuple[int, int, int]
+    voxel_mm: float = 1.0
+
+    def __post_init__(self) -> None:
+        if len(self.shape) != 3 or any(int(n) != n or n < 1 for n in self.shape):
+            raise InputError(f"a grid's shape is three whole numbers of at least 1 (nz, ny, nx), not {self.shape}")
+        if not 1e-6 <= self.voxel_mm <= 1e6:
+            raise InputError(f"a voxel's side must lie between 1e-6 and 1e6 millimetres, not {self.voxel_mm:g}")
+        object.__setattr__(self, "shape", tuple(int(n) for n in self.shape))
+        object.__setattr__(self, "voxel_mm", float(self.voxel_mm))
+
+    @property
+    def size_mm(self) -> tuple[float, float, float]:
+        """Lengths of the block along (z, y, x) in mm."""
+        nz, ny, nx = self.shape
+        return (nz * self.voxel_mm, ny * self.voxel_mm, nx * self.voxel_mm)
+
+
+def _round_up(value: float, parity: int) -> int:
+    """Smallest whole number of at least `value` that is even or odd like `parity` (to 1e-9)."""
+    whole = math.ceil(value - 1e-9)
+    return whole + (whole - parity) % 2
+
+
+def raster_shape(grid: Grid, elevation: float = 0.0) -> tuple[int, int]:
+    """``(rows, columns)`` of a screen at voxel pitch that holds the cube's whole shadow at every turntable angle.
+
+    ``columns`` is the smallest integer of at least ``hypot(nx, ny)`` with ny's parity, ``rows`` that of
+    ``nz + hypot(nx, ny) * |tan(elevation)|`` with nz's: then no beam of 0 degrees runs along voxel faces.
+    """
+    nz, ny, nx = grid.shape
+    diagonal = math.hypot(nx, ny)
+    height = nz + diagonal * abs(math.tan(math.radians(check_elevation(elevation))))
+    return _round_up(height, nz), _round_up(diagonal, ny)
+
+
+def picture_shape(grid: Grid, frame_width: float, aspect: float, elevation: float = 0.0) -> tuple[int, int]:
+    """``(rows, columns)`` of pictures on the screen raster.
+
+    Parameters
+    ----------
+    frame_width
+        Width of the picture as a fraction of the cube's width ``ny``.
+    aspect
+        Width of the picture divided by its height.
+    elevation
+        Of the lamp, in degrees.
+
+    Returns
+    -------
+    The nearest sizes with the raster's parities. A picture too high for the raster is made as high as the
+    raster (at elevation 0: as the cube) and keeps its width.
+
+    Raises
+    ------
+    InputError
+        Where the picture would be wider than the cube's screen, or a size is not positive.
+    """
+    if not (math.isfinite(frame_width) and frame_width > 0):
+        raise InputError(f"a frame width must be a positive fraction of the cube's width, not {frame_width}")
+    if not (math.isfinite(aspect) and aspect > 0):
+        raise InputError(f"an aspect (width / height) must be a positive number, not {aspect}")
+    most_rows, most_columns = raster_shape(grid, elevation)
+    columns = nearest(min(frame_width * grid.shape[1], most_columns + 2), most_columns)
+    if columns > most_columns:
+        raise InputError(
+            f"a frame width of {frame_width:g} of the cube's is wider than its screen of {most_columns} pixels: "
+            f"use at most {most_columns / grid.shape[1]:.3f}"
+        )
+    rows = min(nearest(min(columns / aspect, most_rows + 2), most_rows), most_rows)
+    return rows, columns
+
+
+def nearest(value: float, parity: int) -> int:
+    """Positive whole number nearest to `value` that is even or odd like `parity`."""
+    odd = parity % 2
+    return max(2 * round((value - odd) / 2) + odd, 2 - odd)
+
+
+def check_elevation(elevation: float) -> float:
+    """Return `elevation` (degrees), or raise `InputError` unless it lies strictly between -90 and 90."""
+    if not (math.isfinite(elevation) and abs(elevation) < 89.999):
+        raise InputError(f"an elevation must lie between -90 and 90 degrees, both excluded, not {elevation:g}")
+    return float(elevation)
+
+
+def dense_step(grid: Grid) -> float:
+    """Degrees between two angles for a picture to stand in between: 0.5 for 64 voxels across, as 1/n (measured)."""
+    return 0.5 * 64 / max(grid.shape[1:])

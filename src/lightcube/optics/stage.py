@@ -1,0 +1,339 @@
+"""A room with a cube on a turntable, lamps and screens, and which picture is wanted where: it makes views.
+
+The room's axes are right-handed with z up, and the cube's middle is their origin; lengths are mm, angles degrees.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.errors import InputError
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Lighting, turned_by
+from lightcube.optics.views import Views, unit
+
+Vector = tuple[float, float, float]
+Reals = NDArray[np.float64]
+
+#: A stage has no more screens and lamps than this, and no screen more pixels along a side.
+MOST_SCREENS, MOST_LAMPS, MOST_PIXELS = 32, 256, 2048
+#: Numbers nearer to 0, or farther from it, are no lengths (mm) and directions: beyond them digits run out.
+_LEAST, _MOST = 1e-9, 1e15
+#: Largest power of a lamp that says none.
+POWER_MAX = 16.0
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A lamp: parallel light from far away, or a point.
+
+    Parameters
+    ----------
+    name
+        What pictures call it.
+    direction
+        The way its light travels, of any length; then it is parallel.
+    position
+        Where it stands, mm; then it is a point. One of the two is given.
+    colour
+        Its light in linear red, green and blue, each at least 0.
+    power
+        Its power where that is fixed, linear light: 1 shows white where a beam meets nothing.
+    power_max
+        Largest power where it is not.
+    turns
+        Whether the table carries it.
+    size_deg
+        Angular diameter of its disc as seen from the cube's middle, degrees below 90; 0 = none.
+    reach_mm, falloff_mm
+        So far behind the cube its shadows keep their strength; beyond, they fade to 1/e every `falloff_mm`.
+    full_at_mm
+        At this distance a point lamp shows its power, elsewhere by the inverse square; infinity = at every distance.
+    """
+
+    name: str
+    direction: Vector | None = None
+    position: Vector | None = None
+    colour: Vector = (1.0, 1.0, 1.0)
+    power: float | None = None
+    power_max: float = POWER_MAX
+    turns: bool = False
+    size_deg: float = 0.0
+    reach_mm: float = math.inf
+    falloff_mm: float = 0.0
+    full_at_mm: float = math.inf
+
+
+@dataclass(frozen=True)
+class Screen:
+    """A flat screen.
+
+    Parameters
+    ----------
+    name
+        What pictures call it.
+    centre
+        Where its middle is, mm.
+    size_mm
+        Width and height.
+    pitch_mm
+        From one pixel to the next.
+    normal
+        The way its lit side faces; default to the cube's middle.
+    up
+        What is up in its pictures; default up in the room, on a floor or ceiling the way of the x axis.
+    rear
+        Whether it is looked at from behind: pictures are mirrored for it.
+    turns
+        Whether the table carries it.
+    reach_mm, falloff_mm
+        As a lamp's, for all shadows on this screen.
+    cosine
+        Whether light that falls aslant is spread over more of the screen.
+    """
+
+    name: str
+    centre: Vector
+    size_mm: tuple[float, float]
+    pitch_mm: float
+    normal: Vector | None = None
+    up: Vector | None = None
+    rear: bool = False
+    turns: bool = False
+    reach_mm: float = math.inf
+    falloff_mm: float = 0.0
+    cosine: bool = False
+
+    @property
+    def pixels(self) -> tuple[int, int]:
+        """How many rows and columns of pixels there are."""
+        wide, high = self.size_mm
+        return max(1, round(high / self.pitch_mm)), max(1, round(wide / self.pitch_mm))
+
+    @property
+    def facing(self) -> Reals:
+        """Unit vector out of its lit side."""
+        return unit(self.normal if self.normal is not None else -np.array(self.centre))
+
+    @property
+    def steps(self) -> tuple[Reals, Reals]:
+        """From a pixel to the next one to its right, and to the next one below it."""
+        normal = self.facing
+        flat = bool(np.hypot(normal[0], normal[1]) < 1e-9)
+        up = np.array(self.up if self.up is not None else ((1.0, 0.0, 0.0) if flat else (0.0, 0.0, 1.0)))
+        up = unit(up - (up @ normal) * normal)
+        right = np.cross(up, normal)
+        return self.pitch_mm * (-right if self.rear else right), -self.pitch_mm * up
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A picture that is wanted: its name, on which screen, under which lamps, at which stop (counted from 0)."""
+
+    name: str
+    screen: str
+    lamps: tuple[str, ...]
+    stop: int = 0
+
+
+@dataclass(frozen=True)
+class Stage:
+    """What stands in the room.
+
+    Parameters
+    ----------
+    grid
+        The cube, its middle at the origin.
+    lamps, screens, shots
+        Names are used once; every shot names a screen and lamps that are there.
+    stops
+        Turntable angles, degrees; a positive angle turns what the table carries counter-clockwise about `axis`.
+    axis
+        Of the turntable, through the cube's middle.
+    cube_turns
+        Whether the table carries the cube.
+
+    Raises
+    ------
+    InputError
+        Where a name is unknown or used twice, or a number is out of its range.
+    """
+
+    grid: Grid
+    lamps: tuple[Lamp, ...]
+    screens: tuple[Screen, ...]
+    shots: tuple[Shot, ...]
+    stops: tuple[float, ...] = (0.0,)
+    axis: Vector = (0.0, 0.0, 1.0)
+    cube_turns: bool = True
+
+    def __post_init__(self) -> None:
+        _check_names("lamp", [lamp.name for lamp in self.lamps], MOST_LAMPS)
+        _check_names("screen", [screen.name for screen in self.screens], MOST_SCREENS)
+        for lamp in self.lamps:
+            _check_lamp(lamp)
+        for screen in self.screens:
+            _check_screen(screen)
+        if not self.shots:
+            raise InputError("no picture is wanted on this stage: name at least one, its screen, lamps and stop")
+        for shot in self.shots:
+            self._check_shot(shot)
+        if not self.stops or not np.all(np.isfinite(self.stops)):
+            raise InputError("the turntable's stops must be finite numbers of degrees, and at least one")
+        _check_vector("the turntable", "axis", self.axis)
+
+    def lamp(self, name: str) -> Lamp:
+        """The lamp of this name."""
+        return next(lamp for lamp in self.lamps if lamp.name == name)
+
+    def screen(self, name: str) -> Screen:
+        """The screen of this name."""
+        return next(screen for screen in self.screens if screen.name == name)
+
+    def _check_shot(self, shot: Shot) -> None:
+        screens, lamps = ([each.name for each in things] for things in (self.screens, self.lamps))
+        if shot.screen not in screens:
+            raise InputError(
+                f"picture {shot.name!r}: there is no screen {shot.screen!r}: use one of {', '.join(screens)}"
+            )
+        if not shot.lamps:
+            raise InputError(f"picture {shot.name!r}: no lamp is lit: name one of {', '.join(lamps)}")
+        for name in shot.lamps:
+            if name not in lamps:
+                raise InputError(f"picture {shot.name!r}: there is no lamp {name!r}: use one of {', '.join(lamps)}")
+        if len(set(shot.lamps)) < len(shot.lamps):
+            raise InputError(f"picture {shot.name!r} names a lamp twice: name each lamp once")
+        if not 0 <= shot.stop < len(self.stops):
+            raise InputError(
+                f"picture {shot.name!r}: there is no stop {shot.stop + 1}: the turntable has {len(self.stops)}"
+            )
+
+
+def exposures(stage: Stage) -> tuple[Views, Lighting]:
+    """Views of every picture, one for each of its lamps, and how they make it.
+
+    Pictures are as large as the largest screen; smaller ones keep the upper left of theirs (`Lighting.window`).
+    """
+    shots = list(enumerate(stage.shots))
+    lit = [(p, stage.screen(shot.screen), stage.lamp(name)) for p, shot in shots for name in shot.lamps]
+    sizes = [screen.pixels for _, screen, _ in lit]
+    shape = max(rows for rows, _ in sizes), max(columns for _, columns in sizes)
+    lamps, screens = ([each.name for each in things] for things in (stage.lamps, stage.screens))
+    places = [(lamp.direction, 0.0) if lamp.position is None else (lamp.position, 1.0) for _, _, lamp in lit]
+    views = Views(
+        lamps=np.array([(*place, point) for place, point in places if place is not None]),
+        origins=np.array([_middle(screen, shape) for _, screen, _ in lit]),
+        column_steps=np.array([screen.steps[0] for _, screen, _ in lit]),
+        row_steps=np.array([screen.steps[1] for _, screen, _ in lit]),
+        picture_shape=shape,
+    )
+    lighting = Lighting(
+        picture=np.array([p for p, _, _ in lit]),
+        lamp=np.array([lamps.index(lamp.name) for _, _, lamp in lit]),
+        share=np.array([lamp.colour for _, _, lamp in lit]),
+        reach_mm=np.array([(lamp.reach_mm, screen.reach_mm) for _, screen, lamp in lit]),
+        falloff_mm=np.array([(lamp.falloff_mm, screen.falloff_mm) for _, screen, lamp in lit]),
+        full_at_mm=np.array([lamp.full_at_mm for _, _, lamp in lit]),
+        disc_deg=np.array([lamp.size_deg for _, _, lamp in lit]),
+        cosine=np.array([screen.cosine for _, screen, _ in lit]),
+        turning=np.array([[each.turns != stage.cube_turns for each in (lamp, screen)] for _, screen, lamp in lit]),
+        way=np.full((len(lit), 2), -1.0 if stage.cube_turns else 1.0),
+        axis=np.array(stage.axis),
+        angle=np.array([stage.stops[shot.stop] for shot in stage.shots]),
+        screen=np.array([screens.index(shot.screen) for shot in stage.shots]),
+        window=np.array([stage.screen(shot.screen).pixels for shot in stage.shots]),
+        least=np.array([lamp.power or _POWER_MIN for lamp in stage.lamps]),
+        most=np.array([lamp.power or lamp.power_max for lamp in stage.lamps]),
+        lamp_names=tuple(lamps),
+        screen_names=tuple(screens),
+    )
+    return turned_by(views, lighting, lighting.angle[lighting.picture]), lighting
+
+
+#: The least power of a lamp that is not fixed.
+_POWER_MIN = 1e-4
+
+
+def _middle(screen: Screen, shape: tuple[int, int]) -> Reals:
+    """Middle of a raster of `shape` whose upper left is the screen's."""
+    rows, columns = screen.pixels
+    right, down = screen.steps
+    return np.asarray(np.array(screen.centre) + (shape[1] - columns) / 2 * right + (shape[0] - rows) / 2 * down)
+
+
+def _check_names(kind: str, names: Sequence[str], most: int) -> None:
+    if not names:
+        raise InputError(f"there is no {kind} on this stage: give at least one")
+    if len(names) > most:
+        raise InputError(
+            f"a stage has at most {most} {kind}s, not {len(names)}: leave out {names[most]!r} and the like"
+        )
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"there are two {kind}s called {name!r}: give each a name of its own")
+
+
+def _check_vector(who: str, key: str, vector: Sequence[float]) -> None:
+    if len(vector) != 3 or not _LEAST <= math.hypot(*vector) <= _MOST:  # also refuses NaN
+        raise InputError(
+            f"{who}: {key} must be three finite numbers that are not all 0 nor beyond {_MOST:g}, not {tuple(vector)}"
+        )
+
+
+def _check_least(who: str, key: str, value: float, least: float, *, above: bool = False) -> None:
+    if not (value > least if above else value >= least):
+        raise InputError(f"{who}: {key} must be {'above' if above else 'at least'} {least:g}, not {value:g}")
+
+
+def _check_fading(who: str, reach_mm: float, falloff_mm: float) -> None:
+    _check_least(who, "reach_mm", reach_mm, 0)
+    _check_least(who, "falloff_mm", falloff_mm, 0)
+    if falloff_mm > 0 and math.isinf(reach_mm):
+        raise InputError(f"{who}: falloff_mm says how shadows fade beyond reach_mm, which is not given: give it, or 0")
+
+
+def _check_lamp(lamp: Lamp) -> None:
+    who = f"lamp {lamp.name!r}"
+    if (lamp.direction is None) == (lamp.position is None):
+        raise InputError(f"{who}: give either a direction (parallel light) or a position (a point), one of the two")
+    if lamp.direction is not None:
+        _check_vector(who, "direction", lamp.direction)
+    if lamp.position is not None:
+        _check_vector(who, "position", lamp.position)
+    if len(lamp.colour) != 3 or not all(0 <= part <= 1e6 for part in lamp.colour) or not any(lamp.colour):
+        raise InputError(f"{who}: colour must be three numbers of at least 0, not all 0, not {lamp.colour}")
+    for key, power in (("power", lamp.power), ("power_max", lamp.power_max)):
+        if power is not None and not _POWER_MIN <= power <= 1e6:
+            raise InputError(f"{who}: {key} must lie between {_POWER_MIN:g} and 1e6, not {power:g}")
+    if not 0 <= lamp.size_deg < 90:
+        raise InputError(f"{who}: size_deg must be at least 0 and below 90, not {lamp.size_deg:g}")
+    if lamp.position is None and lamp.full_at_mm < math.inf:
+        raise InputError(
+            f"{who}: full_at_mm is for point lamps, and parallel light is the same everywhere: leave it out"
+        )
+    _check_fading(who, lamp.reach_mm, lamp.falloff_mm)
+    _check_least(who, "full_at_mm", lamp.full_at_mm, 0, above=True)
+
+
+def _check_screen(screen: Screen) -> None:
+    who = f"screen {screen.name!r}"
+    if screen.normal is None:
+        _check_vector(who, "centre", screen.centre)
+    else:
+        _check_vector(who, "normal", screen.normal)
+    if len(screen.centre) != 3 or not math.hypot(*screen.centre) <= _MOST:
+        raise InputError(f"{who}: centre must be three finite numbers not beyond {_MOST:g}, not {screen.centre}")
+    for length in screen.size_mm:
+        _check_least(who, "size_mm", length, 0, above=True)
+    if not _LEAST <= screen.pitch_mm <= _MOST:
+        raise InputError(f"{who}: pitch_mm must lie between {_LEAST:g} and {_MOST:g}, not {screen.pitch_mm:g}")
+    if not max(screen.size_mm) / screen.pitch_mm <= MOST_PIXELS:
+        raise InputError(f"{who}: more than {MOST_PIXELS} pixels along a side: make it smaller, or pitch_mm larger")
+    if screen.up is not None:
+        _check_vector(who, "up", screen.up)
+        if np.linalg.norm(np.cross(unit(screen.up), screen.facing)) < 1e-6:
+            raise InputError(f"{who}: up must not point straight out of the screen, {screen.up}")
+    _check_fading(who, screen.reach_mm, screen.falloff_mm)

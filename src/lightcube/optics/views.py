@@ -1,0 +1,271 @@
+"""Where the voxels, the lamp and the screen are.
+
+Axes are right-handed with z up, lengths in millimetres, angles in degrees for people. Everything is
+in the cube's own frame: the cube stands still and the lamp goes round it. See docs/conventions.md.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lightcube.errors import InputError
+from lightcube.optics.grid import Grid, check_elevation, dense_step, raster_shape
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """Lamp and screen of every view, as vectors in the cube's frame (mm, float64).
+
+    The centre of pixel ``(row, column)`` of view ``v`` lies at
+    ``origins[v] + (column - (columns - 1) / 2) * column_steps[v] + (row - (rows - 1) / 2) * row_steps[v]``.
+
+    Parameters
+    ----------
+    lamps
+        ``(views, 4)``, homogeneous: ``(x, y, z, 0)`` is parallel light travelling along ``(x, y, z)``,
+        ``(x, y, z, 1)`` a point lamp standing at ``(x, y, z)``.
+    origins
+        ``(views, 3)``, the middle of each picture on its screen.
+    column_steps, row_steps
+        ``(views, 3)``, from one pixel to the next one to its right, and to the next one below it.
+    picture_shape
+        ``(rows, columns)`` of every picture.
+    """
+
+    lamps: NDArray[np.float64]
+    origins: NDArray[np.float64]
+    column_steps: NDArray[np.float64]
+    row_steps: NDArray[np.float64]
+    picture_shape: tuple[int, int]
+
+    def __post_init__(self) -> None:
+        count = len(np.atleast_2d(self.lamps))
+        for name, width in (("lamps", 4), ("origins", 3), ("column_steps", 3), ("row_steps", 3)):
+            array = np.array(getattr(self, name), dtype=np.float64)
+            if array.shape != (count, width) or not np.all(np.isfinite(array)) or count == 0:
+                raise InputError(
+                    f"{name} of views must be finite numbers of shape ({count}, {width}), not {array.shape}"
+                )
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if len(self.picture_shape) != 2 or any(int(n) != n or n < 1 for n in self.picture_shape):
+            raise InputError(f"a picture's shape is two whole numbers of at least 1, not {self.picture_shape}")
+        object.__setattr__(self, "picture_shape", tuple(int(n) for n in self.picture_shape))
+
+    def __len__(self) -> int:
+        return len(self.lamps)
+
+    def __repr__(self) -> str:
+        rows, columns = self.picture_shape
+        return f"<{len(self)} views of {rows} x {columns} pixels>"
+
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Turntable angle of each view's parallel lamp, degrees in [0, 360), to 1e-9."""
+        x, y = self.lamps[:, 0], self.lamps[:, 1]
+        degrees: NDArray[np.float64] = np.degrees(np.arctan2(-y, x))
+        return np.asarray(np.round(degrees, 9) % 360, dtype=np.float64)
+
+    @property
+    def elevations(self) -> NDArray[np.float64]:
+        """Elevation of each view's parallel lamp above the horizon, degrees in (-90, 90), to 1e-9."""
+        level = np.hypot(self.lamps[:, 0], self.lamps[:, 1])
+        return np.asarray(np.round(np.degrees(np.arctan2(-self.lamps[:, 2], level)), 9), dtype=np.float64)
+
+    def take(self, indices: Sequence[int] | NDArray[np.integer] | slice) -> "Views":
+        """Return some of the views, in the order of `indices`."""
+        return Views(
+            self.lamps[indices],
+            self.origins[indices],
+            self.column_steps[indices],
+            self.row_steps[indices],
+            self.picture_shape,
+        )
+
+
+def check_angles(angles: ArrayLike) -> NDArray[np.float64]:
+    """Return `angles` (degrees) as a float64 vector, or raise `InputError` unless all are finite and there is one."""
+    vector = np.atleast_1d(np.asarray(angles, dtype=np.float64))
+    if vector.ndim != 1 or vector.size == 0:
+        raise InputError("angles must be a list of at least one number of degrees")
+    if not np.all(np.isfinite(vector)):
+        raise InputError(f"angle number {int(np.argmin(np.isfinite(vector))) + 1} is not a finite number of degrees")
+    return vector
+
+
+def spread_angles(count: int, span: float | None = None, *, elevation: float = 0.0) -> NDArray[np.float64]:
+    """`count` angles spread evenly over `span` degrees (default 180 at elevation 0, else 360).
+
+    They start half a step from 0, or a third of a step where half a step would put one on a multiple
+    of 90 degrees: there a picture as wide as the cube has no margin.
+    """
+    if span is None:
+        span = 360.0 if elevation else 180.0
+    if count < 1:
+        raise InputError(f"cannot spread {count} angles: at least 1 is needed")
+    if not 0 < span <= 360:
+        raise InputError(f"cannot spread angles over {span:g} degrees: use a span above 0 and up to 360")
+    step = span / count
+    for offset in (1 / 2, 1 / 3):
+        angles = (np.arange(count, dtype=np.float64) + offset) * step
+        if np.min(np.abs(np.remainder(angles + 45, 90) - 45)) > 1e-9:
+            break
+    return angles
+
+
+def _turned(angles: NDArray[np.float64], vector: tuple[float, float, float]) -> NDArray[np.float64]:
+    """`vector` of the room in the frame of a cube that was turned counter-clockwise by `angles` (degrees)."""
+    cos, sin = _cos_sin(angles)
+    x, y, z = vector
+    return np.stack([cos * x + sin * y, -sin * x + cos * y, np.full_like(cos, z)], axis=1)
+
+
+def _cos_sin(degrees: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Cosine and sine, exact at multiples of 90 degrees."""
+    turn = np.remainder(degrees, 360.0)
+    quarter = np.rint(turn / 90)
+    rest = np.radians(turn - 90 * quarter)
+    cos, sin = np.cos(rest), np.sin(rest)
+    index = quarter.astype(int) % 4
+    return np.choose(index, [cos, -sin, -cos, sin]), np.choose(index, [sin, cos, -sin, -cos])
+
+
+def unit(vector: ArrayLike) -> NDArray[np.float64]:
+    """The vector of length 1 that points the same way."""
+    array = np.asarray(vector, np.float64)
+    return np.asarray(array / np.linalg.norm(array))
+
+
+def rotations(axis: ArrayLike, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
+    """``(n, 3, 3)``: rotations counter-clockwise about `axis` by each of the angles (O. Rodrigues, 1840)."""
+    cos, sin = (each[:, None, None] for each in _cos_sin(degrees))
+    x, y, z = unit(axis)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    along = np.outer(unit(axis), unit(axis))
+    return np.asarray(cos * (np.eye(3) - along) + sin * cross + along, np.float64)
+
+
+def turntable(
+    grid: Grid, angles: ArrayLike, *, elevation: float = 0.0, picture_shape: tuple[int, int] | None = None
+) -> Views:
+    """Views of a cube on a turntable in parallel light, on a vertical screen with rows and columns one voxel apart.
+
+    Parameters
+    ----------
+    angles
+        Turntable angles in degrees; a positive angle turns the cube counter-clockwise seen from above.
+    elevation
+        Of the lamp, in degrees: light travels along ``(cos e, 0, -sin e)`` in the room.
+    picture_shape
+        ``(rows, columns)`` of a window in the middle of the screen; default the whole `raster_shape`.
+
+    Notes
+    -----
+    Parallel light casts the same picture on every parallel screen, so the screen's plane is put through the
+    cube's centre. The picture's middle is where the beam through that centre lands.
+    """
+    turned = check_angles(angles)
+    elevation = check_elevation(elevation)
+    raster = raster_shape(grid, elevation)
+    shape = picture_shape or raster
+    if shape[0] > raster[0] or shape[1] > raster[1]:
+        raise InputError(
+            f"a picture of {shape[0]} x {shape[1]} pixels (rows x columns) is larger than "
+            f"the cube's screen of {raster[0]} x {raster[1]}"
+        )
+    tilt = math.radians(elevation)
+    light = _turned(turned, (math.cos(tilt), 0.0, -math.sin(tilt)))
+    return Views(
+        lamps=np.concatenate([light, np.zeros((len(turned), 1))], axis=1),
+        origins=np.zeros((len(turned), 3)),
+        column_steps=_turned(turned, (0.0, -grid.voxel_mm, 0.0)),
+        row_steps=_turned(turned, (0.0, 0.0, -grid.voxel_mm)),
+        picture_shape=shape,
+    )
+
+
+def turned(views: Views, degrees: ArrayLike) -> Views:
+    """Views of the cube turned on by so many degrees, one number for all or one per view."""
+    angles = np.broadcast_to(np.asarray(degrees, dtype=np.float64), len(views))
+    cos, sin = _cos_sin(angles)
+
+    def turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+        x, y = vectors[:, 0], vectors[:, 1]
+        return np.concatenate([np.stack([cos * x + sin * y, cos * y - sin * x], axis=1), vectors[:, 2:]], axis=1)
+
+    return Views(
+        turn(views.lamps), turn(views.origins), turn(views.column_steps), turn(views.row_steps), views.picture_shape
+    )
+
+
+def turn_period(views: Views) -> float:
+    """Degrees after which the lamp repeats: 360, or 180 where half a turn shows the mirror image."""
+    level = bool(np.all(views.elevations == 0))
+    return 180.0 if level and len(np.unique(np.round(views.angles % 180, 9))) == len(views) else 360.0
+
+
+def smallest_gap(angles: NDArray[np.float64], period: float) -> float:
+    """Degrees between the two nearest of the `angles` that differ, which repeat after `period` degrees."""
+    stops = np.unique(np.round(angles % period, 9) % period)
+    return float(np.min(np.diff(stops, append=stops[0] + period)))
+
+
+def widest_hold(views: Views) -> float:
+    """Half the way, in degrees, between the two nearest stops; level light shows each again half a turn on."""
+    return smallest_gap(views.angles, 180.0 if np.all(views.elevations == 0) else 360.0) / 2
+
+
+def held(views: Views, hold_deg: float, grid: Grid) -> Views:
+    """Every view at several angles within `hold_deg` degrees of it, itself in the middle, one stop after the other.
+
+    The angles are near enough to each other for the picture to stand in between (`dense_step`).
+
+    Raises
+    ------
+    InputError
+        Where `hold_deg` is negative, or wider than half the way to the nearest other stop.
+    """
+    offsets = hold_offsets(hold_deg, widest_hold(views), dense_step(grid))
+    return turned(views.take(np.repeat(np.arange(len(views)), len(offsets))), np.tile(offsets, len(views)))
+
+
+def hold_offsets(hold_deg: float, most: float, step: float) -> NDArray[np.float64]:
+    """Degrees off its stop at which a picture is asked for, 0 in the middle, at most `step` apart.
+
+    Raises
+    ------
+    InputError
+        Where `hold_deg` is negative, or wider than `most`.
+    """
+    if not hold_deg >= 0:
+        raise InputError(f"a hold must be a number of degrees of at least 0, not {hold_deg:g}")
+    if hold_deg > most + 1e-9:
+        most = math.floor(most * 1000) / 1000
+        raise InputError(
+            f"a hold of {hold_deg:g} degrees is wider than half the way to the next stop: use at most {most:g}"
+        )
+    aside = max(math.ceil(hold_deg / step - 1e-9), int(hold_deg > 0))
+    return np.linspace(-hold_deg, hold_deg, 2 * aside + 1)
+
+
+#: Angles closer than this, in degrees and whole turns apart, are the same view.
+_SAME_ANGLE = 1e-9
+
+
+def distinct_angles(angles: ArrayLike) -> NDArray[np.float64]:
+    """Return `angles` (degrees) as a vector, or raise `InputError` where two are the same view, turns apart."""
+    vector = check_angles(angles)
+    turned = np.remainder(vector, 360.0)
+    order = np.argsort(turned, kind="stable")
+    gaps = np.diff(turned[order], append=turned[order[0]] + 360.0)
+    if len(vector) > 1 and np.min(gaps) < _SAME_ANGLE:
+        at = int(np.argmin(gaps))
+        first, second = sorted((int(order[at]), int(order[(at + 1) % len(vector)])))
+        raise InputError(
+            f"angles number {first + 1} and {second + 1} ({vector[first]:g} and {vector[second]:g} degrees) "
+            "are the same view: give every picture an angle of its own"
+        )
+    return vector

@@ -1,0 +1,1 @@
+"""Wanted pictures: as read, fitted to screens, resampled, moved."""

@@ -1,0 +1,223 @@
+"""From pictures of any sizes to the frames of a screen: angles, cropping, resampling in linear light."""
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PIL import Image
+
+from lightcube.errors import InputError
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid, check_elevation, picture_shape
+from lightcube.optics.rig import Lighting
+from lightcube.optics.transfer import from_uint8, to_uint8
+from lightcube.optics.views import Views, distinct_angles, spread_angles, turntable
+from lightcube.pictures.frames import Frames, Pictures
+
+Fit = Literal["crop", "pad", "stretch"]
+Picture = NDArray[np.float32]
+
+#: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
+RAISED = 35.0
+
+
+def check_fit(name: str) -> Fit:
+    """Return `name` as a `Fit`, or raise `InputError` naming what is allowed."""
+    for known in get_args(Fit):
+        if name == known:
+            return known
+    raise InputError(f"unknown fit {name!r}: use one of {', '.join(get_args(Fit))}")
+
+
+def fit(
+    pictures: Pictures,
+    grid: Grid,
+    *,
+    angles: ArrayLike | None = None,
+    span: float | None = None,
+    elevation: float | None = None,
+    frame_width: float = 1.0,
+    fit: Fit = "crop",
+) -> Frames:
+    """Fit pictures to the screen of a cube.
+
+    Parameters
+    ----------
+    angles
+        Turntable angles in degrees, one per picture; default those that came with the pictures, and where
+        none did, spread evenly.
+    span
+        Degrees over which angles are spread evenly, instead of those that came with the pictures.
+    elevation
+        Of the lamp, in degrees; default the one that came with the pictures, else 35.
+    frame_width
+        Width of the frames as a fraction of the cube's width.
+    fit
+        What happens to a picture of another aspect than the frames': ``"crop"`` cuts its edges off, evenly on
+        both sides; ``"pad"`` keeps all of it, and the rest of the frame is white and don't care (weight 0);
+        ``"stretch"`` changes its aspect.
+
+    Returns
+    -------
+    Frames with the aspect of the first picture, as closely as `lightcube.optics.grid.picture_shape` can.
+    They are resampled in linear light with a Lanczos filter of three lobes, widened where pictures shrink,
+    and never leave the range of values of the picture. A picture that has the frames' size stays as it is.
+
+    Raises
+    ------
+    InputError
+        Where there are fewer than two pictures, the angles do not fit, or the frames would be wider than
+        the cube's screen.
+    """
+    mode = check_fit(fit)
+    if len(pictures) < 2:
+        raise InputError(
+            f"{len(pictures)} picture{'s' if not pictures.images else ''} cannot fill a cube: give at least two"
+        )
+    lamp = elevation if elevation is not None else pictures.elevation
+    lamp = check_elevation(RAISED if lamp is None else lamp)
+    turned = _angles(pictures, angles, span, lamp)
+    rows, columns = pictures.images[0].shape[:2]
+    shape = picture_shape(grid, frame_width, columns / rows, lamp)
+    views = turntable(grid, turned, elevation=lamp, picture_shape=shape)
+    return fit_to_views(pictures, views, mode)
+
+
+def fit_to_views(pictures: Pictures, views: Views, fit: Fit = "crop") -> Frames:
+    """Fit pictures to views that are there already, one each, as `fit` does; `InputError` where the counts differ."""
+    if len(pictures) != len(views):
+        raise InputError(f"{len(pictures)} pictures for {len(views)} views: give one picture per view")
+    mode, shape = check_fit(fit), views.picture_shape
+    fitted = np.ones((len(pictures), *shape, 3), np.float32)
+    weights = np.zeros((len(pictures), *shape), np.float32)
+    for image, frame, weight in zip(pictures.images, fitted, weights, strict=True):
+        _fill(frame, weight, image, mode)
+    return Frames(fitted, views, weights, pictures.names, pictures.transfer)
+
+
+def fit_to_stage(pictures: Pictures, views: Views, lighting: Lighting, fits: Sequence[Fit]) -> Frames:
+    """Fit pictures to the screens of a stage, each in the way of its own, as `fit` does.
+
+    What lies beside a picture's screen (`Lighting.window`) is white and don't care (weight 0).
+
+    Raises
+    ------
+    InputError
+        Where there is not one picture, and one way to fit it, for each picture of the lighting.
+    """
+    if not len(pictures) == len(fits) == lighting.pictures:
+        raise InputError(
+            f"{len(pictures)} pictures and {len(fits)} ways to fit them for {lighting.pictures} on the stage: "
+            "give one of each"
+        )
+    fitted = np.ones((len(pictures), *views.picture_shape, 3), np.float32)
+    weights = np.zeros(fitted.shape[:3], np.float32)
+    for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, lighting.window, fits, strict=True)):
+        _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way))
+    return Frames(fitted, views, weights, pictures.names, pictures.transfer, lighting)
+
+
+def fit_report(pictures: Pictures, frames: Frames, fit: Fit = "crop") -> str:
+    """Say in one line, without a full stop, what `fit` did to the pictures; sizes are width x height."""
+    target = frames.views.picture_shape
+    sizes = Counter((image.shape[0], image.shape[1]) for image in pictures.images)
+    first = (pictures.images[0].shape[0], pictures.images[0].shape[1])
+    count = f"{len(pictures)} pictures"
+    if set(sizes) == {target}:
+        return f"{count} of {_size(target)}, not resampled"
+    rows, columns = target
+    other_aspect = any(size[0] * columns != size[1] * rows for size in sizes)
+    done = {"crop": "cropped", "pad": "padded", "stretch": "stretched"}[check_fit(fit)] if other_aspect else "scaled"
+    others = len(sizes) - 1
+    more = f" and {others} other size{'s' if others > 1 else ''}" if others else ""
+    rule = f", the aspect of {pictures.names[0]}" if other_aspect else ""
+    return f"{count}, {done} from {_size(first)}{more} to {_size(target)}{rule}"
+
+
+def targets(frames: Frames) -> NDArray[np.uint8]:
+    """Frames as 8-bit display levels ``(view, row, column, channel + 1)``, the last channel the weight.
+
+    Weights are scaled so that the largest is 255; none that is above 0 becomes 0.
+    """
+    most = float(frames.weight.max())
+    made = np.empty((*frames.pictures.shape[:3], frames.pictures.shape[3] + 1), np.uint8)
+    for levels, picture, weight in zip(made, frames.pictures, frames.weight, strict=True):  # one by one, for the memory
+        levels[..., :-1] = to_uint8(picture, frames.transfer)
+        levels[..., -1] = np.where(weight > 0, np.maximum(np.rint(weight.astype(np.float64) / most * 255), 1), 0)
+    return made
+
+
+def frames_from_targets(cube: Cube) -> Frames:
+    """Return the frames that `cube` was made for, from its 8-bit targets; `InputError` where it has none."""
+    if cube.targets is None:
+        raise InputError("this cube was not made from pictures, so it has no targets: give the frames themselves")
+    pictures = from_uint8(cube.targets[..., :-1], cube.transfer)
+    weights = cube.targets[..., -1].astype(np.float32) / np.float32(255)
+    return Frames(pictures, cube.views, weights, cube.names, cube.transfer, cube.lighting)
+
+
+def _angles(pictures: Pictures, angles: ArrayLike | None, span: float | None, elevation: float) -> NDArray[np.float64]:
+    """One angle per picture: those asked for, else those that came along, else spread evenly."""
+    if angles is not None and span is not None:
+        raise InputError("angles and a span of angles are both given: use one of the two")
+    if angles is None and span is None:
+        angles = pictures.angles
+    if angles is None:
+        return distinct_angles(spread_angles(len(pictures), span, elevation=elevation))
+    chosen = distinct_angles(angles)
+    if len(chosen) != len(pictures):
+        raise InputError(f"{len(chosen)} angles for {len(pictures)} pictures: give one angle per picture")
+    return chosen
+
+
+def _source_box(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[float, float, float, float]:
+    """``(left, top, right, bottom)`` of the part of a picture of `size` (rows, columns) that is shown."""
+    rows, columns = size
+    wide, high = float(columns), float(rows)
+    if mode == "crop" and columns * target[0] != rows * target[1]:
+        aspect = target[1] / target[0]
+        wide, high = min(wide, high * aspect), min(high, wide / aspect)
+    left, top = (columns - wide) / 2, (rows - high) / 2
+    return left, top, min(left + wide, columns), min(top + high, rows)
+
+
+def _inside(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[slice, slice]:
+    """Rows and columns of the frame that the picture fills, in its middle."""
+    if mode != "pad":
+        return slice(None), slice(None)
+    scale = min(target[0] / size[0], target[1] / size[1])
+    spans = []
+    for whole, part in zip(target, size, strict=True):
+        # An even rest keeps the picture exactly in the middle.
+        rest = min(max(2 * round((whole - part * scale) / 2), 0), 2 * math.ceil(whole / 2) - 2)
+        spans.append(slice(rest // 2, whole - rest // 2))
+    return spans[0], spans[1]
+
+
+def _fill(frame: Picture, weight: Picture, image: Picture, mode: Fit) -> None:
+    """Put `image` into `frame`, and 1 into `weight` where it lies."""
+    size, shape = image.shape[:2], (frame.shape[0], frame.shape[1])
+    inside = _inside(size, shape, mode)
+    frame[inside] = _resample(image, frame[inside].shape[:2], _source_box(size, shape, mode))
+    weight[inside] = 1
+
+
+def _resample(image: Picture, shape: tuple[int, ...], box: tuple[float, float, float, float]) -> Picture:
+    """Part `box` of `image` at `shape` (rows, columns); the very values where nothing changes size."""
+    rows, columns, _ = image.shape
+    if shape == (rows, columns) and box == (0.0, 0.0, float(columns), float(rows)):
+        return image
+    planes = []
+    for plane in np.moveaxis(image, 2, 0):
+        source = Image.fromarray(np.ascontiguousarray(plane, dtype=np.float32))
+        resized = np.asarray(source.resize((shape[1], shape[0]), Image.Resampling.LANCZOS, box=box))
+        planes.append(np.clip(resized, plane.min(), plane.max()))
+    return np.stack(planes, axis=2)
+
+
+def _size(shape: tuple[int, int]) -> str:
+    """``(rows, columns)`` as people say it."""
+    return f"{shape[1]} x {shape[0]}"

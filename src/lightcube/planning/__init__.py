@@ -1,0 +1,1 @@
+"""Before solving: what contradicts itself, what to expect, which size, order and hold."""

@@ -1,0 +1,1 @@
+"""The matrix A, and the engines that multiply by it."""

@@ -1,0 +1,106 @@
+"""The matrix of rays in any direction: parallel or from a point, onto screens in any position."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from lightcube.kernels import rays
+from lightcube.kernels.layout import empty
+from lightcube.kernels.ray import most_pieces
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import Views
+
+Floats = NDArray[np.floating[Any]]
+
+
+class Rays:
+    """Lengths (mm) of rays in voxels; see `lightcube.projection.projector.Projector`, whose engine this is.
+
+    Parameters
+    ----------
+    heard
+        ``(views, rows, columns)`` bool: the pixels that count; the rows of the others in the matrix are empty.
+        None = all.
+    """
+
+    level = False
+
+    def __init__(self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None) -> None:
+        rows, columns = views.picture_shape
+        side = grid.voxel_mm
+        middle = np.array(grid.shape[::-1]) / 2
+        lowest_left = views.origins - (columns - 1) / 2 * views.column_steps + (rows - 1) / 2 * views.row_steps
+        self.grid = grid
+        self._screens = np.stack([lowest_left / side + middle, views.column_steps / side, -views.row_steps / side], 1)
+        self._lamps = views.lamps.copy()
+        points = views.lamps[:, 3] != 0
+        self._lamps[points, :3] = views.lamps[points, :3] / side + middle
+        self._lamps[~points, :3] /= np.linalg.norm(views.lamps[~points, :3], axis=1, keepdims=True)
+        self._picture = columns, rows
+        listening = np.ones((len(views), rows, columns), bool) if heard is None else heard
+        lines = listening[:, ::-1].transpose(0, 2, 1).reshape(len(views) * columns, rows)
+        self._heard = np.ascontiguousarray(lines, np.uint8)
+        self.shape = (len(views) * columns * rows, int(np.prod(grid.shape)))
+
+    def forward(self, x: Floats) -> Floats:
+        """``A @ x`` of a contiguous block of columns."""
+        b = empty((self.shape[0], x.shape[1]), x.dtype)
+        rays.forward(self._lamps, self._screens, self._picture, self._heard, self.grid.shape, self.grid.voxel_mm, x, b)
+        return b
+
+    def adjoint(self, b: Floats) -> Floats:
+        """``A.T @ b`` of a contiguous block of columns."""
+        x = empty((self.shape[1], b.shape[1]), b.dtype)
+        data = self._lamps, self._screens, shadow_matrices(self._lamps, self._screens), self._picture, self._heard
+        rays.adjoint(*data, self.grid.shape, self.grid.voxel_mm, b, x)
+        return x
+
+    def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Return the unknowns that equation `index` touches, and its ray's length (mm) in each."""
+        nz, ny, nx = self.grid.shape
+        most = most_pieces(nx, ny, nz)
+        unknowns, lengths = np.empty(most, np.int64), np.empty(most)
+        if not self._heard.reshape(-1)[index]:
+            return unknowns[:0], lengths[:0]
+        data = self._lamps, self._screens, self._picture, index, self.grid.shape, self.grid.voxel_mm
+        count = rays.trace(*data, unknowns, lengths)
+        return unknowns[:count], lengths[:count]
+
+    def to_sparse(self) -> csr_array:
+        """Return the same matrix, float64."""
+        pieces = [self.row(index) for index in range(self.shape[0])]
+        ends = np.cumsum([0, *(len(unknowns) for unknowns, _ in pieces)])
+        unknowns, lengths = (np.concatenate([piece[i] for piece in pieces]) for i in (0, 1))
+        matrix = csr_array((lengths, unknowns, ends), shape=self.shape)
+        matrix.sum_duplicates()
+        return matrix
+
+
+def shadow_matrices(lamps: NDArray[np.float64], screens: NDArray[np.float64]) -> NDArray[np.float64]:
+    """``(views, 3, 4)``: from a point ``(x, y, z, 1)`` to its shadow's ``(column, row, 1)``, times a number.
+
+    The number is above 0 where the point lies on the screen's side of the lamp, and where light is parallel.
+
+    Notes
+    -----
+    With m the way to the lamp from a point s of the screen's plane (or the light's direction), w the way from s to the
+    point, n the plane's normal, and h 1 for a lamp (0 for a direction), the shadow lies at
+    ``s + (m (w.n) - w (m.n)) / (h w.n - m.n)``. Both parts are linear in w, so their values at four points give the
+    matrix; Cramer's rule turns places into columns and rows.
+    """
+    points = np.vstack([np.zeros(3), np.eye(3)])
+    matrices = np.empty((len(lamps), 3, 4))
+    for view, (lamp, (corner, right, up)) in enumerate(zip(lamps, screens, strict=True)):
+        normal = np.cross(right, up)
+        size = normal @ normal or 1.0  # pixels on a line: the matrix is 0, and shadows may be anywhere
+        light = lamp[:3] - lamp[3] * corner
+        ways = points - corner
+        aside, away = ways @ normal, light @ normal
+        onto = np.outer(aside, light) - away * ways
+        values = np.stack([np.cross(onto, up) @ normal / size, np.cross(right, onto) @ normal / size])
+        values = -np.sign(away) * np.vstack([values, lamp[3] * aside - away])
+        matrices[view, :, 3] = values[:, 0]
+        matrices[view, :, :3] = values[:, 1:] - values[:, :1]
+    return matrices

@@ -1,0 +1,134 @@
+"""The matrix of parallel light on vertical screens whose rows are one voxel apart: a turntable's.
+
+All beams of a picture column are the same beam, moved up by whole voxels: one traversal serves them all.
+"""
+
+import math
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from lightcube.kernels import stacked
+from lightcube.kernels.beam import max_pieces
+from lightcube.kernels.layout import LINE, empty, is_worth_lines
+from lightcube.optics.grid import PARALLEL, Grid
+from lightcube.optics.views import Views
+
+Floats = NDArray[np.floating[Any]]
+
+
+def is_stacked(grid: Grid, views: Views) -> bool:
+    """Whether light is parallel and not vertical, and each screen vertical with rows one voxel apart."""
+    tolerance = 1e-9 * grid.voxel_mm
+    return bool(
+        np.all(views.lamps[:, 3] == 0)
+        and np.allclose(views.row_steps, (0, 0, -grid.voxel_mm), rtol=0, atol=tolerance)
+        and np.all(np.abs(views.column_steps[:, 2]) <= tolerance)
+        and np.all(np.abs(views.elevations) <= 89.999)
+    )
+
+
+class StackedBeams:
+    """Lengths (mm) of beams in voxels; see `lightcube.projection.projector.Projector`, whose engine this is.
+
+    Where beams are level, and each slice has a row of pixels of its own, `level` is True and the matrix is that of
+    one slice. Nothing is stored but a few numbers per view: lengths are traced anew in every product.
+    """
+
+    def __init__(self, grid: Grid, views: Views) -> None:
+        self.grid = grid
+        rows, self._width = views.picture_shape
+        nz, ny, nx = grid.shape
+        side = grid.voxel_mm
+        lowest_left = views.origins - (self._width - 1) / 2 * views.column_steps + (rows - 1) / 2 * views.row_steps
+        light = views.lamps[:, :3] / np.linalg.norm(views.lamps[:, :3], axis=1, keepdims=True)
+        corner = lowest_left / side + (nx / 2, ny / 2, nz / 2)
+        self.beams = np.stack([corner, views.column_steps / side, light], axis=1)
+        slope = np.max(np.abs(light[:, 2]) / np.hypot(light[:, 0], light[:, 1]))
+        self.rise = math.ceil(slope * math.hypot(nx, ny)) + 2
+        self.level = bool(slope < PARALLEL and rows == nz and np.allclose(corner[:, 2], 0.5, rtol=0, atol=1e-9))
+        self._stacked = 1 if self.level else rows
+        self.shape = (len(views) * self._width * self._stacked, ny * nx * (1 if self.level else nz))
+
+    def forward(self, x: Floats) -> Floats:
+        """``A @ x`` of a contiguous block of columns."""
+        channels = x.shape[1]
+        b = empty((self.shape[0] // self._stacked, self._stacked * channels), x.dtype)
+        rows = x.reshape(self._voxels, -1)
+        if len(b) >= len(rows):  # else it does not pay
+            rows = self._in_lines(rows)
+        stacked.forward(self.beams, self._width, *self._plane(), rows, b, channels, _tasks())
+        return b.reshape(self.shape[0], channels)
+
+    def adjoint(self, b: Floats) -> Floats:
+        """``A.T @ b`` of a contiguous block of columns."""
+        channels = b.shape[1]
+        x = empty((self._voxels, self.shape[1] // self._voxels * channels), b.dtype)
+        rows = self._in_lines(b.reshape(-1, self._stacked * channels))
+        stacked.adjoint(self.beams, self._width, *self._plane(), rows, x, channels, _tasks())
+        return x.reshape(self.shape[1], channels)
+
+    def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Return the unknowns that equation `index` touches, and its beam's length (mm) in each."""
+        ray, lift = divmod(index, self._stacked)
+        nx, ny, scale = self._plane()
+        most = max_pieces(nx, ny, self.rise) + 1
+        voxels, levels, lengths = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most)
+        count = stacked.trace_column(self.beams, self._width, ray, nx, ny, scale, voxels, levels, lengths)
+        unknowns, inside = self._unknowns(voxels[:count], levels[:count] + lift)
+        return unknowns[inside], lengths[:count][inside]
+
+    def to_sparse(self) -> csr_array:
+        """Return the same matrix, float64."""
+        rays = self.shape[0] // self._stacked
+        offsets = np.zeros(rays + 1, np.int64)
+        none = np.empty(0, np.int32)
+        stacked.trace_all(self.beams, self._width, *self._plane(), self.rise, offsets, none, none, np.empty(0))
+        voxels, levels = np.empty(offsets[-1], np.int32), np.empty(offsets[-1], np.int32)
+        lengths = np.empty(offsets[-1])
+        stacked.trace_all(self.beams, self._width, *self._plane(), self.rise, offsets, voxels, levels, lengths)
+        ray = np.repeat(np.arange(rays), np.diff(offsets))
+        lift = np.arange(self._stacked)[:, None]
+        unknowns, inside = self._unknowns(voxels, levels + lift)
+        equations = ray * self._stacked + lift
+        shape = unknowns.shape
+        entries = (np.broadcast_to(lengths, shape)[inside], (equations[inside], unknowns[inside]))
+        return csr_array(entries, shape=self.shape)
+
+    @property
+    def _voxels(self) -> int:
+        return self.grid.shape[1] * self.grid.shape[2]
+
+    def _in_lines(self, rows: Floats) -> Floats:
+        """Rows that each begin at a whole cache line, longer ones if need be: they are quicker to add up.
+
+        With a raised lamp parts of rows are added up, from anywhere on.
+        """
+        size = rows.shape[1] * rows.itemsize
+        if not (self.level and is_worth_lines(size)):
+            return rows
+        length = -(-size // LINE) * LINE // rows.itemsize
+        longer = empty((len(rows), length), rows.dtype)
+        stacked.copy_rows(rows, longer)
+        return longer
+
+    def _plane(self) -> tuple[int, int, float]:
+        """What the kernels want to know of the grid: nx, ny, voxel side."""
+        return self.grid.shape[2], self.grid.shape[1], self.grid.voxel_mm
+
+    def _unknowns(
+        self, voxels: NDArray[np.int32], levels: NDArray[np.integer[Any]]
+    ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Numbers of the unknowns for pieces ``(voxel, level)``, and which of them are inside the grid."""
+        if self.level:
+            return np.broadcast_to(voxels.astype(np.int64), levels.shape), np.ones(levels.shape, np.bool_)
+        nz = self.grid.shape[0]
+        return voxels.astype(np.int64) * nz + levels, (levels >= 0) & (levels < nz)
+
+
+def _tasks() -> int:
+    """Parts that a product is divided into at least: more than threads, for they are not all equally long."""
+    return int(4 * numba.get_num_threads())

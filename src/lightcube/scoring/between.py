@@ -1,0 +1,159 @@
+"""What one sees between the frames, and what a set-up that is not perfect makes of them."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.errors import InputError
+from lightcube.forward.casting import cast
+from lightcube.forward.turning import lamp_at
+from lightcube.optics.cube import Cube
+from lightcube.optics.transfer import encode
+from lightcube.optics.views import turn_period, turned
+from lightcube.pictures.frames import Frames
+from lightcube.scoring.metrics import check_same_views, psnr, ssim
+
+Floats = NDArray[np.float64]
+
+#: A picture stands as long as its PSNR is at least this, dB.
+LOBE_DB = 30.0
+#: The ends of a lobe are enclosed by two samples so near to each other, degrees.
+_RESOLUTION = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """How well the nearer picture is seen as the cube turns, over one period.
+
+    The samples ascend in angle from half a spacing before the first stop. Where two cells meet there is one
+    sample against each of the two pictures.
+
+    Parameters
+    ----------
+    angles
+        Turntable angle of each sample, degrees.
+    nearest
+        Index of the view whose stop is nearest.
+    offsets
+        Degrees from that stop; 0 at the stops themselves.
+    psnr, ssim
+        What is cast there against the picture of that view.
+    lobes
+        ``(views,)`` degrees around each view's stop over which the PSNR stays at 30 dB or more, at most as far
+        as to halfway between the stop and its neighbours; 0 where the stop itself is below.
+    period
+        Degrees after which the curve repeats.
+    """
+
+    angles: Floats
+    nearest: NDArray[np.intp]
+    offsets: Floats
+    psnr: Floats
+    ssim: Floats
+    lobes: Floats
+    period: float
+
+
+def curve(cube: Cube, frames: Frames, steps: int = 8, *, callback: Callable[[int, int], None] | None = None) -> Curve:
+    """Compare what is cast at, around and between the stops with the nearer of the two frames.
+
+    Parameters
+    ----------
+    frames
+        The wanted pictures in the cube's views.
+    steps
+        Parts that each gap between neighbouring stops is divided into. Near the stops, and where a picture
+        falls below 30 dB, samples lie closer, down to 0.05 degrees.
+    callback
+        Called with how many samples are done, and how many there are as far as is known.
+
+    Raises
+    ------
+    InputError
+        Where the frames do not fit the cube's views, or these stand at several elevations.
+
+    Notes
+    -----
+    The lamp's power between the stops is that of `lightcube.lamp_at`. With a level lamp half a turn shows the
+    mirror image, so the curve has a period of 180 degrees and the last stop's neighbour is the mirrored first
+    one, unless two stops are half a turn apart.
+    """
+    if steps < 1:
+        raise InputError(f"a curve needs at least 1 step from one frame to the next, not {steps}")
+    check_same_views(cube, frames)
+    if cube.lighting is not None:
+        raise InputError("this cube was made on a stage: leave out --between and --plot, and play it to see in between")
+    if len(np.unique(cube.views.elevations)) > 1:
+        raise InputError("this cube was made with lamps at several elevations: there is nothing between its stops")
+    period = turn_period(cube.views)
+    places = cube.views.angles % period
+    reach = _reach(places, period)
+    samples = [(view, offset) for view in range(len(frames)) for offset in _offsets(reach[:, view], steps)]
+    found = np.empty((0, 4))
+    while samples:
+        rows = []
+        for row in _compared(cube, frames, *np.array(samples).T):
+            rows.append(row)
+            if callback is not None:
+                callback(len(found) + len(rows), len(found) + len(samples))
+        found = np.concatenate([found, rows])
+        ends = [(view, side, *_end(found, view, side)) for view in range(len(frames)) for side in (-1, 1)]
+        samples = [
+            (view, side * (inside + outside) / 2)
+            for view, side, _, inside, outside in ends
+            if outside - inside > _RESOLUTION
+        ]
+    lobes = np.zeros(len(frames))
+    for view, _, width, _, _ in ends:
+        lobes[view] += width
+    nearest = found[:, 0].astype(np.intp)
+    order = np.lexsort((found[:, 1], places[nearest]))
+    nearest, (offsets, quality, likeness) = nearest[order], found[order, 1:].T
+    return Curve(places[nearest] + offsets, nearest, offsets, quality, likeness, lobes, period)
+
+
+def _reach(places: Floats, period: float) -> Floats:
+    """``(2, views)``: degrees from each stop to halfway to the one before it and to the one after it."""
+    order = np.argsort(places, kind="stable")
+    gaps = np.diff(places[order], append=places[order[0]] + period)
+    reach = np.empty((2, len(places)))
+    reach[:, order] = np.roll(gaps, 1) / 2, gaps / 2
+    return reach
+
+
+def _offsets(reach: Floats, steps: int) -> Floats:
+    """Where a stop's cell is sampled, degrees from the stop: evenly, and by doubling distances near the stop."""
+    sides = []
+    for half in reach:
+        even = np.append(np.arange(1, (steps + 1) // 2) * (2 * half / steps), half)
+        doubling = _RESOLUTION * 2.0 ** np.arange(20)
+        sides.append(np.append(doubling[doubling < even[0]], even))
+    return np.concatenate([-sides[0], [0.0], sides[1]])
+
+
+def _compared(cube: Cube, frames: Frames, view: Floats, offset: Floats) -> Iterator[tuple[float, float, float, float]]:
+    """View, offset in degrees, PSNR and SSIM of what is cast there against that view's frame, sample by sample."""
+    index = view.astype(np.intp)
+    views = turned(cube.views.take(index), offset)
+    wanted = encode(frames.pictures, frames.transfer)
+    shown = cast(cube, views, lamp_at(cube, views.angles))
+    for place, degrees, picture in zip(index, offset, shown, strict=True):
+        pair = encode(picture, frames.transfer), wanted[place], frames.weight[place]
+        yield float(place), float(degrees), psnr(*pair), ssim(*pair)
+
+
+def _end(found: Floats, view: int, side: int) -> tuple[float, float, float]:
+    """Width of one side of a view's lobe, and the two distances from the stop that enclose its end (degrees)."""
+    rows = found[(found[:, 0] == view) & (found[:, 1] * side >= 0)]
+    distance, quality = rows[np.argsort(np.abs(rows[:, 1]))][:, 1:3].T
+    distance = np.abs(distance)
+    below = np.flatnonzero(quality < LOBE_DB)
+    if not below.size or below[0] == 0:
+        end = 0.0 if below.size else float(distance[-1])
+        return end, end, end
+    inside, outside = below[0] - 1, below[0]
+    part = (quality[inside] - LOBE_DB) / (quality[inside] - quality[outside])
+    width = distance[inside] + part * (distance[outside] - distance[inside])
+    return float(width), float(distance[inside]), float(distance[outside])

@@ -1,0 +1,166 @@
+"""How near what is cast comes to what was wanted, always in display values and never clipped."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from skimage import color
+from skimage import metrics as similarities
+
+from lightcube.errors import InputError
+from lightcube.forward.casting import cast
+from lightcube.optics.cube import Cube
+from lightcube.optics.transfer import encode
+from lightcube.pictures.fitting import frames_from_targets
+from lightcube.pictures.frames import Frames
+
+#: The best PSNR that is reported, dB.
+BEST_DB = 100.0
+#: Pictures of this PSNR, dB, are good: they are made small enough for it.
+GOOD_DB = 40.0
+
+Display = NDArray[np.floating[Any]]
+
+
+def psnr(shown: Display, wanted: Display, weight: Display) -> float:
+    """Peak signal-to-noise ratio in dB of display values ``(row, column, channel)``, at most 100.
+
+    ``-10 log10(mean squared difference)``, pixels weighted by `weight` ``(row, column)``.
+    """
+    squares = np.mean((shown.astype(np.float64) - wanted) ** 2, axis=-1)
+    error = float(np.sum(weight * squares) / np.sum(weight))
+    return BEST_DB if error <= 10 ** (-BEST_DB / 10) else -10 * float(np.log10(error))
+
+
+def ssim(shown: Display, wanted: Display, weight: Display) -> float:
+    """Structural similarity of display values, the weighted mean over pixels (scikit-image, uniform window).
+
+    The window is 7 x 7 pixels, or the largest odd one that fits a smaller picture; NaN below 3 x 3 pixels. Pixels of
+    no weight that a window reaches over count as right.
+    """
+    shown = np.where(weight[..., None] > 0, shown, wanted)
+    smallest = min(shown.shape[:2])
+    if smallest < 3:
+        return float("nan")
+    window = min(7, smallest - 1 + smallest % 2)
+    _, similarity = similarities.structural_similarity(
+        shown.astype(np.float64), wanted.astype(np.float64), win_size=window, data_range=1.0, channel_axis=-1, full=True
+    )
+    return float(np.sum(weight * similarity.mean(axis=-1)) / np.sum(weight))
+
+
+def delta_e(shown: Display, wanted: Display, weight: Display) -> float:
+    """Colour difference CIEDE2000 (D65, sRGB primaries), the weighted mean over pixels; one channel is grey."""
+    colours = (np.broadcast_to(each.astype(np.float64), (*each.shape[:2], 3)) for each in (shown, wanted))
+    difference = color.deltaE_ciede2000(*(color.rgb2lab(each) for each in colours))
+    return float(np.sum(weight * difference) / np.sum(weight))
+
+
+def score(cube: Cube, frames: Frames | None = None) -> dict[str, Any]:
+    """Compare what the cube really casts at its stops with what was wanted.
+
+    Parameters
+    ----------
+    frames
+        The wanted pictures in the cube's views; None = the 8-bit targets stored in the cube, which cap
+        the PSNR at about 58.9 dB where the pictures were resampled.
+
+    Returns
+    -------
+    ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``views``, a list with ``name, angle, psnr, ssim, delta_e``
+    of each.
+
+    Raises
+    ------
+    InputError
+        Where the cube has no targets and no frames are given, or they do not fit the cube's views.
+    """
+    wanted = frames_from_targets(cube) if frames is None else frames
+    check_same_views(cube, wanted)
+    return score_pictures(cast(cube, cube.views, cube.powers, cube.lighting), wanted)
+
+
+def score_pictures(shown: Iterable[NDArray[np.float32]], frames: Frames) -> dict[str, Any]:
+    """Compare pictures in linear light ``(row, column, channel)`` with the frames, in order; returns as `score`."""
+    views: list[dict[str, Any]] = []
+    for index, picture in enumerate(shown):
+        pair = encode(picture, frames.transfer), encode(frames.pictures[index], frames.transfer), frames.weight[index]
+        views.append(
+            {
+                "name": frames.names[index],
+                "angle": float(frames.angles[index]),
+                "psnr": psnr(*pair),
+                "ssim": ssim(*pair),
+                "delta_e": delta_e(*pair),
+            }
+        )
+    columns = {key: [view[key] for view in views] for key in ("psnr", "ssim", "delta_e")}
+    return {
+        "psnr_mean": float(np.mean(columns["psnr"])),
+        "psnr_min": float(np.min(columns["psnr"])),
+        "ssim_mean": float(np.mean(columns["ssim"])),
+        "delta_e_mean": float(np.mean(columns["delta_e"])),
+        "views": views,
+    }
+
+
+def mean_psnr(
+    shown: NDArray[np.float32], frames: Frames, window: tuple[slice, slice] = (slice(None), slice(None))
+) -> float:
+    """Mean over pictures of `psnr`, for pictures in linear light ``(view, row, column, channel)``.
+
+    `shown` are the rows and channels of the frames that `window` says; pictures without weight there do not count.
+    """
+    rows, channels = window
+    each = [
+        psnr(encode(picture, frames.transfer), encode(wanted[rows, :, channels], frames.transfer), weight[rows])
+        for picture, wanted, weight in zip(shown, frames.pictures, frames.weight, strict=True)
+        if np.any(weight[rows])
+    ]
+    return float(np.mean(each)) if each else BEST_DB
+
+
+def check_same_views(cube: Cube, frames: Frames) -> None:
+    """Raise `InputError` unless the frames are as many and as large as the cube's own pictures."""
+    given, made_for = (
+        f"{count} of {'{} x {}'.format(*views.picture_shape)}"
+        for count, views in ((len(frames), frames.views), (len(cube.names), cube.views))
+    )
+    if given != made_for:
+        raise InputError(
+            f"frames ({given} pixels) do not fit the cube, which was made for {made_for}: give those it was made from"
+        )
+
+
+def facts(cube: Cube) -> dict[str, Any]:
+    """What is worth knowing of a cube, by name, for people and JSON."""
+    nz, ny, nx = cube.grid.shape
+    rows, columns = cube.views.picture_shape
+    return {
+        "status": cube.status,
+        "voxels": f"{nz} x {ny} x {nx} (z, y, x)",
+        "size_mm": " x ".join(f"{length:g}" for length in cube.grid.size_mm),
+        "voxel_mm": cube.grid.voxel_mm,
+        "views": len(cube.views),
+        "pictures": len(cube.names),
+        "picture": f"{columns} x {rows} pixels",
+        **_where(cube),
+        "lamp_power": [float(cube.powers.min()), float(cube.powers.max())],
+        "extinction_mean": float(cube.extinction.mean()),
+        "extinction_max": float(cube.extinction.max()),
+        "hold": cube.hold_deg,
+        "transfer": cube.transfer,
+        "names": list(cube.names),
+        **{name: value for name, value in cube.scores.items() if name != "views"},
+        **{f"made_with_{name}": value for name, value in cube.provenance.items()},
+    }
+
+
+def _where(cube: Cube) -> dict[str, Any]:
+    """Where a cube's lamps and screens stand, by name."""
+    angles = {"angles": [float(angle) for angle in cube.angles]}
+    if cube.lighting is None:
+        return angles | {"elevation": sorted({float(elevation) for elevation in cube.views.elevations})}
+    screens = [cube.lighting.screen_names[screen] for screen in cube.lighting.screen]
+    return angles | {"lamps": list(cube.lighting.lamp_names), "screens": screens}

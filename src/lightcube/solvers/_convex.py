@@ -1,0 +1,145 @@
+"""What the screen shows and what it should: the objective of the display solver, entry by entry."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.kernels import convex, display
+from lightcube.optics.absorption import absorbance
+from lightcube.optics.transfer import Transfer
+from lightcube.solvers._checks import check_lamp, check_shapes, check_views, check_weights
+from lightcube.solvers.contract import Floats, Operator
+
+#: The curvatures used hold as long as no beam's ln light rises by more than this.
+ROOM = 0.1
+
+
+@dataclass(frozen=True)
+class ConvexObjective:
+    """What is wanted of the screen, and the lamps that shine on it; lamp powers as ln P, ``(views, channels)``."""
+
+    wanted: Floats
+    weights: Floats
+    views: NDArray[np.integer[Any]]
+    #: The equations of view v are ``rows[starts[v]:starts[v + 1]]``.
+    rows: NDArray[np.integer[Any]]
+    starts: NDArray[np.integer[Any]]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    #: The same as powers.
+    bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
+    #: How display values follow from ln light.
+    curve: display.Curve
+
+    @classmethod
+    def of(
+        cls,
+        A: Operator,
+        B: Floats,
+        weights: Floats | None,
+        view_of_row: NDArray[np.integer[Any]] | None,
+        lamp_bounds: tuple[Floats, Floats] | None,
+        transfer: Transfer,
+    ) -> "ConvexObjective":
+        """Check what the solver was given; `InputError` names what cannot be used."""
+        check_shapes(A, B)
+        low, high = check_lamp(lamp_bounds, check_views(view_of_row, A.shape[0]))
+        views = np.zeros(len(B), np.intp) if view_of_row is None else view_of_row
+        rows = np.argsort(views, kind="stable")
+        starts = np.searchsorted(views[rows], np.arange(len(low) + 1))
+        wanted = np.ascontiguousarray(absorbance(B))
+        np.negative(wanted, out=wanted)
+        return cls(
+            wanted,
+            check_weights(weights, B),
+            views,
+            rows,
+            starts,
+            np.log(low),
+            np.log(high),
+            (low, high),
+            display.curve(transfer == "srgb", B.dtype.type),
+        )
+
+    def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return P of ln P, within the bounds to the last digit."""
+        return np.clip(np.exp(lamp), *self.bounds)
+
+    def best_lamp(self, ax: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the best ln P for absorbance `ax`, found from `start`."""
+        if np.array_equal(self.low, self.high):
+            return self.low
+        lamp = start.copy()
+        data = (self.rows, self.starts, self.wanted, self.weights, self.curve)
+        convex.fit_lamp(ax, *data, self.low, self.high, lamp)
+        return lamp
+
+    def arrive(
+        self, last: Floats, ax: Floats, lamp: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
+        return convex.arrive(last, ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.curve)
+
+    def descend(self, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+        """Write over `ax`, and return, the objective's derivative by the absorbance."""
+        convex.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.curve, ax)
+        return ax
+
+    def curved(self, values: Floats, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+        """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
+        data = (self.views, self.wanted, self.weights, self.curve)
+        convex.curvatures(ax, lamp.astype(ax.dtype), *data, ax.dtype.type(ROOM), values)
+        return values
+
+    def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: tuple[float, float]) -> float:
+        """A number that the objective cannot fall below, by duality from the derivatives at `ax`; at least 0.
+
+        For any s, the objective is at least ``min over lamps of s.lnP + min over x of -(A's).x - sum of conjugates``
+        (R. T. Rockafellar, Convex Analysis, 1970, section 31). Writes over `ax`.
+        """
+        lower, upper = bounds
+        if lower == -np.inf:
+            return 0.0
+        pull = self.descend(ax, lamp)
+        np.negative(pull, out=pull)
+        if upper == np.inf:
+            self._make_feasible(A, pull)
+        back = A.adjoint(pull)
+        least = -lower * float(np.sum(np.minimum(back, 0), dtype=np.float64))
+        if upper < np.inf:
+            least -= upper * float(np.sum(np.maximum(back, 0), dtype=np.float64))
+        rows_of_view = (self.rows[first:last] for first, last in pairwise(self.starts))
+        per_view = np.stack([np.sum(pull[rows], axis=0, dtype=np.float64) for rows in rows_of_view])
+        per_lamp = per_view.reshape(len(self.low), -1, self.low.shape[1]).sum(axis=1)
+        least += float(np.sum(np.minimum(per_lamp * self.low, per_lamp * self.high)))
+        bound = 0.0
+        for part in (0.3, 0.5, 0.7, 0.85, 1.0):  # concave, and 0 at 0: once it falls, it falls on
+            reached = part * least - self._conjugates(part * pull)
+            if reached <= bound:
+                break
+            bound = reached
+        return bound
+
+    def _make_feasible(self, A: Operator, pull: Floats) -> None:
+        """Lower `pull`, along the beams through the unknowns where ``A'pull`` is above 0, until it is nowhere."""
+        rising = A.adjoint(pull)
+        np.maximum(rising, 0, out=rising)
+        heard = (self.weights > 0).astype(pull.dtype)
+        reach = A.adjoint(heard)
+        reach = np.divide(rising, reach, out=reach, where=reach > 0)
+        beams = A.forward(np.square(reach, out=reach))
+        mean = np.mean(beams, axis=0)
+        # Part along those beams and part along all: of the mixtures tried, the one with the best bounds.
+        beams /= np.where(mean > 0, mean, 1)
+        beams += pull.dtype.type(0.3)
+        beams *= heard
+        del heard, reach  # make room
+        back = A.adjoint(beams)
+        beams *= (1 + 1e-5) * np.max(np.divide(rising, back, out=back, where=back > 0), axis=0)
+        pull -= beams
+
+    def _conjugates(self, pull: Floats) -> float:
+        return float(np.sum(display.conjugates(pull, self.wanted, self.weights, self.curve)))

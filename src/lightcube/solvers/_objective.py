@@ -1,0 +1,143 @@
+"""The display solver's objective where several views add up to a picture: no longer convex."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from lightcube.errors import InputError
+from lightcube.kernels import display, objective
+from lightcube.optics.absorption import absorbance
+from lightcube.optics.transfer import Transfer
+from lightcube.solvers._checks import check_lamp, check_weights
+from lightcube.solvers._convex import ROOM
+from lightcube.solvers.contract import Floats, Mixture, Operator
+
+#: Newton's steps for the lamps' powers in each pass, at most; the longest one, and one so short that it is the last.
+_STEPS, _LONGEST, _SHORT = 10, 1.0, 1e-3
+
+
+@dataclass(frozen=True)
+class Objective:
+    """What is wanted of the screen, and the views that add up on it; lamp powers as ln P, ``(lamps, channels)``."""
+
+    mixture: Mixture
+    #: ``(pictures, entries)``.
+    wanted: Floats
+    weights: Floats
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    #: The same as powers.
+    bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
+    curve: display.Curve
+    #: Columns of the matrix equation.
+    columns: int
+
+    @classmethod
+    def of(
+        cls,
+        A: Operator,
+        B: Floats,
+        weights: Floats | None,
+        mixture: Mixture,
+        lamp_bounds: tuple[Floats, Floats] | None,
+        transfer: Transfer,
+    ) -> "Objective":
+        """Check what the solver was given; `InputError` names what cannot be used."""
+        views, pictures = len(mixture.lamp), len(mixture.starts) - 1
+        if B.ndim != 2 or B.dtype not in (np.float32, np.float64) or len(B) * views != A.shape[0] * pictures:
+            raise InputError(
+                f"B of shape {B.shape} does not fit {pictures} pictures that {views} views with {A.shape[0]} "
+                "equations make: give it a float row for each equation of a picture"
+            )
+        low, high = check_lamp(lamp_bounds, int(mixture.lamp.max()) + 1)
+        wanted = np.negative(absorbance(B)).reshape(pictures, -1)
+        if mixture.light.shape != (views, wanted.shape[1] // low.shape[1]):
+            raise InputError(f"light of shape {mixture.light.shape} does not fit {views} views of these pictures")
+        heavy = np.ascontiguousarray(check_weights(weights, B)).reshape(pictures, -1) * _lit(mixture)
+        curve = display.curve(transfer == "srgb", B.dtype.type)
+        return cls(mixture, wanted, heavy, np.log(low), np.log(high), (low, high), curve, B.shape[1])
+
+    def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return P of ln P, within the bounds to the last digit."""
+        return np.clip(np.exp(lamp), *self.bounds)
+
+    def best_lamp(self, ax: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return better ln P for absorbance `ax`, found from `start` by a few bounded steps."""
+        lamp = np.clip(start, self.low, self.high)
+        if np.array_equal(self.low, self.high):
+            return lamp
+        groups = np.cumsum(np.diff(self._picture * len(self.low) + self.mixture.lamp, prepend=-1) != 0) - 1
+        lamp_of_group = self.mixture.lamp[np.unique(groups, return_index=True)[1]]
+        for _ in range(_STEPS):
+            sums = np.zeros((2, objective.PARTS, len(lamp_of_group), lamp.shape[1]))
+            objective.pulls(self._mixed(lamp, ax), groups, *self._data(ax), sums)
+            pulls = np.zeros((2, *lamp.shape))
+            for both, found in zip(pulls, sums.sum(axis=1), strict=True):
+                np.add.at(both, lamp_of_group, found)
+            step = np.clip(-pulls[0] / (pulls[1] + 1e-30), -_LONGEST, _LONGEST)
+            moved = np.clip(lamp + step, self.low, self.high) - lamp
+            lamp += moved
+            if np.max(np.abs(moved)) < _SHORT:
+                break
+        return lamp
+
+    def arrive(
+        self, last: Floats, ax: Floats, lamp: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
+        before = last.reshape(len(self.mixture.lamp), -1)
+        return objective.arrive(self._mixed(lamp, ax), before, *self._data(ax))
+
+    def descend(self, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+        """Write over `ax`, and return, the objective's derivative by the absorbance."""
+        data = self._data(ax)
+        objective.descend(self._mixed(lamp, ax), *data, data[0])
+        return ax
+
+    def curved(self, values: Floats, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+        """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
+        room = ax.dtype.type(ROOM)
+        objective.curvatures(self._mixed(lamp, ax), *self._data(ax), room, values.reshape(len(self.mixture.lamp), -1))
+        return values
+
+    def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: tuple[float, float]) -> None:
+        """No bound is known: the problem is not convex."""
+
+    @property
+    def _picture(self) -> NDArray[np.intp]:
+        return np.repeat(np.arange(len(self.wanted)), np.diff(self.mixture.starts))
+
+    def _mixed(self, lamp: NDArray[np.float64], ax: Floats) -> objective.Mixture:
+        return for_kernels(self.mixture, np.exp(lamp), ax.dtype)
+
+    def _data(self, ax: Floats) -> tuple[Floats, int, Floats, Floats, display.Curve]:
+        return ax.reshape(len(self.mixture.lamp), -1), self.columns, self.wanted, self.weights, self.curve
+
+
+def _lit(mixture: Mixture) -> NDArray[np.bool_]:
+    """``(pictures, entries)``: where any light falls. Elsewhere no cube changes anything, so nothing is asked for."""
+    falls = [mixture.light[first:last].T @ mixture.share[first:last] > 0 for first, last in pairwise(mixture.starts)]
+    return np.stack(falls).reshape(len(falls), -1)
+
+
+def mixed_light(mixture: Mixture, powers: NDArray[np.floating[Any]], absorbance: Floats) -> Floats:
+    """What the screen shows at the absorbance of all views, under lamps of powers ``(lamps, channels)``.
+
+    Returns
+    -------
+    ``(pictures, entries)``, linear light, the entries of a picture in the order of a view's in `absorbance`.
+    """
+    absorbed = absorbance.reshape(len(mixture.lamp), -1)
+    logs = np.empty((len(mixture.starts) - 1, absorbed.shape[1]), absorbance.dtype)
+    objective.shine(for_kernels(mixture, powers, absorbance.dtype), absorbed, absorbance.shape[1], logs)
+    return np.exp(logs, out=logs)
+
+
+def for_kernels(mixture: Mixture, powers: NDArray[np.floating[Any]], dtype: DTypeLike) -> objective.Mixture:
+    """What the kernels want to know of the views and the power of their lamps."""
+    strength = (powers[mixture.lamp] * mixture.share).astype(dtype)
+    light, shadow = (each.astype(dtype, copy=False) for each in (mixture.light, mixture.shadow))
+    return objective.Mixture(mixture.starts, strength, light, shadow)

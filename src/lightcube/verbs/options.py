@@ -1,0 +1,98 @@
+"""What may be said of a cube before it is solved."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from lightcube.backward import recipe
+from lightcube.backward.recipe import Powers
+from lightcube.errors import InputError
+from lightcube.optics.transfer import BLACK, Transfer
+from lightcube.pictures.fitting import Fit
+from lightcube.solvers import METHODS
+
+Arrangement = Literal["given", "best"]
+
+#: Voxels along the longest side of a cube, unless something else is said.
+DEFAULT_N = 128
+
+
+@dataclass(frozen=True)
+class Option:
+    """What people are told of an option, and the least number that it takes."""
+
+    help: str
+    least: int | None = None
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is said of the cube, None where nothing is."""
+
+    n: Annotated[int | None, Option("Voxels along the cube's longest side.  [default: 128]")] = None
+    shape: Annotated[tuple[int, int, int] | None, Option("Voxels along each axis, NZ,NY,NX, instead of --n.")] = None
+    size_mm: Annotated[float, Option("Longest side of the cube in mm.")] = 100.0
+    frame_width: Annotated[
+        float | None, Option("Width of the pictures as a part of the cube's; default as wide as 40 dB are expected.")
+    ] = None
+    fit: Annotated[
+        Fit, Option("Pictures of another aspect than the first: cut their edges, leave the rest free, or distort.")
+    ] = "crop"
+    angles: Annotated[tuple[float, ...] | None, Option("Turntable angles in degrees, A,B,C, one per picture.")] = None
+    span: Annotated[float | None, Option("Degrees to spread the views over, evenly.  [default: 360, level 180]")] = None
+    elevation: Annotated[float | None, Option("Elevation of the lamp in degrees; 0 is level.  [default: 35]")] = None
+    paper: Annotated[bool, Option("The paper's set-up: level lamp of power 1, half a turn, full width.")] = False
+    order: Annotated[
+        Arrangement, Option("Whether pictures stand as given, or in the order that gives the best ones.")
+    ] = "given"
+    shift: Annotated[int, Option("Let pictures stand up to so many pixels higher, lower or aside, in turn.", 0)] = 0
+    quality: Annotated[recipe.Quality | None, Option("At most 30, 200 or 1000 passes.  [default: normal]")] = None
+    method: Annotated[str, Option(f"One of {', '.join(METHODS)}.")] = "display"
+    iterations: Annotated[int | None, Option("At most so many passes, instead of --quality.")] = None
+    lamp: Annotated[
+        Powers | None,
+        Option("One power per picture and colour (coarse: found at half size), or one per colour, or fixed."),
+    ] = None
+    lamp_power: Annotated[float | None, Option("Power of a fixed lamp, linear light; 1 is white.")] = None
+    lamp_max: Annotated[float | None, Option("Largest power of the lamp, at least 1.  [default: 16]")] = None
+    hold: Annotated[
+        float | None,
+        Option("Degrees around its stop over which each picture shall stand; default what costs below 1 dB."),
+    ] = None
+    black: Annotated[float | None, Option("Display value, 0.002 to 1, that the screen cannot be darker than.")] = None
+    max_extinction: Annotated[float | None, Option("Largest extinction of the material, 1/mm; default none.")] = None
+    transfer: Annotated[Transfer, Option("How picture values become linear light.")] = "srgb"
+    lamp_samples: Annotated[
+        int, Option("Points at which a stage's lamps of a size are sampled, for soft shadows.", 1)
+    ] = 1
+    pixel_samples: Annotated[int, Option("Points along a side that a stage's pixels are averaged over.", 1)] = 1
+
+    @property
+    def voxels(self) -> tuple[int, int, int]:
+        """``(nz, ny, nx)`` that `n` or `shape` say, a cube where that is `n`; `InputError` where they cannot be."""
+        if self.n is not None and self.shape is not None:
+            raise InputError("--n and --shape both say how many voxels: leave one of them out")
+        nz, ny, nx = self.shape or (DEFAULT_N if self.n is None else self.n,) * 3
+        if min(nz, ny, nx) < 1:
+            raise InputError(f"--n {self.n}: a cube needs at least 1 voxel a side")
+        if not (np.isfinite(self.size_mm) and self.size_mm > 0):
+            raise InputError(f"--size-mm {self.size_mm}: give a positive number of millimetres")
+        return nz, ny, nx
+
+    @property
+    def power(self) -> float:
+        """Largest power of the lamp, linear light."""
+        return self.lamp_power or self.lamp_max or (1.0 if self.lamp == "fixed" else recipe.LAMP_MAX)
+
+    @property
+    def lamps(self) -> dict[str, Any]:
+        """As `lightcube.solve` and `lightcube.plan` take them."""
+        most = np.inf if self.max_extinction is None else self.max_extinction
+        return {
+            "lamp": self.lamp,
+            "lamp_power": self.lamp_power,
+            "lamp_max": self.lamp_max,
+            "max_extinction": most,
+            "black": BLACK if self.black is None else self.black,
+        }

@@ -1,0 +1,248 @@
+"""The command that makes a cube again, from what the cube itself says."""
+
+import hashlib
+import math
+import shlex
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube import io
+from lightcube.backward import recipe
+from lightcube.backward.job import Job
+from lightcube.backward.needs import MEMORY, fewest_units
+from lightcube.optics.cube import Cube
+from lightcube.optics.transfer import BLACK
+from lightcube.optics.views import spread_angles, turntable
+from lightcube.pictures.frames import Frames
+from lightcube.report.page import Command, Origin
+
+#: Longest side of a cube, mm, unless the command line says another.
+_SIZE_MM = 100.0
+#: A number of mm is looked for among so many neighbours of the nearest one.
+_NEIGHBOURS = 4
+#: Digits of a degree that the angles of views are known to.
+_DIGITS = 9
+
+
+def reproducing(cube: Cube, frames: Frames, source: str | None, target: str) -> Command:
+    """Put together the command that makes a cube again; every number is tried, and said as short as it can be.
+
+    Parameters
+    ----------
+    frames
+        What was wanted of the cube.
+    source, target
+        What the command reads and writes; without a source there is a word in its place.
+    """
+    command, provenance = Command(), cube.provenance
+    place = _stage_options(cube) if cube.lighting is not None else _turntable_options(cube, command)
+    words = [*place, *_solver_options(cube, command)]
+    if cube.transfer != "srgb":
+        words += ["--transfer", cube.transfer]
+    asked = ["lightcube", "solve", source or ("FRAMES" if cube.lighting is None else "STAGE.toml"), "-o", target]
+    solve = [shlex.join(asked), *(shlex.join(pair) for pair in zip(words[::2], words[1::2], strict=True))]
+    _doubt_origin(cube, command, source)
+    units = int(provenance.get("units", 1))
+    if units == 1 or units == _usual_units(cube, frames):
+        command.lines = [solve]
+        return command
+    command.lines = [[*solve, f"--unit {unit}/{units}"] for unit in range(1, units + 1)]
+    command.lines.append([shlex.join(["lightcube", "merge", f"{target}.partial"])])
+    return command
+
+
+def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
+    """Cube, pictures, angles and lamp's elevation of a turntable."""
+    views, provenance = cube.views, cube.provenance
+    yield from ("--shape", ",".join(map(str, cube.grid.shape)))
+    size = _size(cube.grid.voxel_mm, max(cube.grid.shape))
+    if size is None:
+        command.doubts.append(f"No size in mm gives voxels of exactly {cube.grid.voxel_mm!r} mm.")
+    elif size != _SIZE_MM:
+        yield from ("--size-mm", _number(size))
+    yield from ("--frame-width", _width(views.picture_shape[1], cube.grid.shape[1]))
+    yield from ("--elevation", _number(float(views.elevations[0])))
+    angles = _angles(cube)
+    if angles is None:
+        command.doubts.append("No angles and elevation on the command line give exactly this cube's lamps and screens.")
+        angles = ["--angles", _listed(views.angles)]
+    yield from angles
+    if provenance.get("fit", "crop") != "crop":
+        yield from ("--fit", str(provenance["fit"]))
+    if "order" in provenance:
+        yield from ("--order", "best")
+    if "shift" in provenance:
+        yield from ("--shift", str(provenance["shift"]))
+    yield from ("--hold", _number(cube.hold_deg))
+
+
+def _stage_options(cube: Cube) -> Iterator[str]:
+    """What the command line says beside a stage's file."""
+    for name in ("lamp_samples", "pixel_samples"):
+        if name in cube.provenance:
+            yield from (f"--{name.replace('_', '-')}", str(cube.provenance[name]))
+    if cube.hold_deg:
+        yield from ("--hold", _number(cube.hold_deg))
+
+
+def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
+    """Method, lamp, bounds and passes."""
+    made = cube.provenance
+    method = made.get("method", "display")
+    if method != "display":
+        yield from ("--method", str(method))
+    yield from _lamp(made, method)
+    for name, usual in (("black", BLACK), ("max_extinction", None)):
+        if made.get(name, usual) != usual:
+            yield from (f"--{name.replace('_', '-')}", _number(made[name]))
+    yield from _passes(made, method, command)
+
+
+def _lamp(made: Mapping[str, Any], method: str) -> Iterator[str]:
+    kind, power = made.get("lamp", "per-view"), made.get("lamp_power", 1.0)
+    if kind == "fixed" and (method == "display" or power != 1):
+        yield from ("--lamp-power", _number(power)) if "lamp_power" in made else ()
+    elif kind in ("global", "coarse"):
+        yield from ("--lamp", str(kind))
+    if made.get("lamp_max", recipe.LAMP_MAX) != recipe.LAMP_MAX:
+        yield from ("--lamp-max", _number(made["lamp_max"]))
+
+
+def _passes(made: Mapping[str, Any], method: str, command: Command) -> Iterator[str]:
+    """How many passes at most, and which PSNR is enough; the number of passes itself where no more is known."""
+    if "passes" in made:
+        passes, enough = made["passes"], made.get("enough_db") or math.inf
+        for quality, meant in recipe.QUALITIES.items():
+            if method == "display" and meant == (passes, enough):
+                yield from () if quality == "normal" else ("--quality", quality)
+                return
+        if enough < math.inf:
+            command.doubts.append(
+                f"No option says at most {passes} passes, or fewer where a PSNR of {enough:g} dB is reached."
+            )
+        if passes is not None:
+            yield from ("--iterations", str(passes))
+    elif made.get("stop_reason") == "iterations":
+        yield from ("--iterations", str(made["iterations"]))
+    else:
+        reason = {"enough": "were enough", "converged": "left nothing to do"}.get(made.get("stop_reason", ""), "came")
+        passes = f"{made['iterations']} passes {reason}" if "iterations" in made else "nothing is said of passes"
+        command.doubts.append(
+            f"How many passes were allowed, and which PSNR was enough, is not recorded ({passes}); the default is "
+            "taken here."
+        )
+
+
+def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
+    """Say what stands between the command and the same cube, beside its options."""
+    made, doubts = cube.provenance, command.doubts
+    if source is None:
+        doubts.insert(0, "The pictures are not recorded with the cube: put the name of theirs into the command.")
+    if cube.lighting is None and "fit" not in made:
+        doubts.append("How the pictures were fitted is not recorded: the cube was not made by `lightcube solve`.")
+    if made.get("dtype", "float32") != "float32":
+        doubts.append(f"It was computed in {made['dtype']}, the command line computes in float32.")
+    if cube.status != "complete":
+        doubts.append("The solver was stopped early; the command goes on to its end.")
+    if made.get("lightcube") != version("lightcube"):
+        written = made.get("lightcube", "an unknown version")
+        doubts.append(f"It was made by lightcube {written}; another version may come to other bits.")
+
+
+def _usual_units(cube: Cube, frames: Frames) -> int:
+    """In how many units the cube would be solved if nothing is said of them."""
+    made = cube.provenance
+    job = Job(
+        frames,
+        cube.grid,
+        method=made.get("method", "display"),
+        lamp=made.get("lamp", "per-view"),
+        hold=cube.hold_deg,
+        iterations=made.get("passes"),
+    )
+    return fewest_units(job, MEMORY)
+
+
+def _angles(cube: Cube) -> list[str] | None:
+    """The option that gives exactly the cube's views, or None."""
+    views = cube.views
+    angles = views.angles
+    for offset in (1 / 2, 1 / 3):  # as `lightcube.optics.views.spread_angles` begins
+        span = round(float(angles[0]) / offset * len(views), 6)
+        if 0 < span <= 360 and _same(cube, spread_angles(len(views), span)):
+            return ["--span", _number(span)]
+    return ["--angles", _listed(angles)] if _same(cube, np.round(angles, _DIGITS)) else None
+
+
+def _same(cube: Cube, angles: NDArray[np.float64]) -> bool:
+    """Whether views at these angles have the cube's lamps and screens, bit for bit."""
+    views = cube.views
+    made = turntable(cube.grid, angles, elevation=float(views.elevations[0]), picture_shape=views.picture_shape)
+    names = ["lamps", "column_steps", "row_steps"] + ["origins"] * ("shift" not in cube.provenance)
+    return all(np.array_equal(getattr(made, name), getattr(views, name)) for name in names)
+
+
+def _listed(angles: NDArray[np.float64]) -> str:
+    return ",".join(_number(float(angle)) for angle in angles)
+
+
+def _size(voxel_mm: float, voxels: int) -> float | None:
+    """The shortest length of so many voxels that gives exactly their side, or None."""
+    length = voxel_mm * voxels
+    tried = [float(f"{length:.{digits}g}") for digits in range(1, 18)]
+    for way in (-math.inf, math.inf):
+        beside = length
+        for _ in range(_NEIGHBOURS):
+            beside = math.nextafter(beside, way)
+            tried.append(beside)
+    return next((each for each in tried if each / voxels == voxel_mm), None)
+
+
+def _width(columns: int, voxels: int) -> str:
+    """The shortest part of the cube's width that a picture of so many columns is rounded to."""
+    part = columns / voxels
+    tried = (f"{part:.{digits}g}" for digits in range(1, 18))
+    return next(text for text in tried if abs(float(text) * voxels - columns) < 0.9)
+
+
+def _number(value: float) -> str:
+    """A number that reads back as the same one, without a useless .0."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def origins(cube: str, frames: str | None) -> Iterator[Origin]:
+    """The files on this disk that were read."""
+    read = [("cube", Path(cube))]
+    if frames is not None and io.is_stage(frames):
+        read += [("stage", Path(frames)), *(("pictures", path) for path in io.stage_pictures(frames))]
+    elif frames is not None:
+        read.append(("pictures", Path(frames)))
+    for role, path in read:
+        if path.exists():
+            yield _origin(role, path)
+
+
+def _origin(role: str, path: Path) -> Origin:
+    """Size and checksum of a file, or of all files of a folder that are not hidden."""
+    if not path.is_dir():
+        return Origin(role, path.name, 1, path.stat().st_size, _checksum(path))
+    inside = {f"./{each.relative_to(path).as_posix()}": each for each in path.rglob("[!.]*") if each.is_file()}
+    shown = {
+        name: inside[name]
+        for name in sorted(inside, key=lambda name: name.encode("utf-8", "surrogateescape"))
+        if "/." not in name
+    }
+    listed = "".join(f"{_checksum(each)}  {name}\n" for name, each in shown.items())
+    size = sum(each.stat().st_size for each in shown.values())
+    digest = hashlib.sha256(listed.encode("utf-8", "surrogateescape")).hexdigest()
+    return Origin(role, path.resolve().name, len(shown), size, digest)
+
+
+def _checksum(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

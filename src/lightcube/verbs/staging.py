@@ -1,0 +1,103 @@
+"""What `check`, `solve` and `score` do with a stage instead of a folder of pictures."""
+
+from typing import Any
+
+import numpy as np
+
+from lightcube import io
+from lightcube.backward import recipe, solving
+from lightcube.backward.job import Job
+from lightcube.backward.needs import job_memory
+from lightcube.errors import InputError
+from lightcube.optics.rig import Lighting
+from lightcube.optics.stage import Stage
+from lightcube.pictures.frames import Frames
+from lightcube.planning.placement import doubtful, facts, impossible
+from lightcube.planning.reachable import sentences
+from lightcube.verbs.options import Options
+from lightcube.verbs.solving import check_memory, check_passes, too_much
+
+#: Options that a stage file leaves no room for.
+_SAID = (
+    *("n", "shape", "size_mm", "frame_width", "fit", "angles", "span", "elevation", "paper", "order", "shift"),
+    *("lamp_power", "lamp_max"),
+)
+
+
+def read(path: str, options: Options) -> tuple[Stage, Frames]:
+    """Read a stage and fit its pictures, or raise `InputError` where it cannot be, or an option contradicts it."""
+    check_passes(options)
+    for name in _SAID:
+        if getattr(options, name) != getattr(Options(), name):
+            option = name.replace("_", "-")
+            raise InputError(f"--{option} is not for a stage, and {path} is one that says all there is: leave it out")
+    if options.lamp == "fixed":
+        raise InputError(f"--lamp fixed: the stage {path} says which lamps are fixed, by their power: leave it out")
+    samples = {"lamp_samples": options.lamp_samples, "pixel_samples": options.pixel_samples}
+    stage, frames = io.read_stage_frames(path, transfer=options.transfer, **samples)
+    found = impossible(stage)
+    if found:
+        raise InputError(f"{path}: {found[0]}")
+    return stage, frames
+
+
+def job(stage: Stage, frames: Frames, options: Options, *, memory: int | None = None, units: int | None = None) -> Job:
+    """Settle all that decides the cube of a stage; `InputError` where it does not fit into `memory` bytes."""
+    passes: dict[str, Any] = {"iterations": options.iterations}
+    if options.iterations is None and options.method == "display":
+        most, enough = recipe.QUALITIES[options.quality or "normal"]
+        passes = {"iterations": most, "enough_db": enough}
+    samples = {name: getattr(options, name) for name in ("lamp_samples", "pixel_samples") if getattr(options, name) > 1}
+    made = solving.make_job(
+        frames,
+        stage.grid,
+        method=options.method,
+        lamp=options.lamp if options.method == "display" else None,
+        max_extinction=options.lamps["max_extinction"],
+        black=options.lamps["black"],
+        hold=options.hold or 0.0,
+        units=units,
+        memory=memory,
+        provenance=samples,
+        **passes,
+    )
+    if memory is not None and job_memory(made) > memory:
+        raise too_much(job_memory(made), memory)
+    check_memory(job_memory(made))
+    return made
+
+
+def in_short(stage: Stage, frames: Frames) -> list[str]:
+    """Lines that `solve` says of a stage before it starts."""
+    nz, ny, nx = stage.grid.shape
+    counts = {
+        "picture": len(frames),
+        "screen": len(stage.screens),
+        "lamp": len(stage.lamps),
+        "stop": len(stage.stops),
+    }
+    said = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items())
+    views = f", {len(frames.views)} views" if len(frames.views) != len(frames) else ""
+    first = f"{said}{views}; cube of {nx} x {ny} x {nz} voxels"
+    return [first, *doubtful(stage), *sentences(frames), *unsampled(frames.lighting)]
+
+
+def unsampled(lighting: Lighting | None) -> list[str]:
+    """A sentence where lamps have a size that is not minded."""
+    if lighting is None or not np.any(lighting.disc_deg):
+        return []
+    names = dict.fromkeys(lighting.lamp_names[lamp] for lamp in lighting.lamp[lighting.disc_deg > 0])
+    return [f"the size of lamp {', '.join(map(repr, names))} is not minded: --lamp-samples 16 does"]
+
+
+def table(stage: Stage) -> list[str]:
+    """What is known of each picture of a stage, as aligned lines."""
+    heads = f"{'picture':>20} {'screen':>12} {'stop':>5} {'angle':>8} {'pixels':>11} {'through cube':>13}"
+    return [f"{heads} {'voxels a pixel':>15}  lamps", *(_line(each) for each in facts(stage)["per_picture"])]
+
+
+def _line(each: dict[str, Any]) -> str:
+    """The line of one picture."""
+    where = f"{each['name'][:20]:>20} {each['screen'][:12]:>12} {each['stop']:>5} {each['angle']:>8.2f}"
+    size = f"{each['columns']:>4} x {each['rows']:<4} {each['beams_in_cube']:>13.0%} {each['pixel_in_voxels']:>15.2f}"
+    return f"{where} {size}  {', '.join(each['lamps'])}"

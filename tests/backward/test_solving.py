@@ -1,0 +1,241 @@
+"""Program 2: every method of the table through the same tests, and the orchestration around them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lightcube.backward.pieces import Step
+from lightcube.backward.solving import solve
+from lightcube.errors import InputError
+from lightcube.forward.casting import play
+from lightcube.forward.turning import lamp_at
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.transfer import BLACK, decode
+from lightcube.optics.views import held, spread_angles, turntable
+from lightcube.pictures.frames import Frames
+from lightcube.scoring.metrics import score
+from lightcube.solvers import METHODS
+
+SHAPE = (3, 4, 5)
+ITERATIONS: Mapping[str, dict[str, Any]] = {
+    "display": {"iterations": 300},
+    "gauss-seidel": {"iterations": 300},
+    "row-reduction": {},
+    "sirt": {"iterations": 1500},
+    "cgls": {"iterations": 300},
+}
+
+
+def known_cube(views: int, elevation: float, power: float) -> Cube:
+    grid = Grid(SHAPE, 0.5)
+    extinction = np.random.default_rng(0).uniform(0, 0.4, (3, *SHAPE)).astype(np.float32)
+    turned = turntable(grid, spread_angles(views, elevation=elevation), elevation=elevation)
+    return Cube(extinction, grid, turned, lamp_powers=np.full((views, 3), power))
+
+
+def test_every_method_is_tested_here() -> None:
+    assert set(ITERATIONS) == set(METHODS)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_cubes_own_shadows_come_back(method: str, elevation: float) -> None:
+    cube = known_cube(6, elevation, power=1.0)
+    frames = Frames(play(cube), cube.views)
+    solution = solve(frames, cube.grid, method=method, dtype=np.float64, **ITERATIONS[method])
+    assert solution.cube.status == "complete"
+    assert solution.cube.provenance["method"] == method
+    assert score(solution.cube, frames)["psnr_min"] >= 60
+    assert solution.cube.extinction.min() >= 0
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_stronger_lamp_is_accounted_for(method: str) -> None:
+    cube = known_cube(4, 0.0, power=2.5)
+    frames = Frames(play(cube), cube.views)
+    solution = solve(frames, cube.grid, method=method, lamp_power=2.5, dtype=np.float64, **ITERATIONS[method])
+    assert np.all(solution.cube.powers == 2.5)
+    assert score(solution.cube, frames)["psnr_min"] >= 60
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_pixels_of_no_weight_do_not_matter(method: str) -> None:
+    cube = known_cube(12, 0.0, power=1.0)
+    shown = play(cube)
+    weights = np.random.default_rng(1).integers(0, 2, shown.shape[:3]).astype(np.float32)
+    spoiled = np.where(weights[..., None] > 0, shown, np.float32(0.123))
+    one, other = (
+        solve(Frames(pictures, cube.views, weights), cube.grid, method=method, dtype=np.float64, **ITERATIONS[method])
+        for pictures in (shown, spoiled)
+    )
+    assert np.allclose(one.cube.extinction, other.cube.extinction, atol=1e-6)
+    assert score(other.cube, Frames(shown, cube.views, weights))["psnr_min"] >= 60
+
+
+@pytest.mark.parametrize("method", ["display", "sirt", "cgls", "gauss-seidel"])
+def test_the_largest_extinction_is_kept(method: str) -> None:
+    cube = known_cube(4, 0.0, power=1.0)
+    dark = Frames(play(cube) * np.float32(0.01), cube.views)
+    solution = solve(dark, cube.grid, method=method, max_extinction=0.3, iterations=20)
+    assert solution.cube.extinction.max() <= 0.3 * (1 + 1e-6)
+    if method != "gauss-seidel":  # which throws out equations that ask for more
+        assert solution.cube.extinction.max() == pytest.approx(0.3)
+
+
+def test_black_pictures_are_raised_to_the_screens_black() -> None:
+    grid = Grid(SHAPE)
+    views = turntable(grid, [20.0, 100.0], picture_shape=(3, 2))
+    solution = solve(Frames(np.zeros((2, 3, 2, 3), np.float32), views), grid, iterations=200)
+    darkest = float(decode(np.array([BLACK]))[0])
+    assert np.all(play(solution.cube) < 2 * darkest)
+
+
+def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
+    cube = known_cube(4, 35.0, power=2.0)
+    frames = Frames(play(cube), cube.views)
+    seen: list[np.ndarray] = []
+
+    def callback(step: Step) -> bool:
+        assert step.shown is not None
+        seen.append(step.shown())
+        return step.iteration == 3
+
+    solution = solve(frames, cube.grid, lamp_power=2.0, callback=callback)
+    assert len(seen) == 3
+    assert solution.cube.status == "interrupted"
+    assert solution.stop_reason == "callback"
+    assert np.allclose(seen[-1], play(solution.cube), rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation: float) -> None:
+    """One pixel of a redundant set is made wrong; Gauss-Seidel must name it."""
+    cube = known_cube(12, elevation, power=1.0)
+    shown = play(cube).astype(np.float64)
+    # a pixel whose beam crosses the middle of the cube
+    _, rows, columns, _ = shown.shape
+    wrong = (5, rows // 2, columns // 2, 1)
+    shown[wrong] *= 0.5
+    frames = Frames(shown.astype(np.float32), cube.views)
+    solution = solve(frames, cube.grid, method="gauss-seidel", dtype=np.float64, iterations=3000)
+    assert solution.rejected.tolist() == [list(wrong)]
+    assert solution.cube.provenance["rejected"] == 1
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"method": "magic"},
+        {"lamp_power": 0.0},
+        {"lamp_power": float("nan")},
+        {"lamp_power": 1e300},
+        {"lamp_max": 0.5},
+        {"lamp_max": float("inf")},
+        {"lamp": "fixed", "lamp_max": 4.0},
+        {"lamp": "per-view", "lamp_power": 1.0},
+        {"lamp": "global", "lamp_power": 1.0},
+        {"lamp": "strobe"},
+        {"lamp": "per-view", "method": "sirt"},
+        {"max_extinction": -1.0},
+        {"iterations": 0},
+    ],
+)
+def test_nonsense_is_refused(options: dict[str, Any]) -> None:
+    cube = known_cube(2, 0.0, power=1.0)
+    with pytest.raises(InputError):
+        solve(Frames(play(cube), cube.views), cube.grid, **options)
+
+
+def test_frames_of_another_grid_are_refused() -> None:
+    cube = known_cube(2, 0.0, power=1.0)
+    with pytest.raises(InputError, match="larger than"):
+        solve(Frames(play(cube), cube.views), Grid((2, 2, 2), 0.5))
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_lamp_powers_are_found_per_view_or_for_all_views(elevation: float) -> None:
+    """Pictures cast with lamps of several powers: per-view finds them, global finds one between, fixed stays."""
+    cube = known_cube(5, elevation, power=1.0)
+    powers = np.random.default_rng(6).uniform(0.5, 3.0, (5, 3))
+    frames = Frames(play(Cube(cube.extinction, cube.grid, cube.views, lamp_powers=powers)), cube.views)
+    free = solve(frames, cube.grid, iterations=600, dtype=np.float64).cube
+    assert free.provenance["lamp"] == "per-view"
+    assert np.allclose(free.powers, powers, rtol=0.05)
+    assert score(free, frames)["psnr_min"] > 50
+    shared = solve(frames, cube.grid, lamp="global", lamp_max=4.0, iterations=100).cube
+    assert np.all(shared.powers == shared.powers[0])
+    assert np.all((shared.powers >= powers.min(axis=0) * 0.9) & (shared.powers <= 4.0))
+    fixed = solve(frames, cube.grid, lamp_power=2.0, iterations=100).cube
+    assert np.all(fixed.powers == 2.0)
+    assert score(free, frames)["psnr_mean"] > score(shared, frames)["psnr_mean"] > score(fixed, frames)["psnr_mean"]
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_a_held_picture_stands_around_its_stop(elevation: float) -> None:
+    """With hold the picture is asked for, and cast, over the whole range; without it falls apart there."""
+    grid = Grid((6, 8, 8))
+    views = turntable(grid, spread_angles(3, elevation=elevation), elevation=elevation, picture_shape=(4, 2))
+    pictures = np.random.default_rng(8).uniform(0.2, 1, (3, 4, 2, 3)).astype(np.float32)
+    frames = Frames(pictures, views)
+    around = np.concatenate([views.angles + offset for offset in (-8, -5, -2, 2, 5, 8)])
+    wanted = np.tile(pictures, (6, 1, 1, 1))
+    errors = {}
+    for hold in (0.0, 8.0):
+        seen: list[np.ndarray] = []
+
+        def look(step: Step, seen: list[np.ndarray] = seen) -> None:
+            assert step.shown is not None
+            seen.append(step.shown())
+
+        cube = solve(frames, grid, hold=hold, iterations=200, callback=look).cube
+        assert cube.hold_deg == hold
+        assert cube.powers.shape == (3, 3)
+        assert np.allclose(seen[-1], play(cube), rtol=1e-3, atol=1e-4)
+        errors[hold] = np.sqrt(np.mean((play(cube, around) - wanted) ** 2))
+    assert errors[8.0] < 0.5 * errors[0.0]
+
+
+def test_the_lamp_does_not_change_while_a_picture_is_held() -> None:
+    cube = known_cube(3, 35.0, power=1.0)
+    powers = np.array([[1.0] * 3, [4.0] * 3, [2.0] * 3])
+    held_cube = Cube(cube.extinction, cube.grid, cube.views, lamp_powers=powers, hold_deg=10.0)
+    stop = cube.views.angles[1]
+    assert lamp_at(held_cube, [stop - 10, stop - 3, stop, stop + 10])[:, 0] == pytest.approx([4] * 4)
+    halfway = (cube.views.angles[0] + stop) / 2
+    assert lamp_at(held_cube, [halfway])[0, 0] == pytest.approx(2)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("count", [2, 3, 5, 16])
+def test_a_hold_of_half_the_spacing_changes_lamps_halfway(count: int, elevation: float) -> None:
+    cube = known_cube(count, elevation, power=1.0)
+    powers = np.repeat(2.0 ** (np.arange(count) % 4)[:, None], 3, axis=1)
+    half = (360 if elevation else 180) / count / 2
+    for hold in (half, 180.0):  # a file may say anything
+        held_cube = Cube(cube.extinction, cube.grid, cube.views, lamp_powers=powers, hold_deg=hold)
+        for offset in (-0.9 * half, 0.0, 0.9 * half):
+            assert np.allclose(lamp_at(held_cube, cube.views.angles + offset), powers)
+
+
+@pytest.mark.parametrize("count", [3, 7, 11])
+def test_the_widest_hold_that_is_named_is_taken(count: int) -> None:
+    views = turntable(Grid(SHAPE), spread_angles(count))
+    with pytest.raises(InputError, match="use at most") as refused:
+        held(views, 89.0, Grid(SHAPE))
+    most = float(str(refused.value).rsplit(" ", 1)[1])
+    assert len(held(views, most, Grid(SHAPE))) > count
+
+
+def test_a_hold_that_meets_another_stops_mirror_image_is_refused() -> None:
+    with pytest.raises(InputError, match=r"use at most 0\.5"):
+        held(turntable(Grid(SHAPE), [0.0, 90.0, 180.0, 271.0]), 40.0, Grid(SHAPE))
+
+
+@pytest.mark.parametrize("hold", [-1.0, 31.0, float("nan"), float("inf")])
+def test_a_hold_wider_than_half_the_spacing_is_refused(hold: float) -> None:
+    cube = known_cube(3, 0.0, power=1.0)
+    with pytest.raises(InputError, match="hold"):
+        solve(Frames(play(cube), cube.views), cube.grid, hold=hold)

@@ -1,0 +1,350 @@
+"""The command line as people and machines use it: results, exit codes, sentences, nothing half-written."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from lightcube import load
+from lightcube.cli import main
+from lightcube.forward.casting import play
+from lightcube.io import save
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import turntable
+
+SCENE = """
+camera = {type = "shadow", cube_width = 4.0}
+frames = {count = 4, size = [6, 6]}
+[[shapes]]
+type = "sphere"
+radius = 1.5
+colour = "#2060c0"
+glass = 2.0
+"""
+
+
+class Run:
+    def __init__(self, code: int, out: str, err: str) -> None:
+        self.code, self.out, self.err = code, out, err
+        self.lines = err.strip().splitlines()
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch):  # type: ignore[no-untyped-def]
+    def call(*arguments: object) -> Run:
+        monkeypatch.setattr(sys, "argv", ["lightcube", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main.main()
+        captured = capsys.readouterr()
+        return Run(int(stop.value.code or 0), captured.out, captured.err)
+
+    return call
+
+
+@pytest.fixture
+def frames(tmp_path: Path) -> Path:
+    """Four pictures of 6 x 6 pixels that a cube of 6 voxels can cast well: smooth and bright."""
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    ramp = np.linspace(150, 250, 6)
+    for index in range(4):
+        picture = np.stack([np.roll(ramp, index)[None, :] + np.zeros((6, 1))] * 3, axis=-1)
+        Image.fromarray(picture.astype(np.uint8)).save(folder / f"{index + 1}.png")
+    return folder
+
+
+@pytest.fixture
+def cube(tmp_path: Path) -> Path:
+    grid = Grid((4, 5, 6), 2.0)
+    extinction = np.random.default_rng(0).uniform(0, 0.1, (3, 4, 5, 6)).astype(np.float32)
+    path = tmp_path / "known.npz"
+    save(Cube(extinction, grid, turntable(grid, [10.0, 100.0], picture_shape=(4, 5))), path)
+    return path
+
+
+def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    (tmp_path / "ball.toml").write_text(SCENE)
+    traced = run("trace", tmp_path / "ball.toml", "-o", tmp_path / "ball")
+    assert (traced.code, len(list((tmp_path / "ball").glob("*.png")))) == (0, 4)
+    solved = run(
+        "solve", tmp_path / "ball", "-o", tmp_path / "ball.zarr", "--n", 6, "--frame-width", 1, "--iterations", 300
+    )
+    assert solved.code == 0
+    assert "not resampled" in solved.err
+    assert "PSNR" in solved.out
+    assert not (tmp_path / "ball.zarr.partial").exists()
+    played = run("play", tmp_path / "ball.zarr", "-o", tmp_path / "ball.gif", "--count", 5, "--scale", 4)
+    assert played.code == 0
+    with Image.open(tmp_path / "ball.gif") as movie:
+        assert movie.size == (24, 24)
+    scored = run("score", tmp_path / "ball.zarr", tmp_path / "ball", "--json", "--sheet", tmp_path / "sheet.png")
+    scores = json.loads(scored.out)
+    assert list(scores) == ["psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "views"]
+    assert scores["psnr_mean"] > 30
+    assert [view["angle"] for view in scores["views"]] == pytest.approx([22.5, 67.5, 112.5, 157.5])
+    with Image.open(tmp_path / "sheet.png") as sheet:
+        assert sheet.size[0] > 100
+    told = run("info", tmp_path / "ball.zarr")
+    assert "complete" in told.out
+    assert "6 x 6 x 6" in told.out
+    assert json.loads(run("info", tmp_path / "ball.zarr", "--json").out)["made_with_method"] == "display"
+
+
+def test_solve_prints_json_lines_for_machines(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 5, "--json")
+    events = [json.loads(line) for line in done.out.splitlines()]
+    assert events[0]["event"] == "progress"
+    assert "PSNR" in events[0]
+    result = events[-1]
+    assert result["event"] == "result"
+    assert result["iterations"] == 5
+    assert {"psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "views", "rejected"} <= set(result)
+
+
+def test_gauss_seidel_says_what_it_threw_out(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    literal = ["--method", "gauss-seidel", "--paper"]
+    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, *literal)
+    assert done.code == 0
+    assert "thrown out" in done.out
+
+
+@pytest.mark.parametrize("suffix", ["", ".npy", ".webp"])
+def test_play_writes_by_suffix(run, cube: Path, tmp_path: Path, suffix: str) -> None:  # type: ignore[no-untyped-def]
+    target = tmp_path / f"shadows{suffix}"
+    assert run("play", cube, "-o", target, "--angles", "0,12.5,90").code == 0
+    assert target.exists()
+    if suffix == ".npy":
+        shown = np.load(target)
+        assert shown.shape == (3, 4, 5, 3)
+        assert np.allclose(shown, play(load(cube), [0, 12.5, 90]))
+
+
+def test_play_shows_stops_targets_and_the_whole_screen(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    solved = tmp_path / "a.npz"
+    run("solve", frames, "-o", solved, "--n", 6, "--iterations", 2, "--paper")
+    run("play", solved, "-o", tmp_path / "stops.npy", "--stops")
+    assert np.array_equal(np.load(tmp_path / "stops.npy"), play(load(solved)))
+    run("play", solved, "-o", tmp_path / "beside.npy", "--stops", "--target")
+    assert np.load(tmp_path / "beside.npy").shape == (4, 6, 14, 3)
+    run("play", solved, "-o", tmp_path / "whole.npy", "--stops", "--no-mask")
+    assert np.load(tmp_path / "whole.npy").shape == (4, 6, 10, 3)
+    assert run("play", solved, "-o", tmp_path / "no.npy", "--target", "--no-mask").code == 2
+
+
+def pressed(*_: object) -> float:
+    signal.raise_signal(signal.SIGINT)
+    return 20.0
+
+
+def test_ctrl_c_keeps_what_was_reached(run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+    out = tmp_path / "a.zarr"
+    with monkeypatch.context() as patched:
+        patched.setattr("lightcube.scoring.metrics.mean_psnr", pressed)
+        stopped = run("solve", frames, "-o", out, "--n", 6)
+    assert stopped.code == 130
+    assert f"lightcube publish {out}.partial" in stopped.err
+    assert not out.exists()
+    again = run("solve", frames, "-o", out, "--n", 6, "--hold", 1)
+    assert again.code == 2
+    assert "hold was" in again.err
+    published = run("publish", f"{out}.partial")
+    assert published.code == 0
+    told = run("info", out)
+    assert "interrupted" in told.out
+    assert run("publish", f"{out}.partial").code == 2
+    assert run("solve", frames, "-o", out, "--n", 6, "--overwrite", "--iterations", 3).code == 0
+    assert "complete" in run("info", out).out
+
+
+def test_an_interrupted_cube_remembers_how_it_was_made(  # type: ignore[no-untyped-def]
+    run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Image.new("RGB", (12, 6), (200, 180, 160)).save(frames / "4.png")
+    with monkeypatch.context() as patched:
+        patched.setattr("lightcube.scoring.metrics.mean_psnr", pressed)
+        run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--fit", "pad", "--hold", 3)
+    run("publish", tmp_path / "a.npz.partial")
+    told = json.loads(run("info", tmp_path / "a.npz", "--json").out)
+    assert (told["made_with_fit"], told["hold"], told["status"]) == ("pad", 3.0, "interrupted")
+    own, fitted = (json.loads(run("score", tmp_path / "a.npz", *f, "--json").out) for f in ([], [frames]))
+    assert own["psnr_mean"] == pytest.approx(fitted["psnr_mean"], abs=0.1)
+
+
+def test_overwrite_removes_an_old_partial(run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+    out = tmp_path / "a.npz"
+    with monkeypatch.context() as patched:
+        patched.setattr("lightcube.scoring.metrics.mean_psnr", pressed)
+        run("solve", frames, "-o", out, "--n", 6)
+    assert (tmp_path / "a.npz.partial").exists()
+    assert run("solve", frames, "-o", out, "--n", 6, "--iterations", 3, "--overwrite").code == 0
+    assert not (tmp_path / "a.npz.partial").exists()
+
+
+def test_a_real_process_stops_at_ctrl_c_with_130(frames: Path, tmp_path: Path) -> None:
+    """SIGINT as a terminal sends it, while solving as long as it takes."""
+    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", "solve", str(frames), "-o"]
+    command += [str(tmp_path / "a.zarr"), "--n", "8", "--iterations", "1000000", "--json", "--method", "sirt"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert '"progress"' in process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=120)
+    assert process.returncode == 130, err
+    assert "Traceback" not in err
+    assert (tmp_path / "a.zarr.partial").is_dir()
+
+
+BAD = [
+    ("solve", "{none}", "-o", "{tmp}/a.zarr"),
+    ("solve", "{empty}", "-o", "{tmp}/a.zarr"),
+    ("solve", "{frames}", "-o", "{tmp}/a.xyz"),
+    ("solve", "{frames}", "-o", "{tmp}/missing/a.zarr"),
+    ("solve", "{frames}", "-o", "{frames}/1.png"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "0"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "-3"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "six"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--shape", "6,6,6"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--shape", "6,6"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "-1"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "nan"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--frame-width", "3"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles", "0,1,2"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles", "0,1,2,360"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles", "0,1,2,nan"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles", "0,1,2,x"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--elevation", "90"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--elevation", "-90"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--span", "0"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--method", "magic"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--fit", "squeeze"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "0"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--iterations", "0"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "-2"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "4000"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "1e300"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-max", "0.5"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp", "fixed", "--lamp-max", "4"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp", "per-view", "--lamp-power", "4"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp", "per-view", "--method", "cgls"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--frame-width", "1e308"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "1e-300"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "nan"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "60"),
+    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "nan"),
+    ("solve", "{frames}"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--stops", "--angles", "5"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles", "5", "--count", "3"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--from", "5", "--to", "5"),
+    ("trace", "carousel", "-o", "{tmp}/a", "--frames", "1000000", "--size", "640x480"),
+    ("play", "{none}", "-o", "{tmp}/a.mp4"),
+    ("play", "{frames}", "-o", "{tmp}/a.mp4"),
+    ("play", "{cube}", "-o", "{tmp}/a.doc"),
+    ("play", "{cube}", "-o", "{cube}"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles", "nan"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles", ""),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--count", "0"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--from", "inf"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--scale", "0"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--fps", "0"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--target"),
+    ("score", "{cube}"),
+    ("score", "{cube}", "{frames}"),
+    ("score", "{cube}", "--sheet", "{cube}"),
+    ("score", "{cube}", "--sheet", "{tmp}/a.png", "--plot", "{tmp}/a.png"),
+    ("info", "{none}"),
+    ("info", "{frames}/1.png"),
+    ("publish", "{cube}"),
+    ("merge", "{cube}"),
+    ("merge", "{none}.zarr.partial"),
+    ("trace", "{none}", "-o", "{tmp}/a"),
+    ("trace", "carousel", "-o", "{tmp}/a", "--size", "64"),
+    ("trace", "carousel", "-o", "{tmp}/a", "--frames", "0"),
+    ("trace", "carousel", "-o", "{tmp}/a", "--elevation", "90"),
+    ("trace", "carousel", "-o", "{tmp}/a.what"),
+    ("juggle",),
+    ("info", "{cube}", "--magic"),
+]
+
+
+@pytest.mark.parametrize("arguments", BAD, ids=lambda a: " ".join(a))
+def test_bad_input_is_one_sentence_and_exit_code_2(  # type: ignore[no-untyped-def]
+    run, frames: Path, cube: Path, tmp_path: Path, arguments: tuple[str, ...]
+) -> None:
+    (tmp_path / "empty").mkdir()
+    before = sorted(tmp_path.rglob("*"))
+    places = {"tmp": tmp_path, "none": tmp_path / "none", "empty": tmp_path / "empty", "frames": frames, "cube": cube}
+    done = run(*[argument.format(**places) for argument in arguments])
+    assert done.code == 2, done.err
+    sentences = [line for line in done.lines if line.startswith("lightcube: ")]
+    assert len(sentences) == 1
+    assert len(sentences[0]) > 20
+    assert "Traceback" not in done.err
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_an_old_partial_outlives_options_that_are_refused(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    kept = tmp_path / "a.zarr.partial" / "unit-0.npz"
+    kept.parent.mkdir()
+    kept.write_bytes(b"")
+    out = tmp_path / "a.zarr"
+    for options in (("--method", "magic"), ("--n", 0), ("--lamp-power", -1), ("--frame-width", 9)):
+        assert run("solve", frames, "-o", out, "--overwrite", *options).code == 2
+    assert run("solve", tmp_path / "none", "-o", out, "--overwrite").code == 2
+    assert kept.exists()
+
+
+def test_what_is_no_partial_is_never_touched(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    other = tmp_path / "a.zarr.partial"
+    other.mkdir()
+    (other / "mine.txt").write_text("dear diary")
+    refused = run("solve", frames, "-o", tmp_path / "a.zarr", "--n", 6, "--overwrite")
+    assert refused.code == 2
+    assert "is none" in refused.err
+    assert (other / "mine.txt").exists()
+
+
+def test_names_with_brackets_and_letters_a_terminal_lacks(frames: Path, tmp_path: Path) -> None:
+    (frames / "views.toml").write_text('names = ["[/a]", "[red]b", "\u2603", ":cat:"]\n')
+    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()"]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    arguments = ["solve", str(frames), "-o", str(tmp_path / "a.npz"), "--n", "6", "--method", "gauss-seidel"]
+    solved = subprocess.run([*command, *arguments], capture_output=True, text=True, env=environment)
+    assert solved.returncode == 0, solved.stderr
+    told = subprocess.run([*command, "score", str(tmp_path / "a.npz")], capture_output=True, text=True, env=environment)
+    assert told.returncode == 0, told.stderr
+    assert "[/a]" in told.stdout
+    assert ":cat:" in told.stdout
+
+
+def test_score_remembers_how_pictures_were_fitted(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    Image.new("RGB", (12, 6), (200, 180, 160)).save(frames / "4.png")
+    run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 30, "--fit", "pad", "--json")
+    again = json.loads(run("score", tmp_path / "a.npz", frames, "--json").out)
+    assert again["psnr_mean"] == pytest.approx(load(tmp_path / "a.npz").scores["psnr_mean"])
+    (frames / "views.toml").write_text("angles = [1, 2, 3, 4]\n")
+    assert "other angles" in run("score", tmp_path / "a.npz", frames).err
+
+
+def test_warnings_are_notes(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    Image.new("RGBA", (6, 6), (255, 0, 0, 128)).save(frames / "4.png")
+    level = ["--elevation", 0, "--angles", "10,50,100,190"]
+    done = run("solve", frames, "-o", tmp_path / "a.zarr", "--n", 6, "--iterations", 2, *level)
+    notes = [line for line in done.lines if line.startswith("note: ")]
+    assert len(notes) == 1
+    assert "transparent" in notes[0]
+    assert "mirror images" in done.err
+
+
+def test_help_names_every_command() -> None:
+    environment = {**os.environ, "COLUMNS": "100"}
+    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", "--help"]
+    text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
+    for name in ("trace", "solve", "play", "score", "info", "publish", "merge", "demo", "check"):
+        assert name in text

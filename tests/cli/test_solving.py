@@ -1,0 +1,198 @@
+"""`check` and what `solve` decides by itself: the paper's set-up, order, shift, quality, advice."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from lightcube import load, score
+from lightcube.backward.recipe import QUALITIES
+from lightcube.errors import InputError
+from lightcube.forward.casting import play
+from lightcube.forward.turning import views_at
+from lightcube.verbs import solving
+from lightcube.verbs.options import Options
+from tests.cli.test_cli import frames, run
+
+__all__ = ["frames", "run"]
+
+
+@pytest.fixture
+def unlike(tmp_path: Path) -> Path:
+    """Six pictures of 8 x 6 pixels, alike in pairs that do not stand together."""
+    folder = tmp_path / "unlike"
+    folder.mkdir()
+    random = np.random.default_rng(6)
+    grounds = random.uniform(30, 250, (3, 6, 8, 3))
+    for index in range(6):
+        noise = random.uniform(-5, 5, (6, 8, 3))
+        Image.fromarray((grounds[index % 3] + noise).clip(0, 255).astype(np.uint8)).save(folder / f"p{index}.png")
+    return folder
+
+
+def test_check_says_what_to_expect_in_words_and_json(run, frames: Path) -> None:  # type: ignore[no-untyped-def]
+    told = run("check", frames, "--n", 8)
+    assert told.code == 0
+    for word in ("expected", "load", "mirrored pairs", "row conflicts", "cube of 8 x 8 x 8"):
+        assert word in told.out, word
+    facts = json.loads(run("check", frames, "--n", 8, "--json").out)
+    assert facts["pictures"] == 4
+    assert facts["elevation"] == 35
+    assert len(facts["predicted"]["views"]) == 4
+    assert sorted(facts["order"]["best"]) == [0, 1, 2, 3]
+    assert facts["voxels"] == [8, 8, 8]
+
+
+def test_check_and_solve_agree(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    facts = json.loads(run("check", frames, "--n", 8, "--json").out)
+    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 8, "--iterations", 3, "--json")
+    result = json.loads(done.out.strip().splitlines()[-1])
+    assert result["predicted"] == facts["predicted"]
+    cube = load(tmp_path / "a.npz")
+    assert list(cube.grid.shape) == facts["voxels"]
+    assert cube.hold_deg == pytest.approx(facts["hold"])
+    assert {"objective", "lower_bound"} <= set(result["optimality"])
+    assert result["optimality"]["lower_bound"] <= result["optimality"]["objective"] * (1 + 1e-6)
+
+
+def test_paper_is_the_papers_set_up(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    assert run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 2, "--paper").code == 0
+    cube = load(tmp_path / "a.npz")
+    assert np.all(cube.views.elevations == 0)
+    assert np.all(cube.powers == 1)
+    assert cube.views.picture_shape == (6, 6)
+    assert np.allclose(cube.views.angles, [22.5, 67.5, 112.5, 157.5])
+    assert cube.hold_deg == 0
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        ("--elevation", "35"),
+        ("--span", "360"),
+        ("--angles", "0,1,2,3"),
+        ("--frame-width", "0.5"),
+        ("--lamp", "global"),
+        ("--lamp-power", "2"),
+        ("--lamp-max", "4"),
+        ("--hold", "1"),
+    ],
+)
+def test_paper_with_what_contradicts_it_is_refused(run, frames: Path, tmp_path: Path, option: tuple[str, str]) -> None:  # type: ignore[no-untyped-def]
+    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--paper", *option)
+    assert done.code == 2
+    assert option[0] in done.err
+    assert len(done.lines) == 1
+    assert not list(tmp_path.glob("a*"))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--quality", "draft", "--iterations", "5"),
+        ("--quality", "best", "--method", "cgls"),
+        ("--quality", "superb"),
+        ("--order", "random"),
+        ("--shift", "-1"),
+        ("--black", "1"),
+        ("--black", "-0.5"),
+        ("--frame-width", "0"),
+        ("--frame-width", "1.9"),
+        ("--lamp", "coarse", "--lamp-power", "3"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence(run, frames: Path, tmp_path: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
+    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, *options)
+    assert done.code == 2
+    assert len(done.lines) == 1, done.err
+    assert "Traceback" not in done.err
+    assert not list(tmp_path.glob("a*"))
+
+
+def test_the_best_order_is_kept_by_name(run, unlike: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    """Names follow their pictures, stops stay, and `score` finds the pictures again."""
+    done = run("solve", unlike, "-o", tmp_path / "a.npz", "--n", 10, "--iterations", 20, "--order", "best", "--json")
+    assert done.code == 0
+    cube = load(tmp_path / "a.npz")
+    order = cube.provenance["order"]
+    assert cube.names == tuple(f"p{index}" for index in order)
+    assert np.all(np.diff(cube.views.angles) > 0)
+    again = json.loads(run("score", tmp_path / "a.npz", unlike, "--json").out)
+    assert again["psnr_mean"] == pytest.approx(cube.scores["psnr_mean"], abs=0.01)
+    for own, float_target in zip(score(cube)["views"], cube.scores["views"], strict=True):  # 8 bits tell to 59 dB
+        assert min(own["psnr"], 45) == pytest.approx(min(float_target["psnr"], 45), abs=0.5)
+
+
+def test_shifted_pictures_are_where_they_were_put(run, unlike: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("solve", unlike, "-o", tmp_path / "a.zarr", "--n", 12, "--iterations", 5, "--shift", 2, "--hold", 0)
+    assert done.code == 0
+    cube = load(tmp_path / "a.zarr")
+    assert cube.provenance["shift"] == 2
+    assert len(np.unique(np.round(cube.views.origins[:, 2], 6))) > 1
+    assert np.allclose(views_at(cube, cube.views.angles).origins, cube.views.origins, atol=1e-6)
+    assert np.allclose(play(cube), play(cube, cube.views.angles), rtol=1e-4, atol=1e-5)
+
+
+def test_poor_pictures_come_with_what_would_help(run, unlike: Path) -> None:  # type: ignore[no-untyped-def]
+    told = run("check", unlike, "--n", 12, "--frame-width", 1.2, "--lamp-max", 1)
+    assert told.code == 0
+    assert "--frame-width" in told.out
+    assert "--lamp-max 16:" in told.out
+    assert "3 of the pictures" in told.out
+
+
+@pytest.mark.parametrize("quality", ["draft", "normal", "best"])
+def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, quality: str) -> None:  # type: ignore[no-untyped-def]
+    options = ["--n", 8, "--frame-width", 1, "--lamp-max", 1, "--quality", quality, "--json", "--hold", 0]
+    done = run("solve", unlike, "-o", tmp_path / "a.npz", *options)
+    result = json.loads(done.out.strip().splitlines()[-1])
+    assert 0 < result["iterations"] <= QUALITIES[quality][0]  # type: ignore[index]
+
+
+def test_options_are_settled_before_anything_is_read() -> None:
+    with pytest.raises(InputError, match="--paper"):
+        solving.settled(Options(paper=True, hold=1.0))
+    assert solving.settled(Options(method="cgls")).lamp == "fixed"
+    assert solving.settled(Options()).power == 16
+    assert solving.settled(Options(paper=True)).power == 1
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--lamp-power", "0.5"),
+        ("--frame-width", "1", "--elevation", "0", "--lamp-max", "1e5"),
+        ("--black", "0.4"),
+        ("--lamp", "coarse", "--max-extinction", "0.5"),
+        ("--elevation", "-20", "--order", "best", "--shift", "1"),
+    ],
+)
+def test_odd_but_possible_options_work(run, unlike: Path, tmp_path: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
+    done = run("solve", unlike, "-o", tmp_path / "a.npz", "--n", 10, "--iterations", 2, *options)
+    assert done.code == 0, done.err
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--frame-width", "0", "--elevation", "0"),
+        ("--frame-width", "nan", "--elevation", "0"),
+        ("--paper", "--n", "0"),
+        ("--paper", "--n", "6", "--shape", "6,6,6"),
+        ("--paper", "--shift", "2"),
+    ],
+)
+def test_what_is_wrong_with_a_level_lamp_is_said_too(run, frames: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
+    done = run("check", frames, *options)
+    assert done.code == 2
+    assert len(done.lines) == 1
+
+
+def test_black_is_part_of_the_prediction(run, unlike: Path) -> None:  # type: ignore[no-untyped-def]
+    plain, grey = (
+        json.loads(run("check", unlike, "--n", 10, "--json", "--frame-width", 0.5, *more).out)["predicted"]["psnr_mean"]
+        for more in ((), ("--black", 0.5))
+    )
+    assert grey < plain - 3

@@ -1,0 +1,216 @@
+"""The command line with a stage: check, draw, solve, play, score, and what cannot be."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from lightcube.jobs.cubes import load
+from tests.cli.test_cli import run
+
+__all__ = ["run"]
+
+STAGE = """
+[cube]
+shape = [4, 6, 5]
+size_mm = 60
+
+[turntable]
+stops = [10, 130]
+
+[[lamp]]
+name = "sun"
+direction = [1, 0, -0.4]
+
+[[lamp]]
+name = "bulb"
+position = [-20, -150, 30]
+
+[[screen]]
+name = "wall"
+centre = [90, 0, -36]
+normal = [-1, 0, 0]
+size_mm = [40, 50]
+
+[[screen]]
+name = "side"
+centre = [0, 90, 0]
+size_mm = [60, 70]
+
+[[picture]]
+file = "pictures"
+screen = "wall"
+lamps = ["sun"]
+
+[[picture]]
+file = "pictures/a.png"
+screen = "side"
+lamps = ["bulb"]
+"""
+
+
+@pytest.fixture
+def stage(tmp_path: Path) -> Path:
+    """A stage of three pictures on two screens."""
+    random = np.random.default_rng(0)
+    (tmp_path / "pictures").mkdir()
+    for name in ("a", "b"):
+        Image.fromarray(random.integers(60, 255, (7, 9, 3)).astype(np.uint8)).save(tmp_path / f"pictures/{name}.png")
+    path = tmp_path / "room.toml"
+    path.write_text(STAGE)
+    return path
+
+
+def solved(run, stage: Path, *more: str) -> Path:  # type: ignore[no-untyped-def]
+    cube = stage.parent / "cube.zarr"
+    done = run("solve", stage, "-o", cube, "--iterations", "5", "--overwrite", *more)
+    assert done.code == 0, done.err
+    return cube
+
+
+def test_a_stage_goes_through_all_commands(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    cube = solved(run, stage)
+    made = load(cube)
+    assert made.lighting is not None
+    assert (made.lighting.screen_names, len(made.names), made.extinction.shape) == (("wall", "side"), 3, (3, 4, 6, 5))
+    assert made.names == ("a on wall", "b", "a on side")
+    own, given = (json.loads(run("score", cube, *more, "--json").out) for more in ((), (stage,)))
+    assert own["psnr_mean"] == pytest.approx(given["psnr_mean"], abs=0.2)
+    assert [view["angle"] for view in given["views"]] == [10, 130, 10]
+    assert "bulb" in run("info", cube).out
+    assert run("check", stage).out == run("stage", "check", stage).out
+
+
+@pytest.mark.parametrize(
+    ("options", "count", "shape"),
+    [
+        (["--stops"], 3, (7, 6)),
+        (["--stops", "--screens"], 2, (6, 3 + 2 + 5)),
+        (["--angles", "0,50,90"], 3, (6, 3 + 2 + 5)),
+        (["--angles", "0,50", "--pixel-samples", "2"], 2, (6, 10)),
+        (["--angles", "10,20", "--room"], 2, (540, 960)),
+    ],
+)
+def test_play_shows_screens_and_the_room(run, stage: Path, options: list[str], count: int, shape) -> None:  # type: ignore[no-untyped-def]
+    out = stage.parent / "shown.npy"
+    done = run("play", solved(run, stage), "-o", out, *options)
+    assert done.code == 0, done.err
+    shown = np.load(out)
+    assert shown.shape[0] == count
+    assert np.all(np.isfinite(shown))
+
+
+def test_a_still_is_a_png(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    cube, out = solved(run, stage), stage.parent / "still.png"
+    assert run("play", cube, "-o", out, "--angles", "10").code == 0
+    with Image.open(out) as still:
+        assert still.format == "PNG"
+    done = run("play", cube, "-o", stage.parent / "two.png", "--angles", "10,20")
+    assert done.code == 2
+    assert "holds one picture, not 2" in done.err
+
+
+def test_a_drawing_is_an_svg_that_is_not_overwritten(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    out = stage.parent / "room.svg"
+    assert run("stage", "draw", stage, "-o", out).code == 0
+    assert out.read_text().startswith("<svg")
+    assert run("stage", "draw", stage, "-o", out).code == 2
+    assert run("stage", "draw", stage, "-o", stage.parent / "room.bmp").code == 2
+
+
+def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    cube = solved(run, stage, "--pixel-samples", "2")
+    assert len(load(cube).views) == 4 * 3
+    done = run("play", cube, "-o", stage.parent / "x.npy", "--pixel-samples", "2")
+    assert done.code == 2
+    assert "played so" in done.err
+    assert run("score", cube, stage).code == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--n", "8"], "--n is not for a stage"),
+        (["--elevation", "0"], "--elevation is not for a stage"),
+        (["--lamp-max", "4"], "--lamp-max is not for a stage"),
+        (["--lamp", "fixed"], "--lamp fixed"),
+        (["--paper"], "--paper is not for a stage"),
+        (["--method", "sirt"], "cannot choose the power of lamp 'sun'"),
+        (["--quality", "best", "--iterations", "3"], "--quality and --iterations both"),
+        (["--hold", "90"], "wider than half the way"),
+        (["--lamp-samples", "0"], "lamp-samples"),
+    ],
+)
+def test_options_that_contradict_a_stage_are_refused(run, stage: Path, options: list[str], said: str) -> None:  # type: ignore[no-untyped-def]
+    done = run("solve", stage, "-o", stage.parent / "cube.zarr", *options)
+    assert (done.code, done.out) == (2, "")
+    assert said in done.err
+    assert not list(stage.parent.glob("cube*"))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("direction = [1, 0, -0.4]", "direction = [0, 1, 0]", "edge-on"),
+        ("direction = [1, 0, -0.4]", "direction = [-1, 0, -0.4]", "'sun'"),
+        ("position = [-20, -150, 30]", "position = [0, 0, 3]", "'bulb'"),
+        ("centre = [90, 0, -36]", "centre = [90, 400, -36]", "miss"),
+        ('lamps = ["bulb"]', 'lamps = ["moon"]', "'moon'"),
+        ("size_mm = [40, 50]", "size_mm = [0, 50]", "'wall'"),
+        ('name = "bulb"', 'name = "sun"', "two lamps called 'sun'"),
+        ('"pictures/a.png"', '"pictures/c.png"', "c.png"),
+    ],
+)
+def test_what_cannot_be_is_said_by_check_and_solve(run, stage: Path, old: str, new: str, said: str) -> None:  # type: ignore[no-untyped-def]
+    assert old in STAGE
+    stage.write_text(STAGE.replace(old, new, 1))
+    for command in (["stage", "check", stage], ["check", stage], ["solve", stage, "-o", stage.parent / "cube.zarr"]):
+        done = run(*command)
+        assert done.code == 2
+        assert said in done.err
+        assert "Traceback" not in done.err
+    assert not (stage.parent / "cube.zarr").exists()
+
+
+def test_a_turntables_cube_is_no_stages(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    folder = stage.parent / "pictures"
+    cube = stage.parent / "turntable.zarr"
+    done = run("solve", folder, "-o", cube, "--shape", "4,6,5", "--iterations", "2", "--frame-width", "0.5")
+    assert done.code == 0, done.err
+    for options, said in (
+        (["--screens"], "not made on a stage"),
+        (["--lamp-samples", "2"], "not made on a stage"),
+        (["--room", "--target"], "--room shows all"),
+    ):
+        done = run("play", cube, "-o", stage.parent / "x.npy", *options)
+        assert done.code == 2
+        assert said in done.err
+    assert run("play", cube, "-o", stage.parent / "room.npy", "--room", "--angles", "5").code == 0
+    done = run("score", cube, stage)
+    assert done.code == 2
+    assert "was not made on the stage" in done.err
+
+
+def test_a_lamps_size_that_is_not_minded_is_said(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    stage.write_text(STAGE.replace('name = "sun"', 'name = "sun"\nsize_deg = 2'))
+    for more, said in (((), True), (("--lamp-samples", "2"), False)):
+        done = run("solve", stage, "-o", stage.parent / "cube.zarr", "--iterations", "2", "--overwrite", *more)
+        assert done.code == 0, done.err
+        assert ("size of lamp 'sun' is not minded" in done.err) is said
+
+
+def test_a_cube_before_which_nothing_turns_is_played_once(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    still = STAGE.replace("size_mm = 60\n", "size_mm = 60\nturns = false\n").replace(
+        "stops = [10, 130]", "stops = [10]"
+    )
+    stage.write_text(still.replace('"pictures"', '"pictures/b.png"'))
+    assert run("play", solved(run, stage), "-o", stage.parent / "x.npy", "--screens").code == 0
+    assert len(np.load(stage.parent / "x.npy")) == 1
+
+
+def test_pictures_alone_do_not_say_how_a_stage_is_lit(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("score", solved(run, stage), stage.parent / "pictures")
+    assert done.code == 2
+    assert "made on a stage: give its file" in done.err

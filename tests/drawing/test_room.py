@@ -1,0 +1,233 @@
+"""Laws of the room's picture: what is seen where, and what the cube's glass does to it."""
+
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from lightcube.drawing.camera import Camera, fitting
+from lightcube.drawing.room import camera_for, room_picture, room_player
+from lightcube.drawing.standing import extent, standing
+from lightcube.errors import InputError
+from lightcube.forward.casting import play
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.views import turntable
+
+Array = NDArray[np.floating[Any]]
+GRID = Grid((3, 5, 4), 4.0)
+UP = (0.0, 0.0, 1.0)
+STAGES: tuple[dict[str, Any], ...] = ({"cube_turns": True}, {"cube_turns": False})
+
+
+def cube_on(stage: Stage, extinction: Array | None = None) -> Cube:
+    views, lighting = exposures(stage)
+    given = np.random.default_rng(5).uniform(0, 0.08, (3, *stage.grid.shape)) if extinction is None else extinction
+    return Cube(given.astype(np.float32), stage.grid, views, lighting=lighting)
+
+
+def one(screen: Screen, lamp: Lamp, **table: Any) -> Stage:
+    return Stage(GRID, (lamp,), (screen,), (Shot("a", screen.name, (lamp.name,)),), **table)
+
+
+def homogeneous(*extinction: float) -> Array:
+    return np.ones((3, *GRID.shape)) * np.array(extinction)[:, None, None, None]
+
+
+def chords(camera: Camera, turn: Array) -> Array:
+    """Length of each pixel's ray within the cube, ``(row, column)``, from the definition."""
+    rows, columns = camera.size
+    right, up, ahead = camera.axes
+    half = np.array(GRID.size_mm[::-1]) / 2
+    across, above = camera.spread
+    lengths = np.zeros(camera.size)
+    for row, column in np.ndindex(rows, columns):
+        way = ahead + (2 * (column + 0.5) / columns - 1) * across * right + (1 - 2 * (row + 0.5) / rows) * above * up
+        ends = (np.array([-half, half]) - np.array(camera.eye) @ turn) / (way @ turn)
+        stretch = ends.max(axis=0).min() - max(ends.min(axis=0).max(), 0)
+        lengths[row, column] = max(stretch, 0) * np.linalg.norm(way)
+    return lengths
+
+
+@pytest.mark.parametrize(("rear", "eye", "angle"), [(False, 40.0, 0.0), (False, 40.0, 35.0), (True, 170.0, 35.0)])
+@pytest.mark.parametrize("table", STAGES)
+def test_a_screen_seen_head_on_shows_its_picture(rear: bool, eye: float, angle: float, table: dict[str, Any]) -> None:
+    size, pitch = 5, 2.0
+    cube = cube_on(
+        one(Screen("wall", (100, 3, 2), (28, 20), pitch, (-1, 0, 0), rear=rear), Lamp("sun", (1, 0.1, 0.05)), **table)
+    )
+    wanted = play(cube, [angle])[0]
+    rows, columns = wanted.shape[:2]
+    field = np.degrees(2 * np.arctan(columns * pitch / 2 / abs(100 - eye)))
+    camera = Camera((eye, 3, 2), (100, 3, 2), UP, field, (rows * size, columns * size))
+    seen = room_picture(cube, angle, camera)[size // 2 :: size, size // 2 :: size]
+    assert np.ptp(wanted) > 0.3
+    np.testing.assert_allclose(seen[1:-1, 1:-1], wanted[1:-1, 1:-1], atol=0.025)
+
+
+@pytest.mark.parametrize("angle", [0.0, 25.0])
+def test_the_cube_dims_a_white_screen_behind_it_along_each_chord(angle: float) -> None:
+    stage = one(Screen("wall", (60, 0, 0), (90, 80), 10.0, (-1, 0, 0)), Lamp("sun", (0.1, 1, 0)))
+    camera = Camera((-50, 9, 14), (0, 0, 0), UP, 30.0, (60, 72))
+    clear, dim = (
+        room_picture(cube_on(stage, homogeneous(*each)), angle, camera) for each in ((0, 0, 0), (0.02, 0.05, 0.1))
+    )
+    lengths = chords(camera, standing(cube_on(stage), angle).turn)
+    white = np.all(clear == 1, axis=2)  # elsewhere are edges, the table and the lamp
+    assert np.sum(white & (lengths > 5)) > 700
+    assert np.mean(white[lengths > 0]) > 0.4
+    expected = np.exp(-lengths[..., None] * (0.02, 0.05, 0.1))
+    np.testing.assert_allclose(dim[white], expected[white], rtol=1e-4)
+
+
+def test_what_stands_before_the_cube_is_not_dimmed() -> None:
+    stage = one(Screen("card", (-20, 2, 1), (6, 6), 1.0, (-1, 0, 0)), Lamp("sun", (0, 1, 0)))
+    camera = Camera((-60, 0, 0), (0, 0, 0), UP, 22.0, (48, 64))
+    seen = room_picture(cube_on(stage, homogeneous(9, 9, 9)), 0.0, camera)
+    centre = camera.size[1] / 2 / camera.spread[0] / 40  # pixels per mm, where the card stands
+    rows, columns = (
+        (np.arange(size) + 0.5 - size / 2) / centre - off for size, off in zip(camera.size, (-1, -2), strict=True)
+    )
+    card = (np.abs(rows)[:, None] < 2.4) & (np.abs(columns) < 2.4)
+    assert np.sum(card) > 60
+    np.testing.assert_allclose(seen[card], 1)
+    beside = chords(camera, np.eye(3)) > 5
+    assert np.median(seen[beside & ~((np.abs(rows)[:, None] < 4) & (np.abs(columns) < 4))]) < 1e-3
+
+
+def test_the_back_of_a_screen_is_one_grey() -> None:
+    stage = one(Screen("wall", (40, 0, 0), (30, 30), 3.0, (-1, 0, 0)), Lamp("sun", (1, 0, 0)))
+    seen = room_picture(cube_on(stage), 0.0, Camera((90, 0, 0), (40, 0, 0), UP, 25.0, (12, 14)))
+    assert np.ptp(seen, axis=(0, 1)).max() == 0
+    assert seen.max() < 0.2
+
+
+@pytest.mark.parametrize("channels", [1, 3])
+def test_a_whole_turn_changes_nothing(channels: int) -> None:
+    views = turntable(GRID, [20.0, 100.0], elevation=20.0, picture_shape=(3, 5))
+    extinction = np.random.default_rng(1).uniform(0, 0.1, (channels, *GRID.shape)).astype(np.float32)
+    cube = Cube(extinction, GRID, views)
+    show = room_player(cube, camera_for(cube, (27, 40)))
+    first, after, other = (show(angle) for angle in (33.0, 393.0, 70.0))
+    np.testing.assert_allclose(first, after, atol=1e-3)
+    assert np.abs(first - other).max() > 0.1
+    assert first.shape == (27, 40, 3)
+    assert first.dtype == np.float32
+
+
+@pytest.mark.parametrize("table", STAGES)
+@pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])
+def test_the_table_carries_what_turns_and_nothing_else(table: dict[str, Any], axis: tuple[float, float, float]) -> None:
+    lamps = Lamp("fixed", position=(-50, 10, 5)), Lamp("carried", position=(-40, 20, 9), turns=True)
+    screens = Screen("fixed", (60, 0, 9), (20, 16), 4.0), Screen("carried", (0, 55, 0), (12, 20), 4.0, turns=True)
+    shots = tuple(Shot(screen.name, screen.name, ("fixed", "carried")) for screen in screens)
+    cube = cube_on(Stage(GRID, lamps, screens, shots, axis=axis, **table))
+    start, later = standing(cube, 0.0), standing(cube, 90.0)
+    quarter = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]]) if axis[2] else np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    np.testing.assert_allclose(later.turn, quarter if table["cube_turns"] else np.eye(3), atol=1e-12)
+    for place, moved in (
+        *((start.screens[i].corners, later.screens[i].corners) for i in (0, 1)),
+        *((start.lamps[i].place, later.lamps[i].place) for i in (0, 1)),
+    ):
+        carried = np.allclose(moved, place @ quarter.T)
+        assert carried != np.allclose(moved, place)
+    assert np.allclose(later.screens[0].corners, start.screens[0].corners)
+    assert np.allclose(later.lamps[0].place, (-50, 10, 5))
+    assert np.allclose(start.screens[0].corners.mean(axis=0), (60, 0, 9))
+
+
+def test_a_turntable_s_screen_stands_still_where_the_beam_through_the_cube_s_middle_lands() -> None:
+    cube = Cube(homogeneous(0.1, 0.1, 0.1), GRID, turntable(GRID, [20.0, 100.0], elevation=30.0, picture_shape=(3, 5)))
+    for angle in (0.0, 20.0, 77.0):
+        room = standing(cube, angle)
+        wide = GRID.size_mm[1]
+        middle = room.screens[0].corners.mean(axis=0)
+        np.testing.assert_allclose(middle, (1.5 * wide, 0, -1.5 * wide / np.sqrt(3)), atol=1e-9)
+        np.testing.assert_allclose(room.screens[0].facing, (-1, 0, 0), atol=1e-12)
+        np.testing.assert_allclose(np.cross(room.lamps[0].place, middle), 0, atol=1e-9)
+        assert room.lamps[0].place[2] > 0
+
+
+@pytest.mark.parametrize("table", STAGES)
+@pytest.mark.parametrize("size", [(30, 50), (50, 30)])
+def test_the_camera_sees_everything_at_every_angle(table: dict[str, Any], size: tuple[int, int]) -> None:
+    screens = Screen("wall", (60, 0, 9), (20, 16), 4.0), Screen("floor", (9, 60, -30), (30, 20), 4.0, turns=True)
+    shots = tuple(Shot(screen.name, screen.name, ("sun",)) for screen in screens)
+    cube = cube_on(Stage(GRID, (Lamp("sun", (1, 0, -1)),), screens, shots, stops=(0.0,), **table))
+    camera = camera_for(cube, size)
+    assert camera.eye[2] > 0
+    for angle in (0.0, 30.0, 180.0, 270.0):
+        right, up, ahead = camera.axes @ (extent(GRID, standing(cube, angle)) - camera.eye).T
+        assert np.all(ahead > 0)
+        assert np.all(np.abs(right / ahead) < camera.spread[0])
+        assert np.all(np.abs(up / ahead) < camera.spread[1])
+
+
+def test_the_camera_prefers_the_lit_side_past_the_cube() -> None:
+    cube = cube_on(one(Screen("wall", (25, 0, -4), (16, 8), 4.0, (-1, 0, 0)), Lamp("sun", (1, 0, 0))))
+    camera = camera_for(cube)
+    eye, room = np.array(camera.eye), standing(cube, 0.0)
+    assert eye[0] < 0
+    half = np.array(GRID.size_mm[::-1]) / 2
+    middle = room.screens[0].corners.mean(axis=0)
+    line = middle + np.linspace(0, 1, 400)[:, None] * (eye - middle)
+    assert not np.any(np.all(np.abs(line) < half, axis=1))
+
+
+@pytest.mark.parametrize("first", [0.0, 70.0, 190.0])
+def test_the_camera_faces_the_first_screen_of_a_lamp_that_circles(first: float) -> None:
+    lamp, wall = (
+        Lamp("sun", (1, 0, -0.2), turns=True),
+        Screen("wall", (25, 0, -4), (16, 8), 4.0, (-1, 0, 0), turns=True),
+    )
+    stops = tuple(np.arange(first, first + 360, 60))
+    shots = tuple(Shot(f"{stop}", "wall", ("sun",), i) for i, stop in enumerate(stops))
+    cube = cube_on(Stage(GRID, (lamp,), (wall,), shots, stops, cube_turns=False))
+    screen = standing(cube, float(np.unique(cube.angles)[0])).screens[0]
+    assert screen.facing @ (np.array(camera_for(cube).eye) - screen.corners.mean(axis=0)) > 0
+
+
+def test_a_screen_that_reaches_behind_the_eye_is_seen_as_far_as_it_lies_ahead() -> None:
+    stage = one(Screen("floor", (0, 0, -30), (400, 300), 10.0, (0, 0, 1)), Lamp("sun", (1, 0, 0)))
+    seen = room_picture(
+        cube_on(stage, homogeneous(0, 0, 0)), 0.0, Camera((-100, 0, 0), (0, 0, -20), UP, 50.0, (18, 24))
+    )
+    np.testing.assert_allclose(seen[-3:], 1)
+
+
+def test_fitting_leaves_the_margin_free_and_no_more() -> None:
+    points = np.array(list(product((-3, 5), (-2, 9), (0, 4))), float)
+    axes = Camera((9, 7, 5), (0, 0, 0), UP, 50.0, (30, 40)).axes
+    eye = fitting(points, axes, (0.4, 0.3), 0.1)
+    right, up, ahead = axes @ (points - eye).T
+    ends = np.array([(right / ahead).min(), (right / ahead).max(), (up / ahead).min(), (up / ahead).max()])
+    ends /= 0.8 * np.array([0.4, 0.4, 0.3, 0.3])
+    assert np.all(np.abs(ends) < 1 + 1e-9)
+    assert np.allclose(ends[:2], (-1, 1)) or np.allclose(ends[2:], (-1, 1))
+
+
+def test_a_lamp_that_is_off_and_one_behind_the_eye_do_no_harm() -> None:
+    lamps = Lamp("near", position=(-30, 0, 0)), Lamp("later", position=(0, -30, 0))
+    screen = Screen("wall", (40, 0, 0), (30, 30), 5.0)
+    stage = Stage(
+        GRID, lamps, (screen,), (Shot("a", "wall", ("near",)), Shot("b", "wall", ("later",), 1)), stops=(0.0, 90.0)
+    )
+    cube = cube_on(stage)
+    assert [float(lamp.light.max()) > 0 for lamp in standing(cube, 10.0).lamps] == [True, False]
+    assert [float(lamp.light.max()) > 0 for lamp in standing(cube, 80.0).lamps] == [False, True]
+    for eye in ((-20.0, 1.0, 2.0), (-90.0, -70.0, 30.0), (0.0, 0.0, 1.0)):
+        assert np.all(np.isfinite(room_picture(cube, 10.0, Camera(eye, (40, 0, 0), UP, 60.0, (9, 13)))))
+
+
+def test_cameras_that_see_nothing_are_refused() -> None:
+    for eye, up, field, size in (
+        ((0, 0, 0), UP, 40.0, (9, 9)),
+        ((0, 0, 5), UP, 40.0, (9, 9)),
+        ((5, 0, 0), UP, 180.0, (9, 9)),
+        ((5, 0, 0), UP, 40.0, (0, 9)),
+    ):
+        with pytest.raises(InputError, match="camera"):
+            Camera(eye, (0, 0, 0), up, field, size)

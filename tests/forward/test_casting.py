@@ -1,0 +1,277 @@
+"""Program 3 and the scores: what is cast, at the stops and between them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from skimage.color import deltaE_ciede2000, rgb2lab
+
+from lightcube.drawing.sheet import beside_targets, contact_sheet
+from lightcube.errors import InputError
+from lightcube.forward.casting import cast, play, player
+from lightcube.forward.turning import lamp_at, turn, views_at
+from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.transfer import encode
+from lightcube.optics.views import Views, turntable
+from lightcube.pictures.fitting import targets
+from lightcube.pictures.frames import Frames
+from lightcube.planning.consistency import mirror_conflicts
+from lightcube.projection.projector import Projector
+from lightcube.scoring.metrics import mean_psnr, psnr, score, ssim
+from tests.helpers import plain
+
+SHAPE = (3, 5, 7)
+
+
+def make_cube(angles: list[float], elevation: float = 0.0, powers: np.ndarray | None = None, **more: object) -> Cube:
+    grid = Grid(SHAPE, 0.5)
+    extinction = np.random.default_rng(0).random((3, *SHAPE)).astype(np.float32)
+    views = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
+    return Cube(extinction, grid, views, lamp_powers=powers, **more)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0, -20.0])
+def test_what_is_played_is_the_plain_forward_computation(elevation: float) -> None:
+    powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
+    cube = make_cube([10.0, 100.0], elevation, powers)
+    expected = np.exp(-plain.absorbance_pictures(cube.grid, cube.views, cube.extinction)) * powers[:, None, None, :]
+    assert np.allclose(play(cube), expected, rtol=1e-5)
+    assert np.allclose(play(cube, [10.0, 100.0]), expected, rtol=1e-5)
+
+
+def test_many_views_come_in_order_and_one_by_one() -> None:
+    cube = make_cube([10.0, 100.0])
+    angles = np.linspace(0, 360, 37)
+    one_by_one = np.stack([play(cube, [angle])[0] for angle in angles])
+    assert np.array_equal(play(cube, angles), one_by_one)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("whole_screen", [False, True])
+def test_a_player_shows_what_play_does_however_often_it_is_asked(elevation: float, whole_screen: bool) -> None:
+    powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
+    cube = make_cube([10.0, 100.0], elevation, powers)
+    show = player(cube, whole_screen=whole_screen)
+    angles = [3.0, 100.0, -77.7]
+    expected = play(cube, angles, whole_screen=whole_screen)
+    assert np.array_equal(show(angles), expected)
+    assert np.array_equal(np.concatenate([show(angle) for angle in angles]), expected)
+    assert np.array_equal(show(None), play(cube, whole_screen=whole_screen))
+
+
+def test_a_player_refuses_what_are_no_angles() -> None:
+    show = player(make_cube([10.0]))
+    with pytest.raises(InputError, match="angle number 2 is not a finite number"):
+        show([1.0, np.nan])
+    with pytest.raises(InputError, match="at least one"):
+        show([])
+
+
+@pytest.mark.parametrize(("elevation", "window"), [(0.0, (1, 36)), (35.0, (5, 34)), (0.0, None), (20.0, None)])
+def test_strips_of_beams_and_batches_leave_no_seam(elevation: float, window: tuple[int, int] | None) -> None:
+    """Few views, shared by strips, and more views than a batch: still the plain forward computation."""
+    grid = Grid((1, 30, 36), 0.5)
+    angles = np.linspace(1, 170, 2) if window else np.linspace(1, 170, 17)
+    extinction = np.random.default_rng(6).random((2, 1, 30, 36)).astype(np.float32)
+    views = turntable(grid, angles, elevation=elevation, picture_shape=window)
+    cube = Cube(extinction, grid, views, lamp_powers=np.random.default_rng(7).random((len(angles), 2)) + 0.5)
+    matrix = Projector(grid, views)
+    absorbance = matrix.forward(columns_from_volume(extinction).reshape(matrix.shape[1], -1))
+    block = absorbance.reshape(-1, views.picture_shape[0] * 2)
+    expected = np.exp(-pictures_from_columns(block, views.picture_shape, 2)) * cube.powers[:, None, None, :]
+    assert np.allclose(play(cube), expected, rtol=1e-5)
+
+
+def test_beams_that_miss_the_cube_show_the_lamp() -> None:
+    cube = make_cube([10.0], powers=np.array([[3.0, 2.0, 1.0]]))
+    whole = play(cube, [0.0], whole_screen=True)
+    assert np.allclose(whole[0, :, 0], [3.0, 2.0, 1.0])
+    window = play(cube, [0.0])
+    assert np.allclose(whole[0][:, 2:-2], window[0], rtol=1e-6)
+
+
+def test_the_whole_screen_at_the_stops_has_the_pictures_in_its_middle() -> None:
+    cube = make_cube([10.0, 77.0], 35.0)
+    whole, window = play(cube, whole_screen=True), play(cube)
+    top, left = ((big - small) // 2 for big, small in zip(whole.shape[1:3], window.shape[1:3], strict=True))
+    rows, columns = window.shape[1:3]
+    assert np.allclose(whole[:, top : top + rows, left : left + columns], window, rtol=1e-6)
+
+
+def test_the_lamp_is_linear_in_its_logarithm_and_periodic() -> None:
+    powers = np.array([[1.0] * 3, [4.0] * 3])
+    level = make_cube([0.0, 90.0], powers=powers)
+    assert lamp_at(level, [0, 90, 180, 270])[:, 0] == pytest.approx([1, 4, 1, 4])
+    assert lamp_at(level, [45, 135])[:, 0] == pytest.approx([2, 2])
+    assert lamp_at(level, [-315])[:, 0] == pytest.approx([2])
+    raised = make_cube([0.0, 90.0], 35.0, powers)
+    assert lamp_at(raised, [0, 90, 225])[:, 0] == pytest.approx([1, 4, 2])
+    opposite = make_cube([0.0, 180.0], 0.0, powers)
+    assert lamp_at(opposite, [180])[:, 0] == pytest.approx([4])
+
+
+def test_views_at_several_elevations_cannot_be_turned() -> None:
+    grid = Grid(SHAPE)
+    parts = [turntable(grid, [10], elevation=e, picture_shape=(3, 5)) for e in (0.0, 20.0)]
+    names = ("lamps", "origins", "column_steps", "row_steps")
+    views = Views(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names}, picture_shape=(3, 5))
+    cube = Cube(np.zeros((3, *SHAPE), np.float32), grid, views)
+    with pytest.raises(InputError, match="several elevations"):
+        views_at(cube, [0.0])
+    assert np.allclose(play(cube), 1)
+
+
+def test_psnr_is_its_definition_weighted_and_capped() -> None:
+    random = np.random.default_rng(1)
+    wanted, shown = random.random((2, 6, 4, 3))
+    weight = random.integers(0, 2, (6, 4)).astype(float)
+    squares = [np.mean((wanted[y, x] - shown[y, x]) ** 2) for y in range(6) for x in range(4) if weight[y, x]]
+    assert psnr(shown, wanted, weight) == pytest.approx(-10 * np.log10(np.mean(squares)))
+    assert psnr(wanted, wanted, weight) == 100
+    assert psnr(wanted + 1.0, wanted, weight) == pytest.approx(0)
+    one_level = psnr(wanted + 0.5 / 255 / np.sqrt(3) * 1.0, wanted, weight)
+    assert one_level == pytest.approx(58.9, abs=0.1)  # what rounding to 8 bits costs
+
+
+def test_ssim_is_1_for_the_same_picture_and_needs_3_pixels() -> None:
+    random = np.random.default_rng(2)
+    picture = random.random((9, 8, 3))
+    weight = np.ones((9, 8))
+    assert ssim(picture, picture, weight) == pytest.approx(1)
+    assert ssim(picture, random.random((9, 8, 3)), weight) < 0.5
+    assert np.isnan(ssim(picture[:2], picture[:2], weight[:2]))
+    assert ssim(picture[:4, :5], picture[:4, :5], weight[:4, :5]) == pytest.approx(1)
+
+
+def test_ssim_does_not_see_pixels_of_no_weight() -> None:
+    random = np.random.default_rng(5)
+    wanted = random.random((9, 8, 3))
+    weight = np.ones((9, 8))
+    weight[:, :3] = 0
+    spoiled = wanted.copy()
+    spoiled[:, :3] = random.random((9, 3, 3))
+    assert ssim(spoiled, wanted, weight) == pytest.approx(1)
+    spoiled[4, 5] = 1 - spoiled[4, 5]
+    assert ssim(spoiled, wanted, weight) < 0.99
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("count", [7, 24, 60])
+def test_a_turn_meets_every_stop_and_stays_even_elsewhere(elevation: float, count: int) -> None:
+    cube = make_cube([10.1, 77.3, 140.0], elevation)
+    angles = turn(cube, count)
+    even = np.arange(count) * 360 / count
+    assert np.all(np.diff(angles) > 0)
+    assert np.max(np.abs(angles - even)) <= 180 / count + 1e-9
+    for stop in cube.views.angles:
+        assert np.min(np.abs(angles - stop)) < 1e-9
+        assert (np.min(np.abs(angles - stop - 180)) < 1e-9) == (elevation == 0)
+    assert np.sum(np.abs(angles - even) > 1e-9) <= (6 if elevation == 0 else 3)
+    laps = turn(cube, 2 * count, 0.0, 720.0)
+    assert np.allclose(laps[count:], angles + 360)
+    back = turn(cube, count, 360.0, 0.0)
+    assert all(np.min(np.abs(np.remainder(back - stop + 180, 360) - 180)) < 1e-9 for stop in cube.views.angles)
+    part = turn(cube, 10, 0.0, 50.0)
+    assert part.min() >= -2.5
+    assert part.max() <= 50.0
+
+
+def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
+    powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
+    cube = make_cube([10.0, 100.0], 35.0, powers, names=("a", "b"))
+    shown = play(cube)
+    random = np.random.default_rng(3)
+    frames = Frames(
+        np.clip(shown * random.uniform(0.8, 1.1, shown.shape), 0, None).astype(np.float32),
+        cube.views,
+        random.integers(0, 2, shown.shape[:3]).astype(np.float32),
+        ("a", "b"),
+    )
+    scores = score(cube, frames)
+    for index, view in enumerate(scores["views"]):
+        pair = encode(shown[index]), encode(frames.pictures[index])
+        assert view["psnr"] == pytest.approx(psnr(*pair, frames.weight[index]), rel=1e-4)
+        difference = deltaE_ciede2000(rgb2lab(pair[0]), rgb2lab(pair[1]))
+        weight = frames.weight[index]
+        assert view["delta_e"] == pytest.approx(np.sum(difference * weight) / weight.sum(), rel=1e-3)
+        assert view["name"] == "ab"[index]
+    assert scores["psnr_mean"] == pytest.approx(np.mean([view["psnr"] for view in scores["views"]]))
+    assert scores["psnr_min"] == min(view["psnr"] for view in scores["views"])
+    assert mean_psnr(shown, frames) == pytest.approx(scores["psnr_mean"], rel=1e-4)
+    assert score(cube, Frames(shown, cube.views))["psnr_mean"] == 100
+
+
+def test_the_score_without_frames_is_against_the_8_bit_targets() -> None:
+    cube = make_cube([10.0, 100.0])
+    frames = Frames(np.clip(play(cube), 0, 1), cube.views)
+    with_targets = Cube(cube.extinction, cube.grid, cube.views, targets=targets(frames))
+    assert 55 < score(with_targets)["psnr_mean"] < 65
+    with pytest.raises(InputError, match="no targets"):
+        score(cube)
+    with pytest.raises(InputError, match="do not fit"):
+        score(cube, frames.take([0]))
+
+
+def test_mirror_conflicts_are_found_only_where_there_are_any() -> None:
+    grid = Grid(SHAPE)
+    random = np.random.default_rng(4)
+    for elevation, expected in ((0.0, [(0, 2)]), (35.0, [])):
+        views = turntable(grid, [10, 50, 190], elevation=elevation, picture_shape=(3, 5))
+        pictures = random.random((3, 3, 5, 3)).astype(np.float32)
+        assert mirror_conflicts(Frames(pictures, views)) == expected
+        pictures[2] = pictures[0][:, ::-1]
+        assert mirror_conflicts(Frames(pictures, views)) == []
+
+
+def test_contact_sheets_show_wanted_above_shown_above_difference() -> None:
+    cube = make_cube([10.0, 100.0])
+    shown = play(cube)
+    pictures = np.ones_like(shown)
+    sheet = contact_sheet(shown, Frames(pictures, cube.views), [1.0, 2.0])
+    assert sheet.ndim == 3
+    assert sheet.dtype == np.uint8
+    tile = 43 * 3  # 3 rows enlarged 43-fold
+    top = 8 + 16 + 32
+    assert np.all(sheet[top + 5, 12] == 255)
+    expected = np.rint(encode(shown[0, 0, 0]) * 255)
+    assert np.all(np.abs(sheet[top + tile + 2 + 5, 12].astype(int) - expected) <= 1)
+    many = Frames(np.ones((50, 3, 5, 3), np.float32), turntable(cube.grid, np.arange(50), picture_shape=(3, 5)))
+    assert contact_sheet(many.pictures, many, [1.0] * 50).shape[1] <= 1800 + 8
+
+
+def test_the_nearest_stop_stands_beside() -> None:
+    views = turntable(Grid(SHAPE), [10.0, 350.0], picture_shape=(3, 5))
+    pictures = np.stack([np.full((3, 5, 3), 0.25), np.full((3, 5, 3), 0.75)]).astype(np.float32)
+    frames = Frames(pictures, views)
+    shown = np.zeros((3, 3, 5, 3), np.float32)
+    beside = np.stack(list(beside_targets(shown, frames, np.array([1.0, 359.0, 181.0]))))
+    assert beside.shape == (3, 3, 12, 3)
+    assert [float(p[0, -1, 0]) for p in beside] == [0.25, 0.75, 0.75]
+
+
+def test_cast_is_lazy() -> None:
+    cube = make_cube([10.0, 100.0])
+    pictures = cast(cube, cube.views, cube.powers)
+    assert np.array_equal(next(pictures), play(cube)[0])
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_a_picture_that_stands_aside_is_shown_there(elevation: float) -> None:
+    """At and around each stop the window is where the stop's picture stands; level, half a turn on, mirrored."""
+    grid = Grid((5, 8, 6))
+    views = turntable(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 2))
+    offsets = np.array([[1, -1], [-1, 0]])
+    moved = replace(
+        views, origins=views.origins + offsets[:, :1] * views.column_steps + offsets[:, 1:] * views.row_steps
+    )
+    extinction = np.random.default_rng(5).random((3, 5, 8, 6)).astype(np.float32)
+    cube = Cube(extinction, grid, moved)
+    assert np.allclose(play(cube), play(cube, [20.0, 110.0]), atol=1e-6)
+    whole = play(cube, [20.3], whole_screen=True)[0]
+    rows, columns = whole.shape[0] // 2, whole.shape[1] // 2
+    window = whole[rows - 1 - 1 : rows + 2 - 1, columns - 1 + 1 : columns + 1 + 1]
+    assert np.allclose(play(cube, [20.3])[0], window, atol=1e-6)
+    if elevation == 0:
+        assert np.allclose(play(cube, [200.0])[0], play(cube, [20.0])[0][:, ::-1], atol=1e-6)

@@ -1,0 +1,359 @@
+"""Writing pictures: what comes back, and that files are whole or not there."""
+
+import errno
+import os
+import resource
+import signal
+import threading
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as st_numpy
+from numpy.typing import NDArray
+from PIL import Image
+
+from lightcube.errors import InputError
+from lightcube.io import ClippedPictures, check_pictures_target, read_pictures, write_pictures
+from lightcube.optics.grid import Grid
+from lightcube.optics.transfer import Transfer, from_uint8, to_uint8
+from lightcube.optics.views import Views, turntable
+
+RANDOM = np.random.default_rng(21)
+EXACT = (".webm", ".webp", ".apng", "")
+ALL = (*EXACT, ".mp4", ".gif", ".npy")
+Levels = NDArray[np.uint8]
+
+
+def levels(count: int = 4, rows: int = 5, columns: int = 7) -> Levels:
+    """Noise, in which the second picture is the first one again: encoders like to drop such pictures."""
+    noise = RANDOM.integers(0, 256, (count, rows, columns, 3), dtype=np.uint8)
+    noise[1] = noise[0]
+    return noise
+
+
+def smooth(count: int = 12, rows: int = 65, columns: int = 97) -> Levels:
+    """Pictures of more than 256 colours that change slowly in space and time."""
+    t, y, x = np.meshgrid(np.arange(count), np.arange(rows), np.arange(columns), indexing="ij")
+    waves = [np.sin(x / 17 + t / 3), np.cos(y / 11 - t / 4), np.sin((x + y) / 23 + t / 5)]
+    return np.rint(127.5 + 120 * np.stack(waves, axis=3)).astype(np.uint8)
+
+
+def views(count: int, elevation: float = 20.0) -> Views:
+    return turntable(Grid((5, 7, 7)), np.arange(count) * 31.7 + 350, elevation=elevation)
+
+
+def files_in(folder: Path) -> list[str]:
+    return sorted(item.name for item in folder.iterdir())
+
+
+def read_levels(path: Path) -> Levels:
+    return np.stack([to_uint8(image) for image in read_pictures(path).images])
+
+
+@pytest.mark.parametrize("suffix", EXACT)
+@pytest.mark.parametrize("shape", [(1, 1), (5, 7), (3, 16), (66, 33)])
+def test_lossless_kinds_come_back_exactly(tmp_path: Path, suffix: str, shape: tuple[int, int]) -> None:
+    wanted = levels(4, *shape)
+    path = tmp_path / f"a{suffix}"
+    assert write_pictures(path, from_uint8(wanted)) == path
+    np.testing.assert_array_equal(read_levels(path), wanted)
+    assert files_in(tmp_path) == [path.name]
+
+
+def test_a_gif_of_few_colours_comes_back_exactly(tmp_path: Path) -> None:
+    wanted = levels()
+    write_pictures(tmp_path / "a.gif", from_uint8(wanted))
+    np.testing.assert_array_equal(read_levels(tmp_path / "a.gif"), wanted)
+
+
+@pytest.mark.parametrize(("suffix", "least"), [(".mp4", 44.0), (".gif", 25.0)])
+def test_lossy_kinds_keep_the_colours(tmp_path: Path, suffix: str, least: float) -> None:
+    wanted = smooth()
+    write_pictures(tmp_path / f"a{suffix}", from_uint8(wanted))
+    error = read_levels(tmp_path / f"a{suffix}").astype(float) - wanted
+    assert error.shape == wanted.shape
+    assert 20 * np.log10(255 / np.sqrt(np.mean(error**2))) > least
+    np.testing.assert_allclose(error.mean(axis=(1, 2)), 0, atol=1.5)
+
+
+def test_an_mp4_keeps_the_colours_of_single_pixels(tmp_path: Path) -> None:
+    wanted = np.zeros((2, 16, 16, 3), np.uint8)
+    wanted[:, ::2, ::2] = 255, 0, 0
+    wanted[:, 1::2, 1::2] = 0, 0, 255
+    write_pictures(tmp_path / "a.mp4", from_uint8(wanted))
+    assert np.max(np.abs(read_levels(tmp_path / "a.mp4").astype(int) - wanted)) < 25
+
+
+def test_an_mp4_says_which_colours_it_means(tmp_path: Path) -> None:
+    write_pictures(tmp_path / "a.mp4", from_uint8(smooth(3)))
+    with av.open(str(tmp_path / "a.mp4")) as container:
+        context = container.streams.video[0].codec_context
+        assert context.name == "h264"
+        assert context.pix_fmt == "yuv444p"
+        assert (context.colorspace, context.color_primaries, context.color_trc, context.color_range) == (1, 1, 13, 1)
+
+
+@pytest.mark.parametrize("suffix", [".webm", ".webp", ".apng", ".mp4", ".gif"])
+@pytest.mark.parametrize("fps", [7.0, 30.0, 29.97])
+def test_movies_have_the_asked_speed(tmp_path: Path, suffix: str, fps: float) -> None:
+    path = tmp_path / f"a{suffix}"
+    write_pictures(path, from_uint8(levels(6)), fps=fps)
+    if suffix == ".webp":
+        with Image.open(path) as image:
+            delays = []
+            for index in range(6):
+                image.seek(index)
+                image.load()
+                delays.append(image.info["duration"])
+        times = np.cumsum([0, *delays[:-1]]) / 1000
+    else:
+        with av.open(str(path)) as container:
+            times = np.array([frame.time for frame in container.decode(video=0)], dtype=np.float64)
+    np.testing.assert_allclose(times - times[0], np.arange(6) / fps, atol=0.0051 if suffix == ".gif" else 0.0011)
+
+
+def test_a_gif_faster_than_browsers_play_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="at most 50 pictures a second"):
+        write_pictures(tmp_path / "a.gif", from_uint8(levels()), fps=51)
+
+
+def test_a_gif_of_many_colours_has_one_palette(tmp_path: Path) -> None:
+    write_pictures(tmp_path / "a.gif", from_uint8(smooth()))
+    assert len(np.unique(read_levels(tmp_path / "a.gif").reshape(-1, 3), axis=0)) <= 256
+
+
+@pytest.mark.parametrize("transfer", ["srgb", "linear"])
+def test_levels_follow_the_transfer(tmp_path: Path, transfer: Transfer) -> None:
+    light = RANDOM.random((2, 3, 5, 3), dtype=np.float32)
+    write_pictures(tmp_path / "a.webm", light, transfer=transfer)
+    shown = np.stack(read_pictures(tmp_path / "a.webm", transfer="linear").images)
+    np.testing.assert_array_equal(np.rint(shown * 255), to_uint8(light, transfer))
+
+
+@pytest.mark.parametrize("suffix", ALL)
+def test_scale_makes_squares_of_pixels(tmp_path: Path, suffix: str) -> None:
+    small = from_uint8(levels(3))
+    write_pictures(tmp_path / f"a{suffix}", small, scale=3)
+    write_pictures(tmp_path / f"b{suffix}", np.kron(small, np.ones((1, 3, 3, 1), np.float32)))
+    if suffix == ".npy":
+        np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), np.load(tmp_path / "b.npy"))
+    else:
+        np.testing.assert_array_equal(read_levels(tmp_path / f"a{suffix}"), read_levels(tmp_path / f"b{suffix}"))
+
+
+def test_npy_is_never_clipped_and_bit_exact(tmp_path: Path) -> None:
+    light = RANDOM.normal(0.5, 3, (3, 5, 7, 4)).astype(np.float32)
+    write_pictures(tmp_path / "a.npy", light)
+    read = np.load(tmp_path / "a.npy")
+    assert read.dtype == np.float32
+    np.testing.assert_array_equal(read.view(np.uint32), light.view(np.uint32))
+
+
+@pytest.mark.parametrize("suffix", [suffix for suffix in ALL if suffix != ".npy"])
+def test_clipped_values_are_counted_once(tmp_path: Path, suffix: str) -> None:
+    light = np.full((3, 5, 7, 3), 0.5, np.float32)
+    light[0, 0, 0] = 1.1
+    light[2, 4, 6, 1] = -0.1
+    light[1] = 1.0000001  # rounds to white: not worth a word
+    with pytest.warns(ClippedPictures, match=r"^4 of 315 values") as caught:
+        write_pictures(tmp_path / f"a{suffix}", light)
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+
+
+def test_a_folder_holds_its_views(tmp_path: Path) -> None:
+    wanted = levels(11)
+    names = ['"quoted"', "back\\slash", "tab\tnew\nline", "\x7f", "ünï 日本 🎈", *"678901"]
+    write_pictures(tmp_path / "a", from_uint8(wanted), views=views(11), names=names)
+    assert files_in(tmp_path / "a") == [*(f"{index:02d}.png" for index in range(1, 12)), "views.toml"]
+    read = read_pictures(tmp_path / "a")
+    assert read.angles is not None
+    np.testing.assert_array_equal(read.angles, views(11).angles)
+    assert read.elevation == views(11).elevations[0]
+    assert read.names == tuple(names)
+
+
+def test_a_folder_without_views_has_no_views_file(tmp_path: Path) -> None:
+    write_pictures(tmp_path / "a", from_uint8(levels(2)))
+    assert files_in(tmp_path / "a") == ["1.png", "2.png"]
+
+
+def test_views_that_the_file_cannot_hold_are_refused(tmp_path: Path) -> None:
+    low, high = views(2, 10), views(2, 20)
+    mixed = Views(
+        np.concatenate([low.lamps[:1], high.lamps[:1]]),
+        low.origins,
+        low.column_steps,
+        low.row_steps,
+        low.picture_shape,
+    )
+    near = replace(low, lamps=low.lamps + np.array([0, 0, 0, 1]))
+    for wrong in (mixed, near):
+        with pytest.raises(InputError, match="one elevation"):
+            write_pictures(tmp_path / "a", from_uint8(levels(2)), views=wrong)
+    assert files_in(tmp_path) == []
+
+
+def test_a_stream_is_taken_one_picture_at_a_time(tmp_path: Path) -> None:
+    wanted = from_uint8(levels(6))
+    alive: set[int] = set()
+
+    class Watched(np.ndarray):
+        def __del__(self) -> None:
+            alive.discard(id(self))
+
+    def stream() -> Iterator[NDArray[np.float32]]:
+        for picture in wanted:
+            # The one in hand and the one before, which loop variables still hold.
+            assert len(alive) <= 2
+            watched = picture.copy().view(Watched)
+            alive.add(id(watched))
+            yield watched
+            del watched
+
+    for suffix in ALL:
+        write_pictures(tmp_path / f"a{suffix}", stream(), count=6)
+        if suffix != ".npy":
+            assert len(read_pictures(tmp_path / f"a{suffix}")) == 6
+
+
+@pytest.mark.parametrize("suffix", ALL)
+@pytest.mark.parametrize("count", [3, 5])
+def test_a_wrong_count_leaves_nothing(tmp_path: Path, suffix: str, count: int) -> None:
+    with pytest.raises(ValueError, match=r"of 3 has shape|were announced"):
+        write_pictures(tmp_path / f"a{suffix}", iter(from_uint8(levels(4))), count=count)
+    assert files_in(tmp_path) == []
+
+
+def test_a_stream_needs_a_count(tmp_path: Path) -> None:
+    with pytest.raises(TypeError, match="count"):
+        write_pictures(tmp_path / "a.gif", iter(from_uint8(levels())))
+
+
+@pytest.mark.parametrize("suffix", ALL)
+def test_a_full_disk_leaves_nothing_and_is_a_sentence(tmp_path: Path, suffix: str) -> None:
+    def stream() -> Iterator[NDArray[np.float32]]:
+        yield from from_uint8(levels(3))
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with pytest.raises(InputError, match="no space is left on the disk of"):
+        write_pictures(tmp_path / f"a{suffix}", stream(), count=4)
+    assert files_in(tmp_path) == []
+
+
+@pytest.mark.parametrize("suffix", ALL)
+def test_a_refusal_of_the_system_in_the_middle_leaves_nothing(tmp_path: Path, suffix: str) -> None:
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    before = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2000, hard))
+    try:
+        with pytest.raises(InputError, match=r"writing .* failed: File too large"):
+            write_pictures(tmp_path / f"a{suffix}", from_uint8(levels(9, 33, 65)))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        signal.signal(signal.SIGXFSZ, before)
+    assert files_in(tmp_path) == []
+
+
+@pytest.mark.parametrize("suffix", ALL)
+def test_an_interrupt_leaves_nothing_and_the_old_file(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"a{suffix}"
+    write_pictures(path, from_uint8(levels(2)))
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
+
+    def stream() -> Iterator[NDArray[np.float32]]:
+        yield from from_uint8(levels(3))
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_pictures(path, stream(), count=4, overwrite=True)
+    assert {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()} == before
+
+
+@pytest.mark.parametrize("suffix", ALL)
+def test_targets_that_exist_need_overwrite(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"a{suffix}"
+    write_pictures(path, from_uint8(levels(4)))
+    with pytest.raises(InputError, match="exists already"):
+        write_pictures(path, from_uint8(levels(2)))
+    with pytest.raises(InputError, match="exists already"):
+        check_pictures_target(path)
+    check_pictures_target(path, overwrite=True)
+    write_pictures(path, from_uint8(levels(2)), overwrite=True)
+    assert len(np.load(path) if suffix == ".npy" else read_pictures(path)) == 2
+    assert files_in(tmp_path) == [path.name]
+
+
+def test_a_folder_with_other_things_is_never_replaced(tmp_path: Path) -> None:
+    for name in ("a", "b.gif"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "thesis.tex").write_text("years of work")
+        with pytest.raises(InputError, match="of something else"):
+            write_pictures(tmp_path / name, from_uint8(levels(2)), overwrite=True)
+        assert (tmp_path / name / "thesis.tex").read_text() == "years of work"
+
+
+@pytest.mark.parametrize("name", ["a.bmp", "a.mp4x", "a.zarr"])
+def test_unknown_suffixes_are_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InputError, match=r"use one of \.mp4"):
+        write_pictures(tmp_path / name, from_uint8(levels(2)))
+    with pytest.raises(InputError, match=r"use one of \.mp4"):
+        check_pictures_target(tmp_path / name)
+
+
+def test_bad_input_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    light = from_uint8(levels(2))
+    with pytest.raises(InputError, match="no folder"):
+        write_pictures(tmp_path / "missing" / "a.gif", light)
+    for fps in (0, -1, float("nan"), float("inf"), 1e9):
+        with pytest.raises(InputError, match="pictures per second"):
+            write_pictures(tmp_path / "a.gif", light, fps=fps)
+    for scale in (0, -1, 1.5):
+        with pytest.raises(InputError, match="scale"):
+            write_pictures(tmp_path / "a.gif", light, scale=scale)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="0 pictures"):
+        write_pictures(tmp_path / "a.gif", light[:0])
+    with pytest.raises(InputError, match="3 views for 2 pictures"):
+        write_pictures(tmp_path / "a", light, views=views(3))
+    with pytest.raises(InputError, match="1 names for 2 pictures"):
+        write_pictures(tmp_path / "a", light, names=["x"])
+    with pytest.raises(InputError, match="three colour channels, not 4"):
+        write_pictures(tmp_path / "a.gif", np.zeros((2, 3, 5, 4), np.float32))
+    for bad in (np.nan, np.inf):
+        with pytest.raises(InputError, match="picture number 2 holds NaN"):
+            write_pictures(tmp_path / "a.npy", np.stack([light[0], light[1] * 0 + bad]))
+    assert files_in(tmp_path) == []
+
+
+def test_what_a_codec_cannot_do_is_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"a\.mp4 cannot be encoded"):
+        write_pictures(tmp_path / "a.mp4", np.zeros((2, 1, 40000, 3), np.float32))
+    with pytest.raises(InputError, match="at most 16383 pixels"):
+        write_pictures(tmp_path / "a.webp", np.zeros((2, 1, 20000, 3), np.float32))
+    assert files_in(tmp_path) == []
+
+
+@pytest.mark.parametrize("suffix", ALL)
+def test_no_thread_stays_behind(tmp_path: Path, suffix: str) -> None:
+    before = threading.active_count()
+    write_pictures(tmp_path / f"a{suffix}", from_uint8(levels()))
+    if suffix != ".npy":
+        read_pictures(tmp_path / f"a{suffix}")
+    assert threading.active_count() == before
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    wanted=st_numpy.arrays(np.uint8, st.tuples(st.integers(2, 4), st.integers(1, 9), st.integers(1, 9), st.just(3))),
+    suffix=st.sampled_from(EXACT),
+)
+def test_any_pictures_come_back(tmp_path: Path, wanted: Levels, suffix: str) -> None:
+    path = tmp_path / f"a{suffix}"
+    write_pictures(path, from_uint8(wanted), overwrite=True)
+    np.testing.assert_array_equal(read_levels(path), wanted)

@@ -1,0 +1,193 @@
+"""The fast paths of the kernels against plain ones: any tiles, vectors that are not full, any number of threads."""
+
+import hashlib
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numba import njit
+
+from lightcube.kernels import exponential, layout, rows, threads
+from lightcube.kernels.stacked import GROUP, TILE
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import turntable
+from lightcube.projection.projector import Projector, dot_test
+from tests.helpers import plain
+
+#: Longer than a tile, one more than two tiles, and shorter.
+SHAPES = [(2, TILE + 1, 5), (3, 3, 2 * TILE + 1), (2, TILE, TILE + 3)]
+
+
+@njit
+def compiled_add_rows(target, at, source, base, columns, places, shifts, weights, count, start, stop):  # type: ignore[no-untyped-def]
+    rows.add_rows(target, at, source, base, columns, places, shifts, weights, 0, count, start, stop)
+
+
+@njit
+def compiled_exp(numbers, out):  # type: ignore[no-untyped-def]
+    for i in range(len(numbers)):
+        out[i] = exponential.exp(numbers[i])
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    columns=st.integers(1, 150),
+    target_columns=st.integers(1, 150),
+    first=st.integers(0, 149),
+    most=st.integers(0, 40),
+    pieces=st.integers(1, 5),
+    single=st.booleans(),
+)
+def test_vectors_of_sums_are_the_plain_sums(
+    columns: int, target_columns: int, first: int, most: int, pieces: int, single: bool
+) -> None:
+    dtype = np.float32 if single else np.float64
+    random = np.random.default_rng(columns + 1000 * most)
+    source = random.random(7 * columns).astype(dtype)
+    target = random.random(target_columns + 20).astype(dtype)
+    places = (columns * random.integers(0, 6, pieces)).astype(np.int32)
+    shifts = random.integers(-most, most + 1, pieces).astype(np.int32)
+    weights = random.random(pieces).astype(dtype)
+    start = min(first, target_columns)
+    wanted, found = target.copy(), target.copy()
+    rows.add_rows(wanted, 10, source, columns, columns, places, shifts, weights, 0, pieces, start, target_columns)
+    compiled_add_rows(found, 10, source, columns, columns, places, shifts, weights, pieces, start, target_columns)
+    assert np.allclose(found, wanted, rtol=1e-6, atol=0)
+    assert np.array_equal(found[: 10 + start], target[: 10 + start])
+    assert np.array_equal(found[10 + target_columns :], target[10 + target_columns :])
+
+
+def test_exponential_is_exact_to_two_units_in_the_last_place() -> None:
+    numbers = np.linspace(-86.5, 87.5, 20_001, dtype=np.float32)
+    out = np.empty_like(numbers)
+    compiled_exp(numbers, out)
+    exact = np.exp(numbers.astype(np.float64))
+    assert np.all(np.abs(out - exact) <= 2 * np.spacing(exact.astype(np.float32)))
+
+
+def test_exponential_ends_in_0_and_in_numbers() -> None:
+    numbers = np.array([-100, -95, 87, 88], np.float32)
+    out = np.empty_like(numbers)
+    compiled_exp(numbers, out)
+    assert np.all(out[:2] < 1e-37)
+    assert np.all(out >= 0)
+    assert np.all(np.isfinite(out))
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0, -75.0])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_tiles_that_do_not_divide_agree_with_plain_boxes(shape: tuple[int, int, int], elevation: float) -> None:
+    grid = Grid(shape, voxel_mm=0.7)
+    views = turntable(grid, [0.0, 33.0, 90.0], elevation=elevation, picture_shape=(shape[0], 2 + shape[2] % 2))
+    volume = np.random.default_rng(1).random((1, *shape))
+    matrix = Projector(grid, views)
+    x = volume[0].transpose(1, 2, 0).reshape(matrix.shape[1], -1)
+    shown = matrix.forward(np.ascontiguousarray(x)).reshape(len(views), views.picture_shape[1], -1)
+    wanted = plain.absorbance_pictures(grid, views, volume)[..., 0]
+    assert np.allclose(shown[:, :, ::-1].transpose(0, 2, 1), wanted, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(("dtype", "bound"), [(np.float32, 1e-5), (np.float64, 1e-12)])
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("channels", [1, 2, 5])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_many_groups_of_views_and_all_tiles_are_one_matrix(
+    shape: tuple[int, int, int], channels: int, elevation: float, dtype: type[np.floating], bound: float
+) -> None:
+    """`to_sparse` traces each beam through the whole grid at once."""
+    grid = Grid(shape)
+    angles = np.linspace(0, 180, GROUP + 3, endpoint=False) + 1
+    matrix = Projector(grid, turntable(grid, angles, elevation=elevation, picture_shape=(shape[0], 4 + shape[2] % 2)))
+    sparse = matrix.to_sparse()
+    columns = channels * (shape[0] if matrix.shape[1] == shape[1] * shape[2] else 1)
+    random = np.random.default_rng(5)
+    x = random.random((matrix.shape[1], columns)).astype(dtype)
+    b = random.random((matrix.shape[0], columns)).astype(dtype)
+    there, back = sparse @ x.astype(np.float64), sparse.T @ b.astype(np.float64)
+    assert np.max(np.abs(matrix.forward(x) - there)) <= bound * np.max(there)
+    assert np.max(np.abs(matrix.adjoint(b) - back)) <= bound * np.max(back)
+    assert dot_test(matrix, columns, dtype) < bound
+
+
+def test_products_begin_at_whole_cache_lines() -> None:
+    matrix = Projector(Grid((3, 5, 7)), turntable(Grid((3, 5, 7)), [0.0, 33.0]))
+    b = matrix.forward(np.ones((matrix.shape[1], 9), np.float32))
+    for array in (b, matrix.adjoint(b), layout.copied(b[1:], np.float64)):
+        assert array.ctypes.data % 64 == 0
+        assert array.flags.c_contiguous
+
+
+_HASHES = """
+import hashlib, numba, numpy as np
+from lightcube.optics.views import Grid, turntable
+from lightcube.projection.projector import Projector
+from lightcube.solvers import METHODS
+grid = Grid((2, 19, 18))
+total = hashlib.sha256()
+for elevation, views in ((0.0, 1), (0.0, 9), (35.0, 4)):
+    matrix = Projector(grid, turntable(grid, np.arange(views) * 17.0 + 3, elevation=elevation))
+    columns = 6 if elevation == 0 else 3
+    x = np.random.default_rng(0).random((matrix.shape[1], columns), dtype=np.float32)
+    b = matrix.forward(x)
+    light = np.exp(-b).clip(1e-3)
+    bounds = (np.full((views, 3), 1e-3), np.full((views, 3), 4.0))
+    result = METHODS["display"](matrix, light, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=4)
+    for array in (b, matrix.adjoint(b), result.x, result.lamp_powers, result.residuals):
+        total.update(np.ascontiguousarray(array).tobytes())
+print(total.hexdigest())
+"""
+
+
+def test_results_are_the_same_for_any_number_of_threads() -> None:
+    """Seven threads on any machine: numba takes as many as it is told to."""
+    found = set()
+    for count in (1, 2, 7):
+        told = {**os.environ, "NUMBA_NUM_THREADS": str(count)}
+        run = subprocess.run([sys.executable, "-c", _HASHES], env=told, capture_output=True, text=True, check=True)
+        found.add(run.stdout)
+    assert len(found) == 1
+    assert len(found.pop().strip()) == len(hashlib.sha256().hexdigest())
+
+
+_AT_ONCE = """
+import concurrent.futures, numpy as np
+from lightcube import solve
+from lightcube.pictures.frames import Frames
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import turntable
+
+def cube(number):
+    grid = Grid((2, 6, 7))
+    views = turntable(grid, [10.0, 70.0, 200.0], elevation=35.0, picture_shape=(2, 3))
+    pictures = np.random.default_rng(number).random((3, 2, 3, 3), dtype=np.float32)
+    return solve(Frames(pictures, views), grid, iterations=20).cube.extinction
+
+alone = [cube(number) for number in range(4)]
+with concurrent.futures.ThreadPoolExecutor(4) as pool:
+    together = list(pool.map(cube, [*range(4)] * 3))
+print(all(np.array_equal(alone[index % 4], found) for index, found in enumerate(together)))
+"""
+
+
+def test_cubes_may_be_solved_at_the_same_time_in_one_process() -> None:
+    """Numba's simplest threading layer, the one that is always there, ends the program where two calls meet in it."""
+    told = {**os.environ, "NUMBA_THREADING_LAYER": "workqueue", "NUMBA_NUM_THREADS": "2"}
+    run = subprocess.run([sys.executable, "-c", _AT_ONCE], env=told, capture_output=True, text=True, check=False)
+    assert run.stdout == "True\n", run.stderr
+
+
+def test_ctrl_c_in_a_kernel_is_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In compiled code it comes out as a `SystemError` of a `SystemError` of it."""
+
+    def interrupted() -> None:
+        inner = SystemError("returned a result with an exception set")
+        inner.__cause__ = KeyboardInterrupt()
+        raise SystemError("returned a result with an exception set") from inner
+
+    monkeypatch.setattr(threads, "njit", lambda **options: lambda kernel: kernel)
+    with pytest.raises(KeyboardInterrupt):
+        threads.parallel(interrupted)()

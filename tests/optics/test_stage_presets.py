@@ -1,0 +1,80 @@
+"""The stages of examples/stages: each brings back the shadows of a known cube, and can be solved as it is."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lightcube.backward.solving import solve
+from lightcube.forward.casting import cast, play
+from lightcube.io import read_stage, read_stage_frames
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import sampled
+from lightcube.optics.stage import Stage, exposures
+from lightcube.pictures.frames import Frames
+from lightcube.planning.placement import doubtful, impossible
+from lightcube.scoring.metrics import score
+from tests.conftest import INTERPRETED
+
+STAGES = sorted((Path(__file__).parents[2] / "examples" / "stages").glob("*.toml"))
+#: Voxels along the cube's longest side here: fewer where nothing is compiled.
+SIDE = 5 if INTERPRETED else 12
+
+
+def smaller(stage: Stage, side: int) -> Stage:
+    """The same room with larger voxels and pixels, and as many stops as fill such a cube as the example's fill it."""
+    coarser = max(stage.grid.shape) / side
+    nz, ny, nx = (max(1, round(count / coarser)) for count in stage.grid.shape)
+    grid = Grid((nz, ny, nx), stage.grid.voxel_mm * coarser)
+    screens = tuple(replace(screen, pitch_mm=screen.pitch_mm * coarser) for screen in stage.screens)
+    few = stage.shots[:: max(1, len(stage.shots) // 8)]
+    return replace(stage, grid=grid, screens=screens, shots=few)
+
+
+def known(stage: Stage, lamp_samples: int = 1) -> tuple[Cube, Frames]:
+    """A random cube on a stage, under lamps of random powers, and its shadows."""
+    random = np.random.default_rng(0)
+    views, lighting = sampled(*exposures(stage), lamp_samples=lamp_samples)
+    extinction = random.gamma(0.3, 4.0 / (0.3 * stage.grid.size_mm[0]), (3, *stage.grid.shape)).astype(np.float32)
+    powers = random.uniform(0.8, 2.0, (len(lighting.pairs), 3))
+    cube = Cube(extinction, stage.grid, views, powers, lighting=lighting)
+    shadows = np.stack(list(cast(cube, views, powers, lighting)))
+    inside = lighting.inside(views.picture_shape).astype(np.float32)
+    return cube, Frames(shadows, views, inside, lighting=lighting)
+
+
+def test_there_is_a_stage_for_each_way_to_light_a_cube() -> None:
+    assert {path.stem for path in STAGES} == {
+        *("two-screens", "three-screens", "circling-lamp", "point-lamp", "hemisphere", "coloured-lamps"),
+        *("soft-lamp", "fading"),
+    }
+
+
+@pytest.mark.parametrize("path", STAGES, ids=lambda path: path.stem)
+def test_the_shadows_of_a_known_cube_come_back(path: Path) -> None:
+    stage = smaller(read_stage(path)[0], SIDE)
+    cube, frames = known(stage, 3 if path.stem == "soft-lamp" else 1)
+    assert np.mean(frames.pictures < 0.5) > 0.1  # there are shadows
+    solved = solve(frames, stage.grid, iterations=100 if INTERPRETED else 400)
+    scores = score(solved.cube, frames)
+    assert scores["psnr_min"] >= 50
+    assert not np.allclose(solved.cube.extinction, cube.extinction, atol=1e-3)  # other cubes have the same shadows
+
+
+@pytest.mark.parametrize("path", STAGES, ids=lambda path: path.stem)
+def test_nothing_is_wrong_with_it(path: Path) -> None:
+    stage, frames = read_stage_frames(path)
+    assert impossible(stage) == doubtful(stage) == []
+    assert len(frames) == len(stage.shots) == len(set(frames.names))
+
+
+def test_a_stage_is_played_at_any_angle() -> None:
+    stage = smaller(read_stage(next(path for path in STAGES if path.stem == "two-screens"))[0], SIDE)
+    cube, frames = known(stage)
+    angles = np.unique(frames.angles)
+    assert len(play(cube, angles)) == 2 * len(angles)
+    for picture, angle in enumerate(frames.angles):
+        shown = play(cube, [angle])
+        assert any(np.allclose(each, frames.pictures[picture], atol=1e-6) for each in shown)

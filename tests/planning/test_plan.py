@@ -1,0 +1,115 @@
+"""How large the pictures are made, the cube's proportions, and hold: laws, with a prediction that is a formula."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lightcube.errors import InputError
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import widest_hold
+from lightcube.pictures.frames import Frames, Pictures
+from lightcube.planning import plan as planning
+from lightcube.planning.plan import WIDTHS, plan, proportions
+from lightcube.planning.prediction import Prediction
+from lightcube.scoring.metrics import GOOD_DB
+
+
+def pictures(count: int = 4, rows: int = 24, columns: int = 36) -> Pictures:
+    random = np.random.default_rng(3)
+    images = tuple(random.uniform(0.1, 1, (rows, columns, 3)).astype(np.float32) for _ in range(count))
+    return Pictures(images, tuple(f"p{i}" for i in range(count)))
+
+
+@pytest.fixture
+def formula(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Predict 60 dB less 100 times the part of the cube's area, and 0.8 dB for each degree of hold; count the calls."""
+    calls: list[float] = []
+
+    def predict(frames: Frames, grid: Grid, *, hold: float = 0.0, **_: Any) -> Prediction:
+        rows, columns = frames.views.picture_shape
+        calls.append(hold)
+        part = rows * columns / (grid.shape[0] * grid.shape[1])
+        return Prediction(np.full(len(frames), 60 - 100 * part - 0.8 * hold), 20)
+
+    monkeypatch.setattr(planning, "predict", predict)
+    return calls
+
+
+def test_pictures_are_as_wide_as_good_ones_can_be(formula: list[float]) -> None:
+    planned = plan(pictures(), 64)
+    assert planned.prediction.psnr_mean >= GOOD_DB
+    width = planned.frames.views.picture_shape[1] / 64
+    wider = plan(pictures(), 64, frame_width=WIDTHS[WIDTHS.index(min(WIDTHS, key=lambda w: abs(w - width))) + 1])
+    assert wider.prediction.psnr_mean < GOOD_DB
+    assert len(formula) <= 6
+
+
+def test_where_none_is_good_they_are_as_narrow_as_they_get(monkeypatch: pytest.MonkeyPatch) -> None:
+    def bad(frames: Frames, _grid: Grid, **_: Any) -> Prediction:
+        return Prediction(np.full(len(frames), 10.0), 20)
+
+    monkeypatch.setattr(planning, "predict", bad)
+    assert plan(pictures(), 64).frames.views.picture_shape[1] == 16
+
+
+def test_where_all_are_good_they_fill_the_cube(monkeypatch: pytest.MonkeyPatch) -> None:
+    def good(frames: Frames, _grid: Grid, **_: Any) -> Prediction:
+        return Prediction(np.full(len(frames), 70.0), 20)
+
+    monkeypatch.setattr(planning, "predict", good)
+    assert plan(pictures(), 64).frames.views.picture_shape[1] == 64
+
+
+def test_hold_grows_while_it_costs_less_than_a_decibel(formula: list[float]) -> None:
+    """At 0.8 dB a degree a hold of 1 degree is the longest of those tried; where nothing is good there is none."""
+    planned = plan(pictures(), 64, frame_width=0.4, hold=None)
+    without = plan(pictures(), 64, frame_width=0.4)
+    assert planned.hold == 1.0
+    assert planned.prediction.psnr_mean == pytest.approx(without.prediction.psnr_mean - 0.8)
+    assert 40 < without.prediction.psnr_mean < 45
+    perfect = plan(pictures(), 64, frame_width=0.25, hold=None)
+    assert 1 < perfect.hold <= widest_hold(perfect.frames.views)
+    assert perfect.prediction.psnr_mean >= 44
+    assert plan(pictures(), 64, frame_width=0.6, hold=None).hold == 0
+
+
+def test_a_hold_that_is_asked_for_is_part_of_the_prediction(formula: list[float]) -> None:
+    planned = plan(pictures(), 64, hold=2.5)
+    assert planned.hold == 2.5
+    assert set(formula) == {2.5}
+
+
+@pytest.mark.parametrize(
+    ("aspect", "width", "level", "shape"),
+    [
+        (1.0, 0.5, False, (60, 60, 60)),
+        (1.5, 0.5, False, (40, 60, 60)),
+        (0.5, 0.3, False, (60, 30, 30)),
+        (1.0, 0.5, True, (30, 60, 60)),
+        (0.25, 0.5, True, (60, 30, 30)),
+        (30.0, 0.25, True, (1, 60, 60)),
+    ],
+)
+def test_the_cube_follows_the_pictures(aspect: float, width: float, level: bool, shape: tuple[int, ...]) -> None:
+    assert proportions(60, aspect, width, level=level) == shape
+
+
+def test_a_level_cube_is_as_high_as_its_pictures(formula: list[float]) -> None:
+    planned = plan(pictures(4, 30, 20), 32, elevation=0.0, frame_width=0.5)
+    assert planned.frames.views.picture_shape[0] == planned.grid.shape[0]
+    assert max(planned.grid.shape) == 32
+    assert max(planned.grid.size_mm) == pytest.approx(100)
+
+
+def test_a_given_shape_stays(formula: list[float]) -> None:
+    planned = plan(pictures(), 64, shape=(20, 30, 31), size_mm=62.0)
+    assert planned.grid == Grid((20, 30, 31), 2.0)
+
+
+def test_the_real_prediction_and_no_pictures() -> None:
+    planned = plan(pictures(3, 8, 8), 8, frame_width=0.5)
+    assert 0 <= planned.prediction.psnr_min <= planned.prediction.psnr_mean <= 50
+    assert planned.frames.views.elevations[0] == 35
+    with pytest.raises(InputError, match="at least two"):
+        plan(Pictures((), ()), 8)

@@ -1,0 +1,238 @@
+"""The laws of a prediction: what is reduced keeps what counts, and more load is never told to be easier."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lightcube.backward.solving import solve
+from lightcube.errors import InputError
+from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.views import spread_angles, turntable
+from lightcube.pictures.frames import Frames
+from lightcube.planning import prediction
+from lightcube.planning.prediction import Prediction, law, predict, reduced
+from lightcube.scoring.metrics import score
+
+
+def problem(
+    shape: tuple[int, int, int] = (10, 12, 12),
+    views: int = 4,
+    picture: tuple[int, int] = (6, 4),
+    elevation: float = 35.0,
+    seed: int = 0,
+) -> tuple[Frames, Grid]:
+    """Random pictures."""
+    grid = Grid(shape, 2.5)
+    stops = turntable(grid, spread_angles(views, elevation=elevation), elevation=elevation, picture_shape=picture)
+    pictures = np.random.default_rng(seed).uniform(0.05, 1, (views, *picture, 3)).astype(np.float32)
+    return Frames(pictures, stops), grid
+
+
+def doubled(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
+    """The same problem with voxels and pixels of half the size."""
+    nz, ny, nx = grid.shape
+    views, (rows, columns) = frames.views, frames.views.picture_shape
+    fine = replace(
+        views,
+        column_steps=views.column_steps / 2,
+        row_steps=views.row_steps / 2,
+        picture_shape=(2 * rows, 2 * columns),
+    )
+    pictures, weights = (array.repeat(2, axis=1).repeat(2, axis=2) for array in (frames.pictures, frames.weight))
+    return Frames(pictures, fine, weights), Grid((2 * nz, 2 * ny, 2 * nx), grid.voxel_mm / 2)
+
+
+@pytest.fixture(autouse=True)
+def _short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rehearsals of a few passes, on cubes of a few voxels."""
+    monkeypatch.setattr(prediction, "PASSES", 12)
+    monkeypatch.setattr(prediction, "WORK", 600)
+    monkeypatch.setattr(prediction, "_LEAST", 6)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_what_was_doubled_is_reduced_to_what_it_was(elevation: float) -> None:
+    frames, grid = problem(elevation=elevation)
+    frames = replace(frames, weights=np.random.default_rng(1).integers(0, 3, frames.weight.shape).astype(np.float32))
+    small, small_grid = reduced(*doubled(frames, grid), 12)
+    assert small_grid == grid
+    # Where nothing has weight there is nothing to keep.
+    seen = frames.weight > 0
+    np.testing.assert_allclose(small.pictures[seen], frames.pictures[seen], rtol=1e-6)
+    np.testing.assert_allclose(small.weight, frames.weight, rtol=1e-6)
+    for part in ("lamps", "origins", "column_steps", "row_steps"):
+        np.testing.assert_allclose(getattr(small.views, part), getattr(frames.views, part), rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("shape", "picture", "elevation"),
+    [
+        ((30, 50, 70), (18, 26), 30.0),
+        ((75, 48, 51), (75, 22), 0.0),
+        ((20, 64, 64), (10, 80), 20.0),
+        ((64, 64, 64), (96, 32), 45.0),
+    ],
+)
+def test_reduced_problems_keep_their_proportions(
+    shape: tuple[int, int, int], picture: tuple[int, int], elevation: float
+) -> None:
+    frames, grid = problem(shape, 2, picture, elevation)
+    for width in range(20, 28):
+        _check_proportions(frames, grid, *reduced(frames, grid, width), width)
+
+
+def _check_proportions(frames: Frames, grid: Grid, small: Frames, small_grid: Grid, width: int) -> None:
+    shape, picture, elevation = grid.shape, frames.views.picture_shape, float(frames.views.elevations[0])
+    (nz, ny, nx), (rows, columns) = small_grid.shape, small.views.picture_shape
+    assert 0.8 * width - 1 <= max(ny, nx) <= width + 1
+    raster = raster_shape(small_grid, elevation)
+    assert (rows - raster[0]) % 2 == (columns - raster[1]) % 2 == 0
+    assert max(small_grid.size_mm[1:]) == pytest.approx(max(grid.size_mm[1:]))
+    scale = max(ny, nx) / max(shape[1:])
+    load = picture[1] / np.sqrt(shape[1] * shape[2]), columns / np.sqrt(ny * nx)
+    assert load[1] / load[0] == pytest.approx(1, abs=0.12)
+    assert np.array([nz, rows, columns]) == pytest.approx(scale * np.array([shape[0], *picture]), abs=2.1)
+    lengths = np.linalg.norm(small.views.column_steps, axis=1)
+    assert lengths == pytest.approx(small_grid.voxel_mm)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 10.0])
+def test_the_largest_pictures_stay_on_the_screen_and_level_ones_as_high_as_the_cube(elevation: float) -> None:
+    for n in range(23, 60):
+        grid = Grid((20, n, n - 4))
+        rows, columns = raster_shape(grid, elevation)
+        small, small_grid = reduced(*problem(grid.shape, 1, (rows, columns), elevation), 20)
+        most = raster_shape(small_grid, elevation)
+        assert np.all(np.array(small.views.picture_shape) <= most)
+        assert elevation != 0 or small.views.picture_shape[0] == most[0] == small_grid.shape[0]
+
+
+def test_a_small_problem_stays_as_it_is() -> None:
+    frames, grid = problem()
+    assert reduced(frames, grid, 12) == (frames, grid)
+
+
+def test_reduced_pictures_have_the_values_of_the_large_ones_in_the_order_of_their_means() -> None:
+    frames, grid = problem((36, 36, 36), 2, (18, 12))
+    small, _ = reduced(frames, grid, 12)
+    assert small.views.picture_shape == (6, 4)
+    for before, after in zip(frames.pictures, small.pictures, strict=True):
+        # plain: means of 3 x 3 pixels, and of nine values at a time from the darkest on
+        means = before.reshape(6, 3, 4, 3, 3).mean(axis=(1, 3)).reshape(24, 3)
+        wanted = np.sort(before.reshape(216, 3), axis=0).reshape(24, 9, 3).mean(axis=1)
+        found = after.reshape(24, 3)
+        for channel in range(3):
+            np.testing.assert_allclose(found[np.argsort(means[:, channel]), channel], wanted[:, channel], rtol=1e-5)
+
+
+def test_pixels_of_no_weight_have_no_say() -> None:
+    frames, grid = problem((20, 24, 22), 3, (12, 8))
+    weights = np.ones_like(frames.weight)
+    weights[:, :, 5:] = 0
+    weights[1, :5] = 0
+    other = np.where(weights[..., None] > 0, frames.pictures, 0.7).astype(np.float32)
+    one, two = (predict(replace(frames, pictures=p, weights=weights), grid) for p in (frames.pictures, other))
+    np.testing.assert_array_equal(one.psnr, two.psnr)
+    assert one.rehearsed < 22
+
+
+def test_a_picture_with_a_single_pixel_of_weight_is_not_lost() -> None:
+    frames, grid = problem((20, 24, 22), 3, (12, 8))
+    weights = np.ones_like(frames.weight)
+    weights[2] = 0
+    weights[2, 7, 3] = 1
+    small, _ = reduced(replace(frames, weights=weights), grid, 8)
+    assert np.sum(small.weight[2] > 0) >= 1
+
+
+def test_what_is_small_enough_is_solved_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    frames, grid = problem()
+    monkeypatch.setattr(prediction, "WORK", 1e9)
+    told = predict(frames, grid)
+    assert told.rehearsed == 12
+    scored = solve(frames, grid, iterations=12)
+    reached = [view["psnr"] for view in score(scored.cube, frames)["views"]]
+    np.testing.assert_allclose(told.psnr, reached, rtol=1e-4)
+
+
+def test_a_prediction_is_the_same_every_time() -> None:
+    frames, grid = problem((20, 24, 22), 3, (12, 8))
+    np.testing.assert_array_equal(predict(frames, grid).psnr, predict(frames, grid).psnr)
+
+
+def _fewer(frames: Frames, _: Grid) -> tuple[Frames, dict[str, Any]]:
+    return frames.take([0, 2]), {}
+
+
+def _grey(frames: Frames, _: Grid) -> tuple[Frames, dict[str, Any]]:
+    return replace(frames, pictures=0.5 + 0.1 * (frames.pictures - 0.5)), {}
+
+
+def _strong(frames: Frames, _: Grid) -> tuple[Frames, dict[str, Any]]:
+    return frames, {"lamp_max": 64.0}
+
+
+@pytest.mark.parametrize("easier", [_fewer, _grey, _strong])
+def test_what_is_easier_is_not_told_to_be_worse(
+    easier: Callable[[Frames, Grid], tuple[Frames, dict[str, Any]]],
+) -> None:
+    frames, grid = problem((16, 20, 18), 5, (8, 12))
+    other, options = easier(frames, grid)
+    hard, easy = predict(frames, grid, lamp_max=2.0), predict(other, grid, **{"lamp_max": 2.0, **options})
+    assert hard.psnr_mean < 50
+    assert np.mean(easy.psnr) >= np.mean(hard.psnr) - 0.5
+    assert np.min(easy.psnr) >= np.min(hard.psnr) - 0.5
+
+
+def test_a_hold_costs_something() -> None:
+    frames, grid = problem((16, 20, 18), 4, (8, 8))
+    assert np.mean(predict(frames, grid, hold=8).psnr) < np.mean(predict(frames, grid).psnr) - 0.5
+
+
+def test_wider_pictures_are_told_to_be_worse() -> None:
+    told = [np.mean(predict(*problem((16, 20, 18), 5, (8, columns)), lamp_max=2).psnr) for columns in (4, 10, 20)]
+    assert told[0] > told[1] > told[2]
+
+
+def test_the_law_leaves_alone_what_was_not_reduced_and_keeps_order() -> None:
+    reached = np.linspace(5, 90, 50)
+    np.testing.assert_array_equal(law(reached, 1.0), reached)
+    for ratio in (1.5, 4.0, 12.0):
+        assert np.all(np.diff(law(reached, ratio)) >= 0)
+        assert np.all((law(reached, ratio) >= 0) & (law(reached, ratio) <= 100))
+
+
+def test_means_and_worst_are_told_up_to_fifty() -> None:
+    told = Prediction(np.array([20.0, 95.0, 41.0]), 24)
+    assert (told.psnr_mean, told.psnr_min) == (50.0, 20.0)
+    assert Prediction(np.array([20.0, 30.0, 40.0]), 24).psnr_mean == pytest.approx(30.0)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"lamp_max": 0.5},
+        {"lamp": "fixed", "lamp_max": 4.0},
+        {"lamp": "per-view", "lamp_power": 2.0},
+        {"hold": -1.0},
+        {"hold": 46.0},
+        {"max_extinction": 0.0},
+        {"black": 1.0},
+    ],
+)
+def test_what_solve_refuses_is_refused(options: dict[str, Any]) -> None:
+    frames, grid = problem((20, 24, 22), 4, (12, 8))
+    with pytest.raises(InputError) as told:
+        predict(frames, grid, **options)
+    with pytest.raises(InputError) as solved:
+        solve(frames, grid, iterations=1, **options)
+    assert str(told.value) == str(solved.value)
+
+
+def test_pictures_larger_than_the_screen_are_refused() -> None:
+    frames, _ = problem((20, 24, 22), 4, (40, 8))
+    with pytest.raises(InputError, match="larger than"):
+        predict(frames, Grid((12, 24, 22), 2.5))

@@ -1,0 +1,89 @@
+"""What a fading shadow cannot show: no cube casts anything darker, and nothing brighter is called out of reach."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lightcube.forward.casting import cast
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.pictures.frames import Frames
+from lightcube.planning.reachable import least_light, out_of_reach, sentences, too_bright
+
+
+def faded(lamps: int = 1, falloff_mm: float = 60.0) -> tuple[Stage, Frames]:
+    """A stage with fading shadows and random shadows of a random cube on it."""
+    grid = Grid((3, 5, 7), 2.0)
+    lit = tuple(Lamp(str(i), position=(-60.0, 9.0 * i, 5.0), colour=(1, 0.5, 0.25 * i)) for i in range(lamps))
+    wall = Screen("wall", (40, 0, 0), (16, 12), 2.0, reach_mm=20, falloff_mm=falloff_mm, cosine=True)
+    names = tuple(lamp.name for lamp in lit)
+    stage = Stage(grid, lit, (wall,), tuple(Shot(str(i), "wall", names, i) for i in range(2)), stops=(10.0, 130.0))
+    views, lighting = exposures(stage)
+    random = np.random.default_rng(lamps)
+    cube = Cube(
+        random.gamma(0.5, 0.3, (3, *grid.shape)).astype(np.float32),
+        grid,
+        views,
+        random.uniform(0.5, 3, (len(lighting.pairs), 3)),
+        lighting=lighting,
+    )
+    return stage, Frames(np.stack(list(cast(cube, views, cube.powers, lighting))), views, lighting=lighting)
+
+
+@pytest.mark.parametrize("lamps", [1, 2])
+def test_what_a_cube_casts_is_within_reach(lamps: int) -> None:
+    _, frames = faded(lamps)
+    assert np.all(frames.pictures >= least_light(frames) * (1 - 1e-5))
+    assert np.all(out_of_reach(frames) == 0)
+    assert sentences(frames) == []
+
+
+def test_an_opaque_cube_shows_the_least_light() -> None:
+    """Under one lamp the bound is met: a black cube beside which a pixel is as bright as the lamp."""
+    stage, frames = faded()
+    views, lighting = frames.views, frames.lighting
+    assert lighting is not None
+    black = Cube(np.full((3, *stage.grid.shape), 1e3, np.float32), stage.grid, views, lighting=lighting)
+    shown = np.stack(list(cast(black, views, black.powers, lighting)))
+    least = least_light(replace(frames, pictures=shown))
+    behind = (shown[0, ..., 0] < 0.5) & (shown[0, ..., 0].max() > 0.9)
+    assert np.any(behind)
+    assert np.allclose(shown[0, ..., 0][behind], least[0, ..., 0][behind], rtol=1e-3)
+
+
+def test_black_beside_white_is_out_of_reach() -> None:
+    _, frames = faded()
+    wanted = np.ones_like(frames.pictures)
+    wanted[0, 2:4, 3:5] = 0.001
+    parts = out_of_reach(replace(frames, pictures=wanted))
+    assert parts[0] == pytest.approx(4 * 2 / (6 * 8 * 3), abs=1e-6)  # the lamp has no blue
+    assert parts[1] == 0
+    assert any("picture '1' is darker" in said for said in sentences(replace(frames, pictures=wanted)))
+
+
+def test_without_fading_everything_is_within_reach() -> None:
+    _, frames = faded(falloff_mm=np.inf)
+    wanted = np.zeros_like(frames.pictures)
+    wanted[..., 1] = 1
+    assert np.all(out_of_reach(replace(frames, pictures=wanted)) == 0)
+
+
+def test_brighter_than_all_lamps_is_out_of_reach() -> None:
+    """The bound is what the lamps show at their largest power where no cube stands."""
+    stage, frames = faded(2)
+    views, lighting = frames.views, frames.lighting
+    assert lighting is not None
+    clear = Cube(
+        np.zeros((3, *stage.grid.shape), np.float32),
+        stage.grid,
+        views,
+        np.repeat(lighting.most[lighting.pairs[:, 1], None], 3, axis=1),
+        lighting=lighting,
+    )
+    most = np.stack(list(cast(clear, views, clear.powers, lighting)))
+    assert np.all(too_bright(replace(frames, pictures=most)) == 0)
+    brighter = most * np.where(np.arange(6) < 2, 1.05, 0.95)[:, None, None].astype(np.float32)
+    assert np.allclose(too_bright(replace(frames, pictures=brighter)), 2 / 6)
+    assert "is brighter than" in sentences(replace(frames, pictures=brighter))[0]

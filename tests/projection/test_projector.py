@@ -1,0 +1,262 @@
+"""The laws that the matrix keeps, on unequal shapes, against a plain second implementation and an oracle."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lightcube.errors import InputError
+from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
+from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.views import Views, turntable
+from lightcube.projection.projector import Projector, dot_test
+from tests.helpers import plain
+
+ANGLES = [0.0, 13.0, 45.0, 90.0, 133.7, 180.0, 270.0, 301.5]
+ELEVATIONS = [0.0, 20.0, 35.0, 60.0, -35.0]
+SHAPES = [(3, 5, 7), (4, 6, 5), (2, 3, 8), (1, 4, 4)]
+
+
+def project(projector: Projector, volume: np.ndarray) -> np.ndarray:
+    """Pictures of absorbance of a volume ``(channel, z, y, x)``."""
+    x = columns_from_volume(volume).reshape(projector.shape[1], -1)
+    return pictures_from_columns(projector.forward(x), projector.views.picture_shape, len(volume))
+
+
+@pytest.mark.parametrize("elevation", ELEVATIONS)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_agrees_with_plain_boxes(shape: tuple[int, int, int], elevation: float) -> None:
+    grid = Grid(shape, voxel_mm=0.7)
+    views = turntable(grid, ANGLES, elevation=elevation)
+    volume = np.random.default_rng(1).random((2, *shape))
+    assert np.allclose(
+        project(Projector(grid, views), volume), plain.absorbance_pictures(grid, views, volume), rtol=1e-9, atol=1e-9
+    )
+
+
+@pytest.mark.parametrize("turns", [3, 40])
+def test_long_rows_agree_with_the_sparse_matrix(turns: int) -> None:
+    """Rows of 131 numbers are copied to begin at cache lines, those of the voxels where there are many beams."""
+    grid = Grid((1, 5, 7), voxel_mm=0.7)
+    matrix = Projector(grid, turntable(grid, np.linspace(0, 300, turns)))
+    x = np.random.default_rng(3).random((matrix.shape[1], 131)).astype(np.float32)
+    b = np.random.default_rng(4).random((matrix.shape[0], 131)).astype(np.float32)
+    assert np.allclose(matrix.forward(x), matrix.to_sparse() @ x, rtol=1e-5, atol=1e-5)
+    assert np.allclose(matrix.adjoint(b), matrix.to_sparse().T @ b, rtol=1e-5, atol=1e-5)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize(("rows", "columns"), [(1, 4), (2, 3), (3, 6), (4, 5), (3, 1)])
+def test_windows_of_any_size_agree_with_plain_boxes(rows: int, columns: int, elevation: float) -> None:
+    """Wrong parities put every beam of 0 and 90 degrees on faces and edges: the tie rule in all its forms."""
+    grid = Grid((4, 6, 5))
+    if elevation == 0 and rows > 4:
+        rows = 4
+    views = turntable(grid, [0.0, 90.0, 30.0], elevation=elevation, picture_shape=(rows, columns))
+    volume = np.random.default_rng(2).random((3, 4, 6, 5))
+    assert np.allclose(
+        project(Projector(grid, views), volume), plain.absorbance_pictures(grid, views, volume), rtol=1e-9, atol=1e-9
+    )
+
+
+@pytest.mark.parametrize(("dtype", "bound"), [(np.float32, 1e-5), (np.float64, 1e-12)])
+@pytest.mark.parametrize("elevation", ELEVATIONS)
+@pytest.mark.parametrize("shape", SHAPES)
+def test_adjoint_is_the_transpose(
+    shape: tuple[int, int, int], elevation: float, dtype: type[np.floating], bound: float
+) -> None:
+    grid = Grid(shape, voxel_mm=1.3)
+    for columns in (1, 3, 7):
+        assert dot_test(Projector(grid, turntable(grid, ANGLES, elevation=elevation)), columns, dtype) < bound
+
+
+def test_dot_test_finds_a_wrong_transpose() -> None:
+    class Wrong:
+        shape = (4, 4)
+
+        def forward(self, x: np.ndarray) -> np.ndarray:
+            return x
+
+        def adjoint(self, b: np.ndarray) -> np.ndarray:
+            return b[::-1]
+
+    assert dot_test(Wrong()) > 1e-3
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("picture_shape", [None, (2, 4), (1, 3)])
+def test_sparse_rows_and_linear_operator_are_the_same_matrix(
+    elevation: float, picture_shape: tuple[int, int] | None
+) -> None:
+    grid = Grid((2, 4, 3), 0.5)
+    projector = Projector(grid, turntable(grid, [0, 31, 90, 200], elevation=elevation, picture_shape=picture_shape))
+    dense = projector.forward(np.eye(projector.shape[1]))
+    assert np.allclose(projector.to_sparse().toarray(), dense, atol=1e-12)
+    assert np.allclose(projector.adjoint(np.eye(projector.shape[0])), dense.T, atol=1e-12)
+    for index in range(projector.shape[0]):
+        row = np.zeros(projector.shape[1])
+        unknowns, lengths = projector.row(index)
+        np.add.at(row, unknowns, lengths)
+        assert np.allclose(row, dense[index], atol=1e-12)
+    operator = projector.as_linear_operator()
+    assert np.allclose(operator @ np.eye(projector.shape[1]), dense, atol=1e-12)
+    assert np.allclose(operator.T @ np.eye(projector.shape[0]), dense.T, atol=1e-12)
+    assert np.allclose(operator @ np.arange(projector.shape[1]), dense @ np.arange(projector.shape[1]))
+    assert len(projector.view_of_row) == projector.shape[0]
+
+
+@pytest.mark.parametrize("elevation", [0.0, 20.0, -35.0])
+def test_chords_of_a_box_are_analytic(elevation: float) -> None:
+    """A grid of ones is a box: each beam's absorbance is its chord by the slab method."""
+    grid = Grid((3, 5, 7), 2.0)
+    views = turntable(grid, [7.0, 77.0, 160.0], elevation=elevation)
+    pictures = project(Projector(grid, views), np.ones((1, 3, 5, 7)))[..., 0]
+    half = np.array(grid.size_mm[::-1]) / 2
+    for view, row, column in np.ndindex(*pictures.shape):
+        point, direction, _, _ = plain.beam_of_pixel(views, view, row, column)
+        enter, leave = -np.inf, np.inf
+        for axis in range(3):
+            if abs(direction[axis]) < 1e-12:
+                if abs(point[axis]) > half[axis]:
+                    enter = np.inf
+                continue
+            first, second = sorted(((side * half[axis] - point[axis]) / direction[axis]) for side in (-1, 1))
+            enter, leave = max(enter, first), min(leave, second)
+        assert pictures[view, row, column] == pytest.approx(max(leave - enter, 0), abs=1e-9)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_chords_of_a_sphere_are_analytic(elevation: float) -> None:
+    """A voxelised ball's chords come near ``2 sqrt(R^2 - d^2)``, to a voxel per surface crossed."""
+    n = 21
+    grid = Grid((n, n, n), 1.0)
+    z, y, x = np.meshgrid(*[np.arange(n) - (n - 1) / 2] * 3, indexing="ij")
+    radius = 0.4 * n
+    ball = (x**2 + y**2 + z**2 < radius**2).astype(np.float64)[None]
+    views = turntable(grid, [20.0, 65.0], elevation=elevation)
+    pictures = project(Projector(grid, views), ball)[..., 0]
+    expected = np.zeros_like(pictures)
+    for index in np.ndindex(*pictures.shape):
+        point, direction, _, _ = plain.beam_of_pixel(views, *index)
+        distance = float(np.linalg.norm(point - np.dot(point, direction) * direction))
+        expected[index] = 2 * math.sqrt(max(radius**2 - distance**2, 0))
+    # near the rim a beam grazes many voxels: compare where it crosses the surface steeply
+    steep = expected > radius
+    assert np.max(np.abs(pictures - expected)[steep]) < 2.5
+    assert abs(np.mean((pictures - expected)[steep])) < 0.3
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("angle", [0.0, 90.0, 180.0, 270.0])
+def test_a_view_along_an_axis_holds_the_whole_mass(shape: tuple[int, int, int], angle: float) -> None:
+    """Where toolkits err: beams on faces must neither lose nor double what they run along."""
+    grid = Grid(shape, 0.5)
+    volume = np.random.default_rng(3).random((1, *shape))
+    for columns in (raster_shape(grid)[1], raster_shape(grid)[1] - 1):
+        views = turntable(grid, [angle], picture_shape=(shape[0], columns))
+        pictures = project(Projector(grid, views), volume)
+        assert np.sum(pictures, axis=(0, 2, 3)) == pytest.approx(0.5 * np.sum(volume, axis=(0, 2, 3))[::-1])
+
+
+def test_half_a_turn_is_the_mirror_only_at_elevation_0() -> None:
+    grid = Grid((3, 5, 7))
+    volume = np.random.default_rng(4).random((2, 3, 5, 7))
+    for elevation, mirrored in ((0.0, True), (20.0, False), (-35.0, False)):
+        views = turntable(grid, [33.0, 213.0], elevation=elevation)
+        front, back = project(Projector(grid, views), volume)
+        assert np.allclose(front, back[:, ::-1], atol=1e-9) == mirrored
+
+
+def test_raising_the_lamp_looks_along_the_same_columns_shifted() -> None:
+    """A single slab seen from above moves on the screen by tan(elevation) times its distance from the axis."""
+    grid = Grid((1, 1, 9))
+    volume = np.zeros((1, 1, 1, 9))
+    volume[..., 8] = 1
+    views = turntable(grid, [0.0], elevation=45.0)
+    picture = project(Projector(grid, views), volume)[0, :, :, 0]
+    row = int(np.argmax(picture.max(axis=1)))
+    # light goes along +x and down: what stands 4 voxels downstream is met by beams that cross the axis 4 higher
+    assert row - (views.picture_shape[0] - 1) / 2 == -4
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    shape=st.tuples(*[st.integers(1, 4)] * 3),
+    angle=st.floats(-720, 720).filter(lambda a: abs((a + 45) % 90 - 45) > 1e-4 or a % 90 == 0),
+    elevation=st.floats(-80, 80).filter(lambda e: abs(e) > 1e-4 or e == 0),
+    side=st.floats(0.01, 10),
+)
+def test_any_view_agrees_with_plain_boxes(
+    shape: tuple[int, int, int], angle: float, elevation: float, side: float
+) -> None:
+    grid = Grid(shape, side)
+    full = turntable(grid, [angle], elevation=elevation)
+    views = turntable(grid, [angle], elevation=elevation, picture_shape=(min(3, full.picture_shape[0]), 2))
+    volume = np.random.default_rng(5).random((1, *shape))
+    fast = project(Projector(grid, views), volume)
+    assert np.allclose(fast, plain.absorbance_pictures(grid, views, volume), rtol=1e-6, atol=1e-6 * side)
+
+
+def test_the_tie_rule_starts_at_a_billionth_of_a_voxel() -> None:
+    """Within 1e-9 of a face a beam along it is shared; a thousandth of a voxel beside it is not."""
+    grid = Grid((1, 2, 4))
+    views = turntable(grid, [0.0], picture_shape=(1, 1))
+    volume = np.zeros((1, 1, 2, 4))
+    volume[:, :, 0] = 1
+    for offset, expected in ((0.0, 2.0), (0.5e-9, 2.0), (-0.5e-9, 2.0), (1e-6, 0.0), (-1e-6, 4.0)):
+        moved = Views(
+            views.lamps, views.origins + np.array([0, offset, 0]), views.column_steps, views.row_steps, (1, 1)
+        )
+        assert project(Projector(grid, moved), volume)[0, 0, 0, 0] == pytest.approx(expected, abs=1e-6)
+        assert plain.absorbance_pictures(grid, moved, volume)[0, 0, 0, 0] == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize("elevation", [0.0, 0.3, -0.3])
+@pytest.mark.parametrize("up", [0.0, 0.5, 1.0, -0.3])
+def test_screens_moved_up_and_lamps_just_above_the_horizon_agree_with_plain_boxes(up: float, elevation: float) -> None:
+    grid = Grid((3, 4, 5))
+    views = turntable(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 4))
+    moved = Views(views.lamps, views.origins + np.array([0, 0, up]), views.column_steps, views.row_steps, (3, 4))
+    volume = np.random.default_rng(11).random((2, 3, 4, 5))
+    fast = project(Projector(grid, moved), volume)
+    assert np.allclose(fast, plain.absorbance_pictures(grid, moved, volume), rtol=1e-9, atol=1e-9)
+
+
+def test_many_columns_are_many_times_one_column() -> None:
+    """More columns than one task takes: blocks must not leave a seam."""
+    grid = Grid((1, 3, 4))
+    projector = Projector(grid, turntable(grid, [10.0, 100.0]))
+    x = np.random.default_rng(8).random((projector.shape[1], 301))
+    dense = projector.to_sparse().toarray()
+    assert np.allclose(projector.forward(x), dense @ x)
+    assert np.allclose(projector.adjoint(dense @ x), dense.T @ (dense @ x))
+
+
+def test_agrees_with_astra() -> None:
+    astra = pytest.importorskip("astra", reason="ASTRA is an optional oracle: lightcube[oracle]")
+    n, count = 9, 7
+    grid = Grid((1, n, n))
+    angles = (np.arange(count) + 0.5) * 180 / count
+    views = turntable(grid, angles)
+    width = views.picture_shape[1]
+    geometry = astra.create_proj_geom("parallel", 1.0, width, np.radians(90 - angles))
+    projector = astra.create_projector("line", geometry, astra.create_vol_geom(n, n))
+    image = np.random.default_rng(9).random((n, n)).astype(np.float32)
+    identifier, sinogram = astra.create_sino(image[::-1], projector)
+    ours = project(Projector(grid, views), image[None, None].astype(np.float64))[:, 0, :, 0]
+    astra.data2d.delete(identifier)
+    astra.projector.delete(projector)
+    assert np.allclose(ours, sinogram[:, ::-1], rtol=1e-4, atol=1e-4)
+
+
+def test_refuses_what_it_cannot_project() -> None:
+    grid = Grid((3, 5, 7))
+    projector = Projector(grid, turntable(grid, [0.0]))
+    with pytest.raises(InputError, match="shape"):
+        projector.forward(np.zeros((3, 3)))
+    with pytest.raises(InputError, match="float32 or float64"):
+        projector.forward(np.zeros((35, 3), int))
+    with pytest.raises(InputError, match="row 99"):
+        projector.row(99)

@@ -1,0 +1,443 @@
+"""The report of a cube: what it claims is so, it loads nothing, names stay names, and its command makes the cube."""
+
+import base64
+import hashlib
+import html
+import json
+import re
+import shlex
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from html.parser import HTMLParser
+from io import BytesIO
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from lightcube.cli import main
+from lightcube.drawing.charts import lamp_powers
+from lightcube.io import save
+from lightcube.jobs.cubes import load
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import Views, spread_angles, turntable
+from lightcube.pictures.fitting import frames_from_targets
+from lightcube.report.html import image
+from lightcube.report.measuring import EXACT, MOST, chosen
+from lightcube.report.page import digest
+from lightcube.scoring.metrics import score
+from lightcube.verbs.reproducing import reproducing
+from tests.conftest import INTERPRETED
+from tests.helpers.browser import opened
+
+Run = Callable[..., tuple[int, str, str]]
+
+_VOID = {"meta", "img"}
+
+STAGE = """
+cube = {shape = [5, 6, 7], size_mm = 7}
+[[lamp]]
+name = "sun & <moon>"
+direction = [1, 0, 0]
+size_deg = 4
+[[lamp]]
+name = "top"
+direction = [0, 0, -1]
+[[screen]]
+name = "wall"
+centre = [20, 0, 0]
+normal = [-1, 0, 0]
+size_mm = [6, 5]
+[[screen]]
+name = "floor"
+centre = [0, 0, -20]
+normal = [0, 0, 1]
+size_mm = [4, 7]
+[[picture]]
+file = "frames/1.png"
+screen = "wall"
+lamps = ["sun & <moon>"]
+[[picture]]
+file = "frames/2.png"
+screen = "floor"
+lamps = ["top"]
+"""
+
+
+class Page(HTMLParser):
+    """What is in a page: elements with their attributes, tables, headings, and whether every tag is closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.tables: dict[str, list[list[str]]] = {}
+        self.said: list[tuple[str, str]] = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        self.said.append((tag, ""))
+        if tag not in _VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if not self.open:
+            return
+        tag, so_far = self.said[-1]
+        self.said[-1] = (tag, so_far + data)
+
+    def texts(self, tag: str) -> list[str]:
+        return [words.strip() for each, words in self.said if each == tag]
+
+    def rows(self, caption: str) -> list[list[str]]:
+        """Cells of the table of that caption, its head first."""
+        start = next(i for i, (tag, words) in enumerate(self.said) if (tag, words) == ("caption", caption))
+        rows: list[list[str]] = []
+        for tag, words in self.said[start + 1 :]:
+            if tag == "tr":
+                rows.append([])
+            elif tag in ("th", "td"):
+                rows[-1].append(words.strip())
+            elif tag not in ("thead", "tbody"):
+                break
+        return rows
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Run:
+    def call(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["lightcube", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main.main()
+        captured = capsys.readouterr()
+        return int(stop.value.code or 0), captured.out, captured.err
+
+    return call
+
+
+@pytest.fixture
+def frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with four pictures of 9 x 7 pixels, the third upright, and the place where the commands run."""
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    random = np.random.default_rng(3)
+    for index in range(4):
+        shape = (7, 9, 3) if index != 2 else (9, 7, 3)
+        Image.fromarray(random.integers(90, 250, shape, dtype=np.uint8)).save(folder / f"{index + 1}.png")
+    (tmp_path / "stage.toml").write_text(STAGE)
+    return folder
+
+
+def made(names: tuple[str, ...] = (), **changed: Any) -> Cube:
+    """A cube of 3 x 5 x 7 voxels for three pictures of 3 x 5 pixels."""
+    random = np.random.default_rng(0)
+    grid = Grid((3, 5, 7), 2.0)
+    extinction = random.uniform(0, 0.1, (3, 3, 5, 7)).astype(np.float32)
+    targets = random.integers(1, 255, (3, 3, 5, 4), dtype=np.uint8)
+    targets[..., 3] = 255
+    views = turntable(grid, spread_angles(3, 360), elevation=20, picture_shape=(3, 5))
+    provenance = {"lightcube": "0.1.0", "method": "display", "lamp": "per-view", "lamp_max": 4.0}
+    return replace(Cube(extinction, grid, views, None, targets, names, provenance=provenance), **changed)
+
+
+def reported(run: Run, *arguments: object) -> Page:
+    code, _, err = run("report", *arguments, "-o", "report.html", "--overwrite")
+    assert code == 0, err
+    return Page(Path("report.html").read_text(encoding="utf-8"))
+
+
+def commands(page: Page, text: str) -> list[str]:
+    """The command lines that a page prints."""
+    block = text.split('<pre id="command">')[1].split("</pre>")[0]
+    lines = ["".join(part for part in _between_tags(line)) for line in block.split("\n")]
+    return [html.unescape(line) for line in lines]
+
+
+def _between_tags(line: str) -> Iterator[str]:
+    for part in line.split("<"):
+        yield part.split(">", 1)[-1] if ">" in part else part
+
+
+SOLVES = {
+    "planned": "--n 6 --iterations 3",
+    "draft": "--n 6 --frame-width 0.5 --hold 0 --quality draft",
+    "angles": "--shape 5,7,6 --frame-width 0.7 --elevation 20 --angles 3,100.52,181,-85 --iterations 3 --lamp-max 4.5 "
+    "--black 0.02 --hold 1.25",
+    "span": "--n 7 --span 200 --size-mm 33.3 --frame-width 0.6 --hold 0 --fit pad --lamp global --transfer linear "
+    "--max-extinction 0.5 --iterations 2",
+    "order": "--n 6 --frame-width 0.5 --hold 0 --order best --shift 1 --lamp coarse --iterations 2",
+    "paper": "--n 6 --paper --iterations 3",
+    "gauss-seidel": "--n 5 --paper --method gauss-seidel",
+    "sirt": "--n 5 --frame-width 0.8 --method sirt --lamp-power 2.5 --iterations 4",
+    "units": "--n 6 --frame-width 0.5 --hold 0 --iterations 3 --unit 1/3",
+}
+
+
+@pytest.mark.parametrize("options", SOLVES.values(), ids=SOLVES)
+def test_the_command_makes_the_cube_bit_for_bit(run: Run, frames: Path, options: str) -> None:
+    solve = ["solve", "frames", "-o", "a cube.npz", *options.split()]
+    if "--unit" in options:
+        for unit in (1, 2, 3):
+            assert run(*solve[:-1], f"{unit}/3")[0] == 0
+        run("merge", "a cube.npz.partial")
+    else:
+        assert run(*solve)[0] == 0
+    _makes_it_again(run, "a cube.npz", "frames")
+
+
+def test_the_command_makes_the_cube_of_a_stage(run: Run, frames: Path) -> None:
+    options = ["--lamp-samples", 2, "--pixel-samples", 2, "--iterations", 3, "--black", 0.01]
+    assert run("solve", "stage.toml", "-o", "a.npz", *options)[0] == 0
+    _makes_it_again(run, "a.npz", "stage.toml")
+
+
+def _makes_it_again(run: Run, cube: str, frames: str) -> None:
+    page = reported(run, cube, frames)
+    text = Path("report.html").read_text(encoding="utf-8")
+    assert "bit for bit:" in text
+    old = load(cube)
+    assert digest(old) in page.texts("code")
+    Path(cube).rename("old.npz")
+    for line in commands(page, text):
+        assert line.startswith("lightcube ")
+        assert run(*shlex.split(line)[1:])[0] == 0
+    new = load(cube)
+    assert digest(new) == digest(old)
+    for name in ("extinction", "powers", "targets"):
+        np.testing.assert_array_equal(getattr(new, name), getattr(old, name))
+    for name in ("lamps", "origins", "column_steps", "row_steps"):
+        np.testing.assert_array_equal(getattr(new.views, name), getattr(old.views, name))
+    assert (new.names, new.hold_deg, new.transfer) == (old.names, old.hold_deg, old.transfer)
+    assert new.provenance == old.provenance
+
+
+def test_passes_that_are_recorded_become_options() -> None:
+    def words(**recorded: Any) -> tuple[str, list[str]]:
+        cube = made()
+        cube = replace(cube, provenance={**cube.provenance, "fit": "crop", **recorded})
+        command = reproducing(cube, frames_from_targets(cube), "frames", "cube.zarr")
+        return " ".join(command.lines[0]), command.doubts
+
+    assert "quality" not in words(passes=200, enough_db=42.0)[0]
+    assert "--quality draft" in words(passes=30, enough_db=36.0)[0]
+    assert "--quality best" in words(passes=1000, enough_db=None)[0]
+    assert "--iterations 17" in words(passes=17, enough_db=None)[0]
+    assert words(passes=17, enough_db=None)[1] == []
+    assert "33 dB" in words(passes=17, enough_db=33.0)[1][0]
+    assert "float64" in words(passes=17, enough_db=None, dtype="float64")[1][0]
+    assert "not recorded" in words(iterations=3, stop_reason="enough")[1][0]
+    assert "another version" in words(passes=17, lightcube="0.0.1")[1][0]
+
+
+def test_every_figure_is_that_of_score(run: Run, frames: Path) -> None:
+    assert run("solve", "frames", "-o", "a.npz", "--n", 6, "--frame-width", 0.5, "--hold", 0, "--iterations", 3)[0] == 0
+    scores = json.loads(run("score", "a.npz", "frames", "--between", "--robust", "--json")[1])
+    page = reported(run, "a.npz", "frames")
+    head, *rows = page.rows("Every picture")
+    assert head == ["no.", "picture", "angle", "PSNR, dB", "SSIM", "CIEDE2000", "predicted, dB", "30 dB over"]
+    predicted, lobes = load("a.npz").provenance["predicted"]["views"], scores["between"]["lobe_deg"]
+    for number, (row, view) in enumerate(zip(rows, scores["views"], strict=True)):
+        figures = [f"{view['psnr']:.2f}", "–" if view["ssim"] is None else f"{view['ssim']:.4f}"]
+        figures += [
+            f"{view['delta_e']:.2f}",
+            f"{predicted[number]:.1f}",
+            f"{lobes[number]:.2f}°",
+        ]
+        assert row == [str(number + 1), view["name"], f"{view['angle']:.3f}°", *figures]
+    robust = [row[1:3] for row in page.rows("What is left of the pictures")[1:]]
+    assert robust == [[f"{each['psnr_mean']:.2f}", f"{each['psnr_min']:.2f}"] for each in scores["robust"].values()]
+    assert f"{scores['psnr_mean']:.2f} dB" in page.texts("dd")
+    assert f"{scores['psnr_min']:.2f} dB" in page.texts("dd")
+    assert "which are those that the cube was made from" in Path("report.html").read_text()
+
+
+def test_a_report_is_the_same_twice_and_says_its_figures_for_machines(run: Run, frames: Path) -> None:
+    save(made(), "a.npz")
+    reported(run, "a.npz")
+    first = Path("report.html").read_bytes()
+    code, out, _ = run("report", "a.npz", "-o", "report.html", "--overwrite", "--json")
+    assert (code, Path("report.html").read_bytes()) == (0, first)
+    *events, result = map(json.loads, out.splitlines())
+    assert {event["task"] for event in events} == {"measuring"}
+    assert (result["out"], result["bytes"]) == ("report.html", len(first))
+    assert result["psnr_mean"] == score(load("a.npz"))["psnr_mean"]
+
+
+def test_other_pictures_than_its_own_are_told(run: Run, frames: Path) -> None:
+    assert run("solve", "frames", "-o", "a.npz", "--n", 6, "--frame-width", 0.5, "--hold", 0, "--iterations", 1)[0] == 0
+    Image.new("RGB", (9, 7), "#102030").save(frames / "2.png")
+    reported(run, "a.npz", "frames")
+    assert "not known to be those that it was made from" in Path("report.html").read_text()
+
+
+def test_names_stay_names(run: Run, frames: Path) -> None:
+    evil = ("<b>\"&amp;'</b>", "</title><script>alert(1)</script>")
+    name = "a<i>'\"&.npz"
+    save(made((*evil, "c")), name)
+    page = reported(run, name)
+    text = Path("report.html").read_text(encoding="utf-8")
+    tags = {tag for tag, _ in page.elements}
+    assert not tags & {"i", "script"}
+    assert page.texts("h1") == ["a<i>'\"&"]
+    assert [row[1] for row in page.rows("Every picture")[1:]] == [*evil, "c"]
+    assert shlex.split(commands(page, text)[0])[4] == name
+    alts = [attributes["alt"] for tag, attributes in page.elements if tag == "img"]
+    assert {f"wanted: {each}" for each in (*evil, "c")} <= set(alts)
+
+
+def test_nothing_is_loaded_and_the_page_is_well_formed(run: Run, frames: Path) -> None:
+    save(made(), "a.npz")
+    page = reported(run, "a.npz")
+    for tag, attributes in page.elements:
+        assert tag not in ("script", "link", "iframe", "object", "base")
+        for name, value in attributes.items():
+            assert not name.startswith("on")
+            if name in ("src", "href"):
+                assert (value or "").startswith(("data:image/", "#"))
+    assert "url(" not in Path("report.html").read_text()
+    levels = [int(tag[1]) for tag, _ in page.elements if tag in ("h1", "h2", "h3")]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(after <= before + 1 for before, after in pairwise(levels))
+    assert all(attributes.get("alt") for tag, attributes in page.elements if tag == "img")
+    assert all(attributes.get("scope") in ("col", "row") for tag, attributes in page.elements if tag == "th")
+    anchors = {attributes["id"] for _, attributes in page.elements if attributes.get("id")}
+    assert {str(attributes["href"])[1:] for tag, attributes in page.elements if tag == "a"} <= anchors
+
+
+def test_pictures_are_those_wanted_and_shown(run: Run, frames: Path) -> None:
+    save(made(), "a.npz")
+    page = reported(run, "a.npz")
+    found = {}
+    for tag, attributes in page.elements:
+        if tag == "img":
+            data = base64.b64decode(str(attributes["src"]).split(",")[1])
+            found[attributes["alt"]] = np.asarray(Image.open(BytesIO(data)))
+    targets = load("a.npz").targets
+    assert targets is not None
+    for number, target in enumerate(targets, 1):
+        np.testing.assert_array_equal(found[f"wanted: {number}"], target[..., :3])
+        off = found[f"shown: {number}"].astype(int) - target[..., :3]
+        seen = found[f"difference: {number}"].astype(int) - 128
+        inside = np.abs(off) < 120
+        assert np.all(np.abs(seen - off)[inside] <= 2)
+
+
+def test_an_unfinished_cube_says_so_first(run: Run, frames: Path) -> None:
+    save(made(status="interrupted"), "a.npz")
+    code, _, err = run("report", "a.npz", "-o", "report.html")
+    assert code == 0
+    assert "unfinished" in err
+    text = Path("report.html").read_text()
+    page = Page(text)
+    assert page.texts("p")[0].startswith("This cube is unfinished")
+    assert "stopped early" in text
+
+
+def test_a_stage_has_its_room_and_no_curve(run: Run, frames: Path) -> None:
+    assert run("solve", "stage.toml", "-o", "a.npz", "--iterations", 2)[0] == 0
+    page = reported(run, "a.npz", "stage.toml")
+    assert "30 dB over" not in page.rows("Every picture")[0]
+    assert [row[-1] for row in page.rows("Every picture")[1:]] == ["wall", "floor"]
+    assert [row[2] for row in page.rows("Where the pictures stand")[1:]] == ["sun & <moon>", "top"]
+    assert "What is seen between the stops is not measured for a stage: play the cube to see it." in page.texts("p")
+    read = [(row[0], row[1], row[-1]) for row in page.rows("What was read")[1:]]
+    inside = [Path("stage.toml"), Path("frames/1.png"), Path("frames/2.png")]
+    roles = ("stage", "pictures", "pictures")
+    hashed = [hashlib.sha256(path.read_bytes()).hexdigest() for path in inside]
+    assert read[1:] == [(role, path.name, each) for role, path, each in zip(roles, inside, hashed, strict=True)]
+    alone = reported(run, "a.npz")
+    assert any("give it as the pictures" in words for words in alone.texts("p"))
+    sizes = [(a["width"], a["height"]) for t, a in page.elements if t == "img" and str(a["alt"]).startswith("wanted")]
+    assert sizes == [("6", "5"), ("4", "7")]
+
+
+def test_lamps_at_several_elevations_have_no_curve(run: Run, frames: Path) -> None:
+    cube = made()
+    other = turntable(cube.grid, [33.0], elevation=10, picture_shape=(3, 5))
+    names = ("lamps", "origins", "column_steps", "row_steps")
+    lamps, *planes = (np.concatenate([getattr(cube.views, name)[:2], getattr(other, name)]) for name in names)
+    save(replace(cube, views=Views(lamps, planes[0], planes[1], planes[2], (3, 5))), "a.npz")
+    page = reported(run, "a.npz")
+    assert any("lamps at several elevations" in words for words in page.texts("p"))
+    assert any("exactly this cube's lamps and screens" in words for words in page.texts("li"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["frames", "-o", "r.html"], "cube"),
+        (["a.npz", "-o", "there.html"], "exists already"),
+        (["a.npz", "-o", "r.pdf"], ".html"),
+        (["a.npz", "frames", "-o", "r.html"], "3"),
+        (["a.npz", "stage.toml", "-o", "r.html"], "stage"),
+        (["none.npz", "-o", "r.html"], "none.npz"),
+        (["bare.npz", "-o", "r.html"], "targets"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence(run: Run, frames: Path, arguments: list[str], said: str) -> None:
+    save(made(), "a.npz")
+    save(made(targets=None), "bare.npz")
+    Path("there.html").write_text("old")
+    code, out, err = run("report", *arguments)
+    assert (code, out) == (2, "")
+    assert len(err.strip().splitlines()) == 1
+    assert said in err
+    assert Path("there.html").read_text() == "old"
+    assert not Path("r.html").exists()
+    assert not Path("r.pdf").exists()
+
+
+def test_a_page_of_many_pictures_stays_small() -> None:
+    cube = made()
+    frames = frames_from_targets(cube)
+    assert chosen(frames) == [0, 1, 2]
+    assert chosen(frames, 2 * 3 * 5) == [0, 2]
+    assert chosen(frames, 1) == [0]
+    random = np.random.default_rng(0)
+    noise = random.integers(0, 255, (96, 96, 3), dtype=np.uint8)
+    smooth = np.kron(random.integers(0, 255, (12, 12, 3)), np.ones((16, 16, 1))).astype(np.uint8)
+    assert len(image(noise, "")) / noise[..., 0].size * 3 * EXACT < 1e7
+    assert len(image(smooth, "", exact=False)) / smooth[..., 0].size * 3 * MOST < 1e7
+
+
+@pytest.mark.skipif(INTERPRETED, reason="the same page as with compiled kernels")
+def test_a_browser_finds_nothing_to_mend(run: Run, frames: Path, browser: Any) -> None:
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not installed").Axe()
+    save(made(), "a.npz")
+    reported(run, "a.npz")
+    for width, scheme in ((1280, "light"), (360, "dark")):
+        tab, heard = opened(browser, Path("report.html").absolute(), width=width, color_scheme=scheme)
+        assert axe.run(tab).response["violations"] == []
+        assert tab.evaluate("document.documentElement.scrollWidth") <= width
+        assert [each for each in heard if not each.startswith("file:")] == []
+        tab.context.close()
+
+
+@pytest.mark.parametrize("darkest", [1000.0, 5.0])
+def test_single_dark_voxels_are_told(run: Run, frames: Path, darkest: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lightcube.report.sections._COARSE_DB", -100)
+    cube = made()
+    cube.extinction[:, 1, 2, 3] = darkest / cube.grid.voxel_mm
+    save(cube, "a.npz")
+    told = any("far darker" in words for words in reported(run, "a.npz").texts("p"))
+    assert told == (darkest > 10)
+
+
+@pytest.mark.parametrize(("low", "high"), [(14.3, 16.0), (0.6, 16.0)])
+def test_the_axis_of_lamp_powers_can_be_read(low: float, high: float) -> None:
+    drawing = lamp_powers(np.arange(1.0, 4.0), np.array([[low], [high], [high]]), high, "lamps")
+    labels = [float(said) for said in re.findall(r'text-anchor="end">([\d.]+)<', drawing)]
+    assert len([each for each in labels if low / 1.3 < each < 1.3 * high]) >= 2

@@ -1,0 +1,403 @@
+"""Between the frames and around them: the curve, its lobes, and what a set-up that is off costs."""
+
+import builtins
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
+
+from lightcube import io
+from lightcube.drawing import plots
+from lightcube.errors import InputError
+from lightcube.forward.casting import play
+from lightcube.forward.turning import lamp_at
+from lightcube.optics.cube import Cube
+from lightcube.optics.disturbance import DISTURBANCES, Disturbance
+from lightcube.optics.grid import Grid
+from lightcube.optics.transfer import encode
+from lightcube.optics.views import Views, turned, turntable
+from lightcube.pictures.fitting import targets
+from lightcube.pictures.frames import Frames
+from lightcube.report.measuring import measure
+from lightcube.scoring.between import curve
+from lightcube.scoring.metrics import psnr, score, ssim
+from lightcube.scoring.robust import disturbed, robust
+from tests.cli.test_cli import run
+
+SHAPE = (3, 5, 7)
+__all__ = ["run"]
+
+
+def make_cube(angles: list[float], elevation: float = 0.0, strength: float = 1.0) -> Cube:
+    random = np.random.default_rng(0)
+    extinction = (strength * random.random((3, *SHAPE))).astype(np.float32)
+    grid = Grid(SHAPE, 0.5)
+    views = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
+    return Cube(extinction, grid, views, lamp_powers=random.uniform(0.5, 4.0, (len(views), 3)))
+
+
+def cast_frames(cube: Cube, noise: float = 0.0) -> Frames:
+    """What the cube casts, a little off, with weights."""
+    random = np.random.default_rng(1)
+    shown = play(cube)
+    shown = (shown * random.uniform(1 - noise, 1 + noise, shown.shape)).astype(np.float32)
+    return Frames(shown, cube.views, random.integers(1, 4, shown.shape[:3]).astype(np.float32))
+
+
+def white(cube: Cube) -> Frames:
+    return Frames(np.ones((len(cube.views), *cube.views.picture_shape, 3), np.float32), cube.views)
+
+
+def empty(angles: list[float], elevation: float = 0.0) -> Cube:
+    return replace(make_cube(angles, elevation, 0.0), lamp_powers=None)
+
+
+def decibels(shown: np.ndarray, frames: Frames, view: int) -> float:
+    return psnr(encode(shown), encode(frames.pictures[view]), frames.weight[view])
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_at_the_stops_the_curve_is_the_score(elevation: float) -> None:
+    cube = make_cube([200.0, 10.0, 100.0], elevation)
+    frames = cast_frames(cube, 0.1)
+    found, scores = curve(cube, frames), score(cube, frames)
+    at_stops = found.offsets == 0
+    assert sorted(found.nearest[at_stops]) == [0, 1, 2]
+    for view, quality, likeness in zip(
+        found.nearest[at_stops], found.psnr[at_stops], found.ssim[at_stops], strict=True
+    ):
+        assert quality == pytest.approx(scores["views"][view]["psnr"], rel=1e-5)
+        assert likeness == pytest.approx(scores["views"][view]["ssim"], rel=1e-5)
+    assert np.allclose(found.angles[at_stops] % 180, cube.views.angles[found.nearest[at_stops]] % 180)
+
+
+def test_between_the_stops_it_is_what_is_played_against_the_nearer_frame() -> None:
+    angles = [20.0, 75.0, 250.0]
+    cube = make_cube(angles, 35.0)
+    frames = cast_frames(cube, 0.1)
+    found = curve(cube, frames)
+    for index in range(0, len(found.angles), 5):
+        shown = play(cube, [found.angles[index]])[0]
+        view = found.nearest[index]
+        pair = encode(shown), encode(frames.pictures[view]), frames.weight[view]
+        assert found.psnr[index] == pytest.approx(psnr(*pair), rel=1e-4)
+        assert found.ssim[index] == pytest.approx(ssim(*pair), rel=1e-3)
+    apart = np.abs((np.array(angles)[:, None] - found.angles + 180) % 360 - 180)
+    assert np.allclose(apart[found.nearest, np.arange(len(found.angles))], apart.min(axis=0))
+    assert np.allclose(apart.min(axis=0), np.abs(found.offsets))
+
+
+@pytest.mark.parametrize("steps", [1, 2, 7, 8])
+def test_it_has_so_many_even_steps_from_stop_to_stop(steps: int) -> None:
+    stops = np.array([20.0, 75.0, 250.0])
+    cube = empty(list(stops), 35.0)
+    angles = curve(cube, white(cube), steps).angles
+    assert np.all(np.diff(angles) >= 0)
+    assert angles[-1] - angles[0] == pytest.approx(360)
+    for start, gap in zip(stops, np.diff(stops, append=380.0), strict=True):
+        for wanted in start + gap * np.arange(steps) / steps:
+            assert np.min(np.abs((angles - wanted + 180) % 360 - 180)) < 1e-9
+
+
+def test_lobes_of_an_empty_cube_and_white_pictures_are_the_whole_spacing() -> None:
+    raised, level = empty([20.0, 75.0, 250.0], 35.0), empty([160.0, 10.0, 50.0])
+    assert curve(raised, white(raised)).lobes == pytest.approx([92.5, 115.0, 152.5])
+    assert curve(level, white(level)).lobes == pytest.approx([70.0, 35.0, 75.0])
+    alone = empty([20.0])
+    found = curve(alone, white(alone))
+    assert (found.lobes.tolist(), found.period) == ([180.0], 180.0)
+    assert np.all(found.psnr == 100)
+    black = replace(white(level), pictures=np.zeros((3, 3, 5, 3), np.float32))
+    assert curve(level, black).lobes.tolist() == [0, 0, 0]
+
+
+def test_a_lobe_ends_where_the_picture_falls_below_30_db() -> None:
+    cube = make_cube([20.0, 75.0, 250.0], 35.0, strength=3.0)
+    frames = cast_frames(cube)
+    found = curve(cube, frames)
+    assert np.all((found.lobes > 0.2) & (found.lobes < 50))
+    for view, stop in enumerate(cube.views.angles):
+        plain = 0.0
+        for side in (-1, 1):
+            distance = 0.0
+            while decibels(play(cube, [stop + side * distance])[0], frames, view) >= 30:
+                distance += 0.02
+            plain += distance - 0.01
+        assert found.lobes[view] == pytest.approx(plain, abs=0.05)
+
+
+def test_with_a_level_lamp_half_a_turn_is_the_mirror_image() -> None:
+    cube = make_cube([10.0, 70.0, 140.0])
+    frames = cast_frames(cube, 0.1)
+    found = curve(cube, frames)
+    assert found.period == 180
+    pictures, weights = frames.pictures.copy(), frames.weight.copy()
+    pictures[0], weights[0] = pictures[0, :, ::-1], weights[0, :, ::-1]
+    views = turntable(cube.grid, [190.0, 70.0, 140.0], picture_shape=(3, 5))
+    mirrored = curve(replace(cube, views=views), Frames(pictures, views, weights))
+    assert np.array_equal(mirrored.nearest, found.nearest)
+    assert mirrored.psnr == pytest.approx(found.psnr, rel=1e-4)
+    assert mirrored.lobes == pytest.approx(found.lobes, abs=1e-3)
+    # The wrap: past the last stop the first one comes again, mirrored, and so does its lamp.
+    last = int(np.flatnonzero(found.offsets == 0)[-1])
+    sample = last + int(np.argmin(np.abs(found.angles[last:] - 150)))
+    shown = play(cube, [found.angles[sample]])[0]
+    assert found.psnr[sample] == pytest.approx(decibels(shown, frames, 2), rel=1e-4)
+    before = int(np.flatnonzero(found.offsets < 0)[0])
+    shown = play(cube, [found.angles[before] + 180])[0][:, ::-1]
+    assert found.psnr[before] == pytest.approx(decibels(shown, frames, 0), rel=1e-4)
+
+
+def test_stops_half_a_turn_apart_take_the_whole_turn() -> None:
+    cube = make_cube([10.0, 100.0, 190.0])
+    assert curve(cube, cast_frames(cube, 0.1)).period == 360
+
+
+@settings(deadline=None, max_examples=15)
+@given(
+    st.lists(st.integers(0, 35999), min_size=1, max_size=4, unique_by=lambda a: a % 36000),
+    st.sampled_from([0.0, -20.0]),
+    st.integers(1, 5),
+)
+def test_any_stops_make_a_curve_of_one_period(hundredths: list[int], elevation: float, steps: int) -> None:
+    cube = make_cube([a / 100 for a in hundredths], elevation)
+    found = curve(cube, cast_frames(cube), steps)
+    assert np.all(np.diff(found.angles) > -1e-9)
+    assert found.angles[-1] - found.angles[0] == pytest.approx(found.period)
+    assert np.all(found.lobes > 0)
+    assert np.all(np.isfinite(found.psnr))
+    assert found.lobes.sum() <= found.period + 1e-9
+
+
+def test_turning_the_views_is_turning_the_table() -> None:
+    cube = make_cube([20.0, 75.0], 35.0)
+    by = turned(cube.views, [10.0, -90.0])
+    fresh = turntable(cube.grid, [30.0, -15.0], elevation=35.0, picture_shape=(3, 5))
+    for name in ("lamps", "origins", "column_steps", "row_steps"):
+        assert np.allclose(getattr(by, name), getattr(fresh, name), atol=1e-12), name
+
+
+@pytest.mark.parametrize("elevation", [0.0, 35.0])
+def test_each_disturbance_is_what_it_says(elevation: float) -> None:
+    cube = make_cube([20.0, 75.0, 250.0], elevation)
+    shown = play(cube)
+
+    def off(**how: Any) -> np.ndarray:
+        return np.stack(list(disturbed(cube, Disturbance(**how))))
+
+    assert np.array_equal(off(), shown)
+    assert np.allclose(off(lamp=0.02), shown * 1.02, rtol=1e-5)
+    assert np.allclose(off(black=0.01), shown + 0.01, rtol=1e-5)
+    # By a whole voxel the picture moves by a whole pixel: to the right, and up.
+    assert np.allclose(off(right_voxels=1.0)[:, :, 1:], shown[:, :, :-1], rtol=1e-5)
+    assert np.allclose(off(up_voxels=1.0)[:, :-1], shown[:, 1:], rtol=1e-5)
+    further = play(cube, cube.views.angles + 0.2) / lamp_at(cube, cube.views.angles + 0.2)[:, None, None]
+    assert np.allclose(off(turn_deg=0.2), further * cube.powers[:, None, None], rtol=1e-4)
+
+
+def test_extinction_is_rounded_to_so_many_levels_of_each_colour() -> None:
+    cube = make_cube([20.0, 75.0])
+    extinction = cube.extinction.copy()
+    extinction[1] = 0
+    extinction[2] *= 7
+    coarse = extinction.copy()
+    for colour in (0, 2):
+        most = float(extinction[colour].max())
+        coarse[colour] = np.round(extinction[colour] / most * 255) / 255 * most
+    expected = play(replace(cube, extinction=coarse))
+    found = np.stack(list(disturbed(replace(cube, extinction=extinction), Disturbance(levels=255))))
+    assert np.allclose(found, expected, rtol=1e-5)
+    assert not np.allclose(found, play(replace(cube, extinction=extinction)), rtol=1e-5)
+    again = np.stack(list(disturbed(replace(cube, extinction=coarse), Disturbance(levels=255))))
+    assert np.allclose(again, expected, rtol=1e-5)
+
+
+def test_robust_scores_every_disturbance() -> None:
+    cube = make_cube([20.0, 75.0, 250.0], 35.0)
+    frames = cast_frames(cube, 0.02)
+    figures = robust(cube, frames)
+    assert list(figures) == list(DISTURBANCES)
+    scores = score(cube, frames)
+    assert figures["undisturbed"]["psnr_mean"] == pytest.approx(scores["psnr_mean"], rel=1e-5)
+    assert figures["undisturbed"]["psnr_min"] == pytest.approx(scores["psnr_min"], rel=1e-5)
+    stronger = score(replace(cube, lamp_powers=cube.powers * 1.02), frames)
+    assert figures["lamp"]["psnr_mean"] == pytest.approx(stronger["psnr_mean"], rel=1e-5)
+    assert figures["lamp"]["psnr_min"] == pytest.approx(stronger["psnr_min"], rel=1e-5)
+    lighter = [decibels(picture + 0.01, frames, view) for view, picture in enumerate(play(cube))]
+    assert figures["black"] == pytest.approx({"psnr_mean": np.mean(lighter), "psnr_min": min(lighter)}, rel=1e-4)
+    assert figures["all"]["psnr_mean"] < min(each["psnr_mean"] for name, each in figures.items() if name != "all")
+
+
+def marks(work: Callable[[Callable[[int, int], None]], object]) -> list[tuple[int, int]]:
+    """What a long work says of its progress."""
+    said: list[tuple[int, int]] = []
+    work(lambda done, of: said.append((done, of)))
+    return said
+
+
+def test_progress_counts_every_picture_to_the_end() -> None:
+    cube = make_cube([20.0, 75.0, 250.0], 35.0)
+    frames = cast_frames(cube, 0.02)
+    samples = len(curve(cube, frames).angles)
+    pictures = 3 * len(DISTURBANCES)
+    for said, last in (
+        (marks(lambda tell: curve(cube, frames, callback=tell)), samples),
+        (marks(lambda tell: robust(cube, frames, callback=tell)), pictures),
+        (marks(lambda tell: measure(cube, frames, callback=tell)), samples + pictures + 3),
+    ):
+        assert said[-1] == (last, last)
+        done, of = np.array(said).T
+        assert np.all(np.diff(done) > 0)
+        assert np.all(np.diff(of) >= 0)
+        assert np.all(done <= of)
+        assert len(said) > 0.8 * last
+
+
+@pytest.mark.parametrize(
+    ("field", "sizes"),
+    [
+        ("turn_deg", [0.05, 0.1, 0.2, 0.4]),
+        ("right_voxels", [0.05, 0.1, 0.25, 0.5]),
+        ("up_voxels", [0.05, 0.1, 0.25, 0.5]),
+        ("lamp", [0.01, 0.02, 0.05, 0.2]),
+        ("levels", [4000, 250, 16, 3]),
+        ("black", [0.003, 0.01, 0.03, 0.1]),
+    ],
+)
+def test_more_disturbance_costs_more(field: str, sizes: list[float]) -> None:
+    cube = make_cube([20.0, 75.0], 35.0)
+    frames = cast_frames(cube)
+    means = []
+    for size in sizes:
+        how: dict[str, Any] = {field: size}
+        shown = disturbed(cube, Disturbance(**how))
+        means.append(np.mean([decibels(picture, frames, view) for view, picture in enumerate(shown)]))
+    assert np.all(np.diff(means) < -0.5), means
+
+
+def test_a_disturbance_says_what_it_is() -> None:
+    assert str(Disturbance()) == "as made"
+    assert str(DISTURBANCES["turned"]) == "turned 0.2°"
+    assert str(DISTURBANCES["lamp"]) == "lamp +2 %"
+    assert str(DISTURBANCES["all"]).count(", ") == 5
+
+
+def test_bad_input_is_a_sentence() -> None:
+    cube = make_cube([20.0, 75.0], 35.0)
+    frames = cast_frames(cube)
+    with pytest.raises(InputError, match="at least 1 step"):
+        curve(cube, frames, 0)
+    with pytest.raises(InputError, match="do not fit the cube"):
+        curve(cube, frames.take([0]))
+    with pytest.raises(InputError, match="do not fit the cube"):
+        robust(cube, frames.take([0]))
+    parts = [turntable(cube.grid, [a], elevation=e, picture_shape=(3, 5)) for a, e in ((10.0, 0.0), (50.0, 20.0))]
+    names = ("lamps", "origins", "column_steps", "row_steps")
+    views = Views(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names}, picture_shape=(3, 5))
+    mixed = replace(cube, views=views)
+    with pytest.raises(InputError, match="several elevations"):
+        curve(mixed, cast_frames(mixed))
+    assert robust(mixed, cast_frames(mixed))["undisturbed"]["psnr_min"] == 100
+    off: list[dict[str, Any]] = [{"lamp": -1.0}, {"black": -0.1}, {"levels": -1}, {"turn_deg": np.nan}]
+    for bad in (*off, {"up_voxels": np.inf}):
+        with pytest.raises(InputError, match="finite numbers"):
+            Disturbance(**bad)
+
+
+def test_the_plot_shows_every_sample_and_marks_the_stops() -> None:
+    cube = make_cube([20.0, 75.0, 250.0], 35.0)
+    found = curve(cube, cast_frames(cube))
+    figure = plots.between_plot({"one": found, "another": found})
+    assert [axes.get_title() for axes in figure.axes] == ["one", "another"]
+    lines = figure.axes[0].get_lines()
+    stops = next(line for line in lines if line.get_marker() == "o")
+    assert np.asarray(stops.get_xdata()).tolist() == [20.0, 75.0, 250.0]
+    drawn = np.concatenate([np.asarray(line.get_xdata()) for line in lines if line.get_marker() == "None"])
+    assert set(found.angles) <= set(drawn)
+
+
+def test_the_same_plot_is_the_same_file_and_appears_whole(tmp_path: Path) -> None:
+    cube = make_cube([20.0, 75.0], 35.0)
+    found = {"": curve(cube, cast_frames(cube))}
+    for suffix in (".svg", ".png"):
+        first, second = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
+        for path in (first, second):
+            assert io.write_figure(path, plots.between_plot(found)) == path
+        assert first.read_bytes() == second.read_bytes()
+        with pytest.raises(InputError, match="exists already"):
+            io.write_figure(first, plots.between_plot(found))
+        io.write_figure(first, plots.between_plot(found), overwrite=True)
+    assert (tmp_path / "a.svg").read_text().startswith("<?xml")
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size == (900, 320)
+    with pytest.raises(InputError, match=r"\.png, \.svg"):
+        io.write_figure(tmp_path / "a.pdf", plots.between_plot(found))
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+@pytest.fixture
+def solved(tmp_path: Path) -> Path:
+    """A cube with the pictures that it casts."""
+    grid = Grid((4, 5, 6), 2.0)
+    extinction = np.random.default_rng(0).uniform(0, 0.1, (3, 4, 5, 6)).astype(np.float32)
+    cube = Cube(extinction, grid, turntable(grid, [10.0, 100.0], picture_shape=(4, 5)))
+    path = tmp_path / "solved.npz"
+    io.save(replace(cube, targets=targets(Frames(play(cube), cube.views))), path)
+    return path
+
+
+def test_score_adds_what_is_asked_for(run, solved: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    scores = json.loads(run("score", solved, "--json", "--between", "--robust").out)
+    found = scores["between"]
+    assert list(found) == ["angles", "nearest", "psnr", "ssim", "lobe_deg"]
+    assert len(found["angles"]) == len(found["nearest"]) == len(found["psnr"]) == len(found["ssim"]) >= 16
+    assert len(found["lobe_deg"]) == 2
+    assert set(scores["robust"]) == set(DISTURBANCES)
+    assert scores["robust"]["undisturbed"]["psnr_mean"] == pytest.approx(scores["psnr_mean"], rel=1e-6)
+    told = run("score", solved, "--robust", "--plot", tmp_path / "a.svg").out
+    assert (tmp_path / "a.svg").exists()
+    assert f"{found['lobe_deg'][0]:.2f}°" in told
+    assert all(str(each) in told for each in DISTURBANCES.values())
+    plain = run("score", solved).out
+    assert "°" not in plain
+    assert "between" not in json.loads(run("score", solved, "--json").out)
+
+
+def test_score_replaces_plot_and_sheet_only_when_asked(run, solved: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    plot, sheet = tmp_path / "a.png", tmp_path / "b.png"
+    for path in (plot, sheet):
+        path.write_text("mine")
+    for option, path in (("--plot", plot), ("--sheet", sheet)):
+        assert run("score", solved, option, path).code == 2
+        assert path.read_text() == "mine"
+        assert run("score", solved, option, path, "--overwrite").code == 0
+        with Image.open(path) as picture:
+            assert picture.size[0] > 100
+    done = run("score", solved, "--plot", tmp_path / "a.pdf")
+    assert done.code == 2
+    assert done.lines[-1].startswith("lightcube: ")
+
+
+def test_without_matplotlib_a_sentence_says_what_to_install(  # type: ignore[no-untyped-def]
+    run, solved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = builtins.__import__
+
+    def without(name: str, *rest: Any) -> Any:
+        if name.startswith("matplotlib"):
+            raise ImportError(name)
+        return real(name, *rest)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    done = run("score", solved, "--plot", tmp_path / "a.png", "--sheet", tmp_path / "b.png")
+    assert done.code == 2
+    assert "pip install 'lightcube[plot]'" in done.err
+    assert sorted(tmp_path.iterdir()) == [solved]
+    assert run("score", solved, "--between").code == 0

@@ -1,0 +1,124 @@
+"""The page's cards: the shown picture is what `play` casts, and what a beam passes is what the matrix says."""
+
+import re
+
+import numpy as np
+import pytest
+
+from lightcube.viewer.packing import pack
+from tests.helpers.plain import beam_of_pixel, lengths_of_beam
+from tests.helpers.visiting import (
+    COLUMNS,
+    CUBES,
+    GRID,
+    ROWS,
+    STOPS,
+    Open,
+    angle,
+    marked,
+    pages,
+    rested,
+    right,
+    shown,
+    stands,
+    turned_to,
+    turning,
+    visit,
+)
+
+__all__ = ["pages", "visit"]
+
+
+def test_the_shown_picture_is_what_play_casts(visit: Open) -> None:
+    tab, cube = visit(), turning()
+    for where in (10.0, 17.3, 130.0, 245.0):
+        turned_to(tab, where)
+        assert np.abs(shown(tab) - right(cube, where)[0]).max() <= 0.55
+    tab.keyboard.press("w")
+    assert np.abs(shown(tab) - right(cube, where, whole=True)[0]).max() <= 0.55
+    tab.keyboard.press("w")
+    assert np.abs(shown(tab) - right(cube, where)[0]).max() <= 0.55
+
+
+def test_a_stage_has_a_tab_for_every_screen(visit: Open) -> None:
+    tab, cube = visit("stage"), CUBES["stage"]()
+    assert tab.locator(".tabs button").all_inner_texts() == ["wall", "floor"]
+    assert marked(tab) == ["1"]
+    assert not tab.get_by_role("button", name="Whole shadow").is_visible()
+    pictures = right(cube, 0.0)
+    for number, name in enumerate(("wall", "floor")):
+        tab.get_by_role("button", name=name, exact=True).click()
+        found = shown(tab)
+        rows, columns = found.shape[:2]
+        assert np.abs(found - pictures[number, :rows, :columns]).max() <= 0.55
+        assert marked(tab) == [("1", "4")[number]]
+    assert tab.locator(".lamps th").all_inner_texts() == ["sun"]
+
+
+def test_the_film_strip_finds_a_picture_on_its_screen(visit: Open) -> None:
+    tab, cube = visit("stage"), CUBES["stage"]()
+    for number in (4, 1, 3):  # wall and floor at each of three stops
+        tab.get_by_role("button", name=re.compile(f"^{number + 1}, ")).click()
+        stands(tab, float(cube.angles[number]))
+        assert marked(tab) == [str(number + 1)]
+        assert cube.lighting is not None
+        screen = int(cube.lighting.screen[number])
+        assert tab.locator(".tabs [aria-pressed=true]").inner_text() == ("wall", "floor")[screen]
+        rows, columns = shown(tab).shape[:2]
+        pictures = right(cube, float(cube.angles[number]))
+        assert np.abs(shown(tab) - pictures[screen, :rows, :columns]).max() <= 0.55
+
+
+def test_the_whole_shadow_has_a_frame_where_the_picture_is(visit: Open) -> None:
+    tab, cube = visit(), turning()
+    tab.keyboard.press("w")
+    whole = shown(tab)
+    box, frame = (tab.locator(each).bounding_box() for each in (".choose canvas", ".choose .frame"))
+    scale = box["width"] / whole.shape[1]
+    top, left = round((frame["y"] - box["y"]) / scale), round((frame["x"] - box["x"]) / scale)
+    framed = whole[top : top + ROWS, left : left + COLUMNS]
+    assert np.abs(framed - right(cube, STOPS[0])[0]).max() <= 0.55
+
+
+@pytest.mark.parametrize("where", STOPS[:2])
+def test_a_beam_says_what_it_passes(visit: Open, where: float) -> None:
+    tab, cube = visit(width=1440, height=900), turning()
+    turned_to(tab, where)
+    views = cube.views.take([STOPS.index(where)])
+    box = tab.locator(".choose canvas").bounding_box()
+    for row, column in [(0, 0), (5, 2), (7, 9)]:
+        tab.mouse.move(
+            box["x"] + (column + 0.5) / COLUMNS * box["width"], box["y"] + (row + 0.5) / ROWS * box["height"]
+        )
+        rested(tab)
+        lengths = lengths_of_beam(GRID, *beam_of_pixel(views, 0, row, column))
+        left = np.exp(-np.einsum("zyx,czyx->c", lengths, pack(cube).cube.extinction))
+        said = tab.locator(".scanline > .facts").inner_text()
+        numbers = [float(each) for each in re.findall(r"[\d.]+(?=[ ;])", said)]
+        assert numbers[:2] == [column + 1, np.count_nonzero(lengths > 1e-9)]
+        assert numbers[2:] == pytest.approx(100 * left, abs=0.51)
+        assert tab.locator(".scanline header .facts").inner_text() == f"row {row + 1} of {ROWS}"
+
+
+def test_the_keys_choose_a_row(visit: Open) -> None:
+    tab = visit()
+    chooser = tab.get_by_role("slider", name="Row of the shown picture")
+    chooser.focus()
+    for key, said in [("ArrowDown", "row 6 of 8"), ("ArrowUp", "row 5 of 8"), ("ArrowRight", "row 5 of 8, column 7")]:
+        tab.keyboard.press(key)
+        rested(tab)
+        assert chooser.get_attribute("aria-valuetext") == said
+    assert angle(tab) == STOPS[0]
+    assert "Pixel 7 passes" in tab.locator(".scanline > .facts").inner_text()
+
+
+def test_pointing_at_the_slice_chooses_a_beam(visit: Open) -> None:
+    """From above the light goes to the right and the picture's left is up."""
+    tab = visit()
+    box = tab.locator("canvas.slice").bounding_box()
+    said = []
+    for part in (0.45, 0.55):
+        tab.mouse.move(box["x"] + box["width"] / 2, box["y"] + part * box["height"])
+        rested(tab)
+        said.append(int(re.findall(r"Pixel (\d+)", tab.locator(".scanline > .facts").inner_text())[0]))
+    assert said[0] <= COLUMNS / 2 < said[1]

@@ -1,0 +1,70 @@
+"""The pictures of the pages in the docs: taken here, and kept where ``LIGHTCUBE_PICTURES`` names a folder."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from lightcube import io
+from lightcube.backward import solving
+from lightcube.optics.cube import Cube
+from lightcube.pictures.samples import photographs
+from lightcube.planning.plan import plan
+from lightcube.scoring import metrics
+from lightcube.viewer.page import page
+from tests.cli.test_cli import run
+from tests.helpers.browser import opened
+
+__all__ = ["run"]
+
+
+@pytest.fixture(scope="module")
+def cube() -> Cube:
+    """Eight photographs in 48 x 48 x 48 voxels."""
+    planned = plan(photographs(8), 48, frame_width=0.6, hold=0.0)
+    found = solving.solve(planned.frames, planned.grid, iterations=150).cube
+    return replace(found, scores=metrics.score(found, planned.frames))
+
+
+def kept(picture: bytes, name: str, tmp_path: Path) -> np.ndarray[Any, np.dtype[np.uint8]]:
+    """Write a screenshot where it is asked for, and return its levels."""
+    path = Path(os.environ.get("LIGHTCUBE_PICTURES", tmp_path)) / name
+    path.write_bytes(picture)
+    image = Image.open(path).convert("RGB")
+    image.save(path, optimize=True)
+    return np.asarray(image)
+
+
+@pytest.mark.parametrize(
+    ("name", "width", "height", "scheme"),
+    [("page.png", 1200, 750, "light"), ("page-phone.png", 390, 844, "dark")],
+)
+def test_the_page_is_drawn(
+    browser: Any, cube: Cube, tmp_path: Path, name: str, width: int, height: int, scheme: str
+) -> None:
+    io.write_page(tmp_path / "photographs.html", page(cube, "photographs"))
+    tab, heard = opened(browser, tmp_path / "photographs.html", width=width, height=height, color_scheme=scheme)
+    room = tab.locator("canvas.room")
+    room.wait_for()
+    room.click(position={"x": 30, "y": 60})  # the hint goes
+    tab.wait_for_timeout(3000)  # what moves comes to rest, and is drawn sharply
+    seen = kept(tab.screenshot(), name, tmp_path)
+    box = {each: round(size) for each, size in (room.bounding_box() or {}).items()}
+    drawn = seen[box["y"] : box["y"] + box["height"], box["x"] : box["x"] + box["width"]]
+    assert np.all(np.std(drawn.reshape(-1, 3), axis=0) > 20)
+    assert len(np.unique(drawn.reshape(-1, 3), axis=0)) > 1000
+    assert not heard
+    tab.context.close()
+
+
+def test_the_report_is_drawn(run: Any, browser: Any, cube: Cube, tmp_path: Path) -> None:
+    io.save(cube, tmp_path / "photographs.zarr")
+    assert run("report", tmp_path / "photographs.zarr", "-o", tmp_path / "report.html").code == 0
+    tab, heard = opened(browser, tmp_path / "report.html", width=1000, height=700)
+    assert np.std(kept(tab.screenshot(), "report.png", tmp_path)) > 20
+    assert not heard
+    tab.context.close()

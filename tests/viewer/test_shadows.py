@@ -1,0 +1,286 @@
+"""What the page's graphics cast is what `play` casts, to half a display level, and so the room shows it."""
+
+import base64
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+
+from lightcube.forward.casting import play
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import sampled
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.transfer import Transfer, decode, encode
+from lightcube.optics.views import turntable
+from lightcube.viewer import packing
+from lightcube.viewer.description import describe
+from lightcube.viewer.packing import pack
+
+Run = Callable[..., Any]
+#: Levels of 255 that a shadow may be off: half of one by rounding, and what single precision costs.
+OFF = 0.5 + 0.05
+
+MODULES = ("data.js", "stage.js", "camera.js", "cast.js", "gpu.js", "flat.js")
+START = """(async () => {
+  const { scene, voxels, angles, whole, kind } = argument;
+  const cube = await readVoxels(fromBase64(voxels), scene);
+  const renderer = (kind === "flat" ? createFlat : createRenderer)(document.createElement("canvas"), scene, cube);
+"""
+SHADOWS = f"""{START}
+  const shown = angles.map((angle) => {{
+    const all = exposures(scene, angle, whole);
+    renderer.cast(all);
+    return all.map((_, i) => renderer.shadow(i)).map((each) => ({{ ...each, pixels: [...each.pixels] }}));
+  }});
+  renderer.dispose();
+  return shown;
+}})()"""
+
+
+def given(cube: Cube) -> dict[str, Any]:
+    """A packed cube as the page has it."""
+    packed = pack(cube)
+    scene = json.loads(json.dumps(describe(cube, packed, "test"), allow_nan=False))
+    return {"scene": scene, "voxels": base64.b64encode(packed.data()).decode()}
+
+
+def shadows(evaluate: Run, cube: Cube, angles: list[float], **more: Any) -> list[list[NDArray[np.uint8]]]:
+    """Levels of red, green and blue, for each angle and screen."""
+    found = evaluate(MODULES, SHADOWS, {**given(cube), "angles": angles, "whole": False, **more})
+    return [
+        [np.array(each["pixels"], np.uint8).reshape(each["rows"], each["columns"], 4)[..., :3] for each in at_angle]
+        for at_angle in found
+    ]
+
+
+def worst(shown: list[list[NDArray[np.uint8]]], cube: Cube, angles: list[float], *, whole: bool = False) -> float:
+    """The largest difference from what `play` says of the packed cube, levels of 255."""
+    right = play(pack(cube).cube, angles, whole_screen=whole)
+    pictures = [picture for at_angle in shown for picture in at_angle]
+    assert len(pictures) == len(right)
+    levels = 255 * encode(np.clip(right, 0, 1).astype(np.float64), cube.transfer)
+    off = [
+        np.abs(picture - wanted[: picture.shape[0], : picture.shape[1]])
+        for picture, wanted in zip(pictures, levels, strict=True)
+    ]
+    return max(float(each.max()) for each in off)
+
+
+def glass(shape: tuple[int, int, int], channels: int = 3, seed: int = 0) -> NDArray[np.float32]:
+    """A few dark voxels among many clear ones."""
+    random = np.random.default_rng(seed)
+    return random.gamma(0.3, 5 / (0.3 * max(shape)), (channels, *shape)).astype(np.float32)
+
+
+TURNTABLES: dict[str, tuple[tuple[int, int, int], float, tuple[int, int], int, Transfer]] = {
+    "level": ((3, 5, 7), 0.0, (3, 5), 3, "srgb"),
+    "raised": ((12, 12, 12), 35.0, (10, 12), 3, "srgb"),
+    "one colour, linear": ((5, 4, 6), 12.0, (5, 4), 1, "linear"),
+}
+ANGLES = [0.0, 20.0, 33.3, 45.0, 89.9999, 90.0, 90.00001, 123.456, 180.0, 270.0, 359.99, 1e-4]
+
+
+def on_turntable(name: str, **more: Any) -> Cube:
+    """A random cube with three stops and powers of their own."""
+    shape, elevation, window, channels, transfer = TURNTABLES[name]
+    grid = Grid(shape, 0.8)
+    views = turntable(grid, [20.0, 90.0, 130.0], elevation=elevation, picture_shape=window)
+    powers = np.random.default_rng(1).uniform(0.5, 3, (3, channels))
+    return Cube(glass(shape, channels), grid, views, powers, transfer=transfer, hold_deg=1.0, **more)
+
+
+@pytest.mark.parametrize("whole", [False, True])
+@pytest.mark.parametrize("name", TURNTABLES)
+def test_turntables(evaluate: Run, name: str, whole: bool) -> None:
+    cube = on_turntable(name)
+    assert worst(shadows(evaluate, cube, ANGLES, whole=whole), cube, ANGLES, whole=whole) <= OFF
+
+
+@pytest.mark.parametrize("kind", ["webgl", "flat"])
+@pytest.mark.parametrize("bits", packing.BITS[1:])
+@pytest.mark.parametrize("name", TURNTABLES)
+def test_codes_of_more_bits(evaluate: Run, name: str, bits: int, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(packing, "BITS", (bits,))
+    cube = on_turntable(name)
+    cube = replace(cube, extinction=cube.extinction * np.float32(5), lamp_powers=cube.powers * 3)
+    assert worst(shadows(evaluate, cube, ANGLES, kind=kind), cube, ANGLES) <= OFF
+
+
+@pytest.mark.parametrize("shape", [(4, 4, 4), (3, 5, 5), (4, 5, 6)])
+@pytest.mark.parametrize("shift", [0.0, 0.5])
+def test_beams_along_faces(evaluate: Run, shape: tuple[int, int, int], shift: float) -> None:
+    """Whole voxels from the middle, or half a voxel beside: in one of them the beams of 0° and 90° run along faces."""
+    grid = Grid(shape)
+    views = turntable(grid, [0.0, 90.0, 200.0], picture_shape=(shape[0] - 2, shape[1] - 2))
+    beside = shift * (views.column_steps + views.row_steps)
+    cube = Cube(glass(shape), grid, replace(views, origins=views.origins + beside))
+    angles = [0.0, 90.0, 180.0, 270.0, 1e-3, 90 - 1e-4, 180 + 1e-5]
+    assert worst(shadows(evaluate, cube, angles), cube, angles) <= OFF
+
+
+GRID = Grid((7, 6, 8), 0.7)
+WALL = Screen("wall", (5.0, 0.0, -2.5), (4.9, 4.2), 0.7)
+RED, BLUE = (
+    Lamp(name, (1.0, y, z), colour=colour)
+    for name, y, z, colour in (("red", 0.3, -0.6, (1.0, 0.1, 0.0)), ("blue", -0.3, -0.4, (0.1, 0.3, 1.0)))
+)
+BULB = Lamp("bulb", position=(-12.0, 0.0, 6.0))
+FLOOR = Screen("floor", (0.0, 0.0, -6.0), (3.5, 5.6), 0.7)
+SUN = Lamp("sun", (0.0, 0.0, -1.0))
+ROOMS: dict[str, tuple[tuple[Lamp, ...], tuple[Screen, ...], int]] = {
+    "two coloured lamps": ((RED, BLUE), (WALL,), 1),
+    "a shadow that fades, of a point": ((BULB,), (replace(WALL, reach_mm=5.4, falloff_mm=4.0),), 1),
+    "a shadow that ends": ((replace(RED, reach_mm=5.4, falloff_mm=0.0),), (WALL,), 1),
+    "penumbra": ((replace(RED, colour=(1, 1, 1), size_deg=5.0),), (WALL,), 7),
+    "aslant and by the inverse square": ((replace(BULB, full_at_mm=18.0),), (replace(WALL, cosine=True),), 1),
+    "a bulb far away": ((replace(BULB, position=(-4000.0, 0.0, 0.0)),), (WALL,), 1),
+    "a bulb level with a face": ((replace(BULB, position=(-9.0, 0.7, 0.7)),), (WALL,), 1),
+    "two screens of different sizes": ((RED, SUN, BULB), (WALL, FLOOR), 1),
+}
+
+
+def on_stage(name: str) -> Cube:
+    """A random cube; the red and the blue lamp and the bulb shine on the wall, the sun on the floor."""
+    lamps, screens, samples = ROOMS[name]
+    shots = []
+    for screen in screens:
+        its = tuple(lamp.name for lamp in lamps if (lamp.name == "sun") == (screen.name == "floor"))
+        shots += [Shot(f"{screen.name} {stop}", screen.name, its, stop) for stop in range(3)]
+    stage = Stage(GRID, lamps, screens, tuple(shots), (0.0, 110.0, 230.0))
+    views, lighting = sampled(*exposures(stage), lamp_samples=samples)
+    powers = np.random.default_rng(2).uniform(0.4, 1.5, (len(lighting.pairs), 3))
+    return Cube(glass(GRID.shape), GRID, views, powers, lighting=lighting)
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_stages(evaluate: Run, name: str) -> None:
+    cube, angles = on_stage(name), [0.0, 51.0, 90.0, 110.0, 230.0, 359.0]
+    assert worst(shadows(evaluate, cube, angles), cube, angles) <= OFF
+
+
+def test_flat_casts_the_same(evaluate: Run) -> None:
+    cube, angles = on_stage("two screens of different sizes"), [0.0, 51.0, 230.0]
+    shown = shadows(evaluate, cube, angles, kind="flat")
+    assert worst(shown, cube, angles) <= 0.5 + 1e-3
+    cube = on_turntable("level")
+    assert worst(shadows(evaluate, cube, angles, kind="flat"), cube, angles) <= 0.5 + 1e-3
+
+
+def test_lost_contexts_come_back(evaluate: Run) -> None:
+    """The same shadow as before, cast without being asked."""
+    lose = """(async () => {
+      const { scene, voxels } = argument;
+      const canvas = document.createElement("canvas");
+      const renderer = createRenderer(canvas, scene, await readVoxels(fromBase64(voxels), scene));
+      renderer.cast(exposures(scene, 33));
+      const before = [...renderer.shadow(0).pixels];
+      const handle = canvas.getContext("webgl2").getExtension("WEBGL_lose_context");
+      const lost = new Promise((done) => canvas.addEventListener("webglcontextlost", () => setTimeout(done, 50)));
+      handle.loseContext();
+      await lost;
+      const restored = new Promise((done) => (renderer.onRestored = done));
+      handle.restoreContext();
+      await restored;
+      return [before, [...renderer.shadow(0).pixels]];
+    })()"""
+    before, after = evaluate(MODULES, lose, given(on_turntable("raised")))
+    assert before == after
+    assert len(set(before)) > 20
+
+
+SEEN = f"""{START}
+  const canvas = document.createElement("canvas");
+  Object.assign(canvas, {{ width: 300, height: 200 }});
+  const room = standing(scene, angles[0]);
+  const camera = cameraOf(fitted(orbitFrom(scene.camera), scene, [room], 1.5), 1.5);
+  const painter = createRenderer(canvas, scene, cube);
+  painter.cast(exposures(scene, angles[0]));
+  painter.draw(room, camera, {{ dark: argument.dark, mark: argument.mark ?? null, scale: argument.scale ?? 1 }});
+  const gl = canvas.getContext("webgl2");
+  const pixels = new Uint8Array(4 * 300 * 200);
+  gl.readPixels(0, 0, 300, 200, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  const corners = [0, 1].map((y) => [0, 1].map((x) => rayAt(camera, x, y).way));
+  const shadow = painter.shadow(0);
+  renderer.dispose();
+  painter.dispose();
+  return {{ pixels: [...pixels], eye: camera.eye, corners, screen: room.screens[0], shadow: [...shadow.pixels] }};
+}})()"""
+
+
+def seen(evaluate: Run, cube: Cube, **more: Any) -> dict[str, Any]:
+    """What the room shows, `levels` (200, 300, 3), and the `ways` of its pixels' rays, in the room."""
+    found = evaluate(MODULES, SEEN, {**given(cube), "angles": [0.0], "dark": False, **more})
+    found["levels"] = np.array(found["pixels"], np.float64).reshape(200, 300, 4)[::-1, :, :3]
+    corners = np.array(found["corners"])
+    corners /= (corners @ corners.sum(axis=(0, 1)))[..., None]  # all as far ahead
+    x, y = (np.arange(300) + 0.5)[:, None] / 300, (np.arange(200) + 0.5)[:, None, None] / 200
+    above, below = ((1 - x) * left + x * right for left, right in corners)
+    ways = (1 - y) * above + y * below
+    found["ways"] = ways / np.linalg.norm(ways, axis=-1, keepdims=True)
+    return dict(found)
+
+
+def chords(found: dict[str, Any], grid: Grid) -> NDArray[np.float64]:
+    """Lengths of the rays within the cube at angle 0, mm; negative where they miss it."""
+    half = 0.5 * np.array(grid.size_mm[::-1])
+    ends = np.stack([(side * half - np.array(found["eye"])) / found["ways"] for side in (-1, 1)])
+    return np.asarray(ends.max(axis=0).min(axis=-1) - ends.min(axis=0).max(axis=-1))
+
+
+def test_glass_is_seen_by_the_eye(evaluate: Run) -> None:
+    """Light from behind an even cube is dimmed by the law of Beer and Lambert over each ray's chord."""
+    shape, extinction = (6, 8, 10), np.array([0.02, 0.06, 0.15])
+    grid = Grid(shape, 1.3)
+    views = turntable(grid, [0.0, 70.0], elevation=20.0, picture_shape=(6, 8))
+    cube, clear = (
+        Cube(np.broadcast_to(each[:, None, None, None], (3, *shape)).astype(np.float32), grid, views)
+        for each in (extinction, 0 * extinction)
+    )
+    through, past = seen(evaluate, cube), seen(evaluate, clear)
+    chord = chords(through, grid)
+    inside = (chord > 0.5) & (np.abs(through["levels"] - past["levels"]).max(axis=-1) > 0)
+    kept = np.exp(-np.maximum(chord, 0)[..., None] * extinction)
+    off = np.abs(through["levels"] - 255 * encode(kept * decode(past["levels"] / 255)))[inside].max(axis=-1)
+    assert np.count_nonzero(inside) > 10000
+    assert np.mean(off <= 2.1) > 0.9  # both pictures are rounded; what is left is under the cube's edges
+    assert np.median(off) < 0.8
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_picture_in_the_room_is_the_shadow(evaluate: Run, dark: bool) -> None:
+    """Where a ray meets the screen past the cube, the room shows the shadow there, with smooth steps between pixels."""
+    cube = on_turntable("raised")
+    found = seen(evaluate, cube, dark=dark)
+    screen, eye = found["screen"], np.array(found["eye"])
+    rows, columns = screen["pixels"]
+    corner, facing, right, down = (np.array(screen[name]) for name in ("corner", "facing", "right", "down"))
+    away = ((corner - eye) @ facing) / (found["ways"] @ facing)
+    places = eye + away[..., None] * found["ways"] - corner
+    across, below = (places @ step / (step @ step) - 0.5 for step in (right, down))
+    inside = (across > 0) & (across < columns - 1) & (below > 0) & (below < rows - 1) & (chords(found, cube.grid) < -1)
+    assert np.count_nonzero(inside) > 500
+    shadow = np.array(found["shadow"], np.float64).reshape(rows, columns, 4)
+    wanted = np.stack(
+        [map_coordinates(shadow[..., i], [below[inside], across[inside]], order=1) for i in range(3)], axis=-1
+    )
+    off = np.abs(found["levels"][inside] - wanted).max(axis=-1)
+    assert np.mean(off <= 2) > 0.95  # thin lines pass before it
+
+
+def test_small_pictures_are_enlarged(evaluate: Run) -> None:
+    cube = on_turntable("raised")
+    off = np.abs(seen(evaluate, cube)["levels"] - seen(evaluate, cube, scale=0.5)["levels"])
+    assert 0.01 < np.mean(off) < 6
+
+
+def test_marks_are_seen(evaluate: Run) -> None:
+    """A bright row on the screen, and its beams."""
+    cube = on_turntable("raised")
+    plain, marked = (seen(evaluate, cube, mark=mark)["levels"] for mark in (None, {"screen": 0, "row": 4, "column": 5}))
+    assert np.count_nonzero(np.abs(plain - marked).max(axis=-1) > 4) > 100

@@ -1,0 +1,132 @@
+"""The smaller cube that a page holds: of the same size, for the same pictures."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lightcube import io
+from lightcube.backward import solving
+from lightcube.forward.casting import play
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.views import turntable
+from lightcube.pictures.fitting import frames_from_targets
+from lightcube.pictures.frames import Frames
+from lightcube.pictures.resampling import coarser
+from lightcube.scoring.metrics import mean_psnr
+from lightcube.viewer import smaller as page_cube
+from lightcube.viewer.description import describe
+from lightcube.viewer.packing import lost, pack
+from lightcube.viewer.smaller import shown_coarsely, smaller
+from tests.backward.test_stages import known, stage
+from tests.cli.test_cli import run
+
+__all__ = ["run"]
+
+
+@pytest.fixture(scope="module")
+def solved() -> Cube:
+    """A cube of 10 x 12 x 12 voxels and two smooth pictures of 6 x 8."""
+    grid = Grid((10, 12, 12), 2.0)
+    views = turntable(grid, [20.0, 130.0], elevation=35.0, picture_shape=(6, 8))
+    down, across = np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 8), indexing="ij")
+    waves = [0.5 + 0.4 * np.sin(3 * down + 4 * across + phase) for phase in range(6)]
+    pictures = np.stack([np.stack(waves[:3], -1), np.stack(waves[3:], -1)]).astype(np.float32)
+    return solving.solve(Frames(pictures, views), grid, iterations=60).cube
+
+
+def test_a_cube_that_fits_is_kept(solved: Cube) -> None:
+    assert smaller(solved) is solved
+
+
+def test_the_smaller_cube_shows_the_same_pictures(solved: Cube, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
+    small = smaller(solved)
+    assert small.grid == Grid((7, 8, 8), 3.0)
+    assert small.views.picture_shape == (4, 6)
+    np.testing.assert_allclose(small.angles, solved.angles)
+    wanted, _ = coarser(frames_from_targets(solved), solved.grid, 1.5)
+    assert small.scores["psnr_mean"] == pytest.approx(mean_psnr(play(small), wanted))
+    assert small.scores["psnr_mean"] > 35
+    told = describe(solved, pack(small), "two")
+    assert told["kept"]["full"] == (10, 12, 12)
+    assert told["voxels"]["shape"] == (7, 8, 8)
+    assert told["raster"] == (4, 6)
+    assert [each["psnr"] for each in told["pictures"]] == [each["psnr"] for each in small.scores["views"]]
+
+
+BOUNDS: dict[str, dict[str, Any]] = {
+    "as it comes": {},
+    "extinction": {"max_extinction": 0.02},
+    "a lamp of power 1": {"lamp_power": 1.0},
+    "one lamp": {"lamp": "global", "lamp_max": 3.0},
+    "weak lamps": {"lamp_max": 1.5},
+    "black": {"black": 0.3},
+    "all": {"lamp_power": 2.0, "max_extinction": 0.03, "black": 0.2},
+}
+
+
+@pytest.mark.parametrize("bounds", BOUNDS.values(), ids=BOUNDS.keys())
+def test_what_bounded_the_cube_bounds_the_smaller_one(
+    solved: Cube, bounds: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cube = solving.solve(frames_from_targets(solved), solved.grid, iterations=20, **bounds).cube
+    monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
+    small = smaller(cube)
+    assert small.extinction.max() <= bounds.get("max_extinction", np.inf) * (1 + 1e-6)
+    least, most = bounds.get("lamp_power", 0), bounds.get("lamp_power", bounds.get("lamp_max", 16))
+    assert np.all((least <= small.powers) & (small.powers <= most))
+    if bounds.get("lamp") == "global":
+        assert np.all(small.powers == small.powers[0])
+    for bound in ("lamp", "lamp_power", "lamp_max", "max_extinction", "black"):
+        assert small.provenance.get(bound) == cube.provenance.get(bound), bound
+
+
+def test_what_bounded_a_stages_cube_bounds_the_smaller_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    known_cube, wanted = known(stage("two coloured lamps"))
+    bounds: dict[str, Any] = {"lamp": "global", "max_extinction": 0.05, "black": 0.1}
+    cube = solving.solve(wanted, known_cube.grid, iterations=20, **bounds).cube
+    monkeypatch.setattr(page_cube, "MOST_SIDE", max(cube.grid.shape) - 1)
+    small = smaller(cube)
+    assert small.extinction.max() <= 0.05 * (1 + 1e-6)
+    for bound in ("lamp", "max_extinction", "black"):
+        assert small.provenance[bound] == cube.provenance[bound], bound
+
+
+def test_what_it_loses_is_what_its_pixels_show(solved: Cube, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page_cube, "MOST_SIDE", 6)
+    small = smaller(solved)
+    halves = play(solved).reshape(2, 3, 2, 4, 2, 3).mean(axis=(2, 4))  # 6 x 8 pixels in pairs
+    np.testing.assert_allclose(shown_coarsely(solved, small), halves, rtol=1e-5)
+    dark = replace(small, extinction=small.extinction + 10)
+    assert lost(solved, dark)[0] > 100 > lost(solved, small)[0]
+
+
+@pytest.mark.parametrize("room", ["two coloured lamps", "aslant and by the inverse square"])
+def test_a_stages_cube_gets_smaller_too(room: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    cube, _ = known(stage(room))
+    assert cube.lighting is not None
+    monkeypatch.setattr(page_cube, "MOST_SIDE", max(cube.grid.shape) - 1)
+    small = smaller(cube)
+    assert small.lighting is not None
+    ratio = small.grid.voxel_mm / cube.grid.voxel_mm
+    for window, fine in zip(small.lighting.window, cube.lighting.window, strict=True):
+        assert np.all(window >= np.ceil(fine / ratio))
+        assert np.all(window <= small.views.picture_shape)
+    assert lost(cube, small)[1] < 40
+
+
+def test_the_command_says_that_it_holds_less(
+    run: Any, solved: Cube, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
+    monkeypatch.chdir(tmp_path)
+    io.save(solved, "cube.npz")
+    done = run("view", "cube.npz")
+    assert done.code == 0, done.err
+    assert "8 x 8 x 7 voxels, solved anew for the pictures of 12 x 12 x 10" in done.err
+    assert json.loads(run("view", "cube.npz", "-o", "b.html", "--full", "--json").out)["shape"] == [10, 12, 12]
