@@ -9,7 +9,7 @@ import pytest
 from tests.test_viewer_shadows import given, on_stage, on_turntable
 
 Run = Callable[..., Any]
-MODULES = ("data.js", "stage.js", "camera.js")
+MODULES = ("vectors.js", "stage.js", "furniture.js", "camera.js")
 CUBES = {"turntable": lambda: on_turntable("raised"), "stage": lambda: on_stage("two screens of different sizes")}
 
 

@@ -9,7 +9,44 @@ from lightcube.forward import exposures_at, play, views_at
 from lightcube.geometry import rotations
 from lightcube.standing import as_stage, standing
 from lightcube.transfer import decode, encode
+from lightcube.viewer import modules
 from tests.paging import ANGLES, CUBES, RANDOM, Evaluate, asked, held_in_a_page, nearly
+
+# joined
+
+TWINS = {
+    "one.js": """const SIZE = 1;
+
+export function one() {
+  return size();
+}
+
+function size() {
+  return SIZE;
+}
+""",
+    "other.js": """import { one } from "./one.js";
+
+const SIZE = 2;
+
+export class Other {
+  both = [one(), size()];
+}
+
+function size() {
+  return SIZE;
+}
+""",
+}
+
+
+def test_names_that_are_not_exported_are_a_module_s_own(evaluate: Evaluate, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(modules, "source", TWINS.__getitem__)
+    assert evaluate(("other.js",), "[new Other().both, typeof one, typeof size, typeof SIZE]") == [
+        [1, 2],
+        *["undefined"] * 3,
+    ]
+
 
 # vectors.js and light.js
 

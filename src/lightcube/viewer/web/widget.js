@@ -10,7 +10,7 @@ import { readScene, readVoxels } from "./data.js";
  *   (degrees), which follows the cube, and the cube it
  * @returns {Promise<function(): void>} takes it away again
  */
-async function render({ model, el }) {
+export async function render({ model, el }) {
   const root = document.createElement("div");
   el.append(root);
   try {
