@@ -1,7 +1,7 @@
 // A light cube in a notebook, for anywidget: the angle is the model's.
 
 import { mount } from "./app.js";
-import { readScene, readVoxels } from "./data.js";
+import { readScene, readVoxels } from "./model/data.js";
 
 /**
  * Show the cube of a model in an element.

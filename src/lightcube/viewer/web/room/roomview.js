@@ -1,11 +1,11 @@
 // The room on its canvas: which renderer draws it, from where it is seen, and what one points at in it.
 
+import { exposures, standing } from "../model/stage.js";
+import { clampTo, element, fitCanvas } from "../tools/elements.js";
 import { cameraOf, fitted, orbitFrom, pointed, rayAt } from "./camera.js";
-import { clampTo, element, fitCanvas } from "./elements.js";
 import { createFlat } from "./flat.js";
 import { roomsAround } from "./furniture.js";
 import { createRenderer } from "./gpu.js";
-import { exposures, standing } from "./stage.js";
 
 /** Degrees that the eye moves by for a pixel. */
 const EYE_SPEED = 0.3;

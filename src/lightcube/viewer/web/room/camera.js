@@ -1,6 +1,7 @@
 // A camera on an orbit round the cube, and what its rays meet; lengths are mm, in the room.
+
+import { add, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { extentOf } from "./furniture.js";
-import { add, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
 
 /** Heights of the eye above its target's level, degrees: above the floor, and with an upright picture. */
 const ORBIT_LOWEST = 2;

@@ -1,4 +1,5 @@
 // What a screen shows: the sum of the lamps' light behind the cube, in linear light.
+
 import { beamOf, mostPieces, walkInto } from "./beam.js";
 import { fallingLight } from "./light.js";
 

@@ -1,5 +1,6 @@
 // What stands where at a turntable angle, in the cube's frame (exposures) and in the room's (standing); lengths are mm.
-import { add, apply, cross, dot, modulo, norm, rotation, scaled, sub, unit } from "./vectors.js";
+
+import { add, apply, cross, dot, modulo, norm, rotation, scaled, sub, unit } from "../tools/vectors.js";
 
 /** Stops nearer to each other than this, in degrees, are one. */
 const STAGE_SAME = 1e-6;

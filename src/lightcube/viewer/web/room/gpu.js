@@ -1,9 +1,10 @@
 // The renderer on WebGL2: exact shadows into textures, and the room with the cube as coloured glass.
+
+import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, seenAt } from "./camera.js";
 import { ROOM_TONES, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, tableOf } from "./furniture.js";
 import { SHADER_CAST, SHADER_EVERYWHERE, SHADER_ROOM } from "./shaders.js";
-import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
 
 /** What is infinite, in single precision. */
 const GPU_NEVER = 1e30;

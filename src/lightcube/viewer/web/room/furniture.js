@@ -1,6 +1,7 @@
 // What stands in the room besides pictures, and its colours: the same for both renderers. Lengths are mm, in the room.
-import { standing } from "./stage.js";
-import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
+
+import { standing } from "../model/stage.js";
+import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 
 /** Linear light of the room and of what stands in it. */
 export const ROOM_TONES = {

@@ -1,11 +1,12 @@
 // The renderer where there is no WebGL2: the same room on a 2-D canvas, plainer, its shadows cast one ray at a time.
-import { walk } from "./beam.js";
+
+import { walk } from "../model/beam.js";
+import { castPicture, transmittance } from "../model/cast.js";
+import { encode } from "../model/light.js";
+import { add, applyInverse, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, rayAt, seenAt } from "./camera.js";
-import { castPicture, transmittance } from "./cast.js";
 import { ROOM_TONES, cubeCorners, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, screenCorners, tableOf } from "./furniture.js";
-import { encode } from "./light.js";
-import { add, applyInverse, dot, norm, scaled, sub, unit } from "./vectors.js";
 
 /** Shadows that are kept. */
 const FLAT_KEPT = 64;

@@ -1,5 +1,6 @@
 // How display values follow from linear light, and how much light and shadow of a lamp reaches a pixel.
-import { cross, dot, norm, scaled, sub } from "./vectors.js";
+
+import { cross, dot, norm, scaled, sub } from "../tools/vectors.js";
 
 /** Shortest way from a lamp to a pixel that it stands on, mm. */
 const LIGHT_SHORTEST = 1e-12;

@@ -1,8 +1,9 @@
 // One scan-line from above: the voxels and the beams in the plane through a row of pixels and the light that makes it.
+
+import { cross, dot } from "../tools/vectors.js";
 import { beamOf, stretchInside, walk } from "./beam.js";
 import { castRow, transmittance } from "./cast.js";
 import { encode } from "./light.js";
-import { cross, dot } from "./vectors.js";
 
 /** A plane counts as on a face within this distance, in voxel sides. */
 const SHEET_ON_FACE = 1e-9;

@@ -1,5 +1,6 @@
 // One beam through the cube: which voxels it meets, and for how long (Siddon's method, Medical Physics 12 (1985) 252).
-import { add, norm, scaled, sub } from "./vectors.js";
+
+import { add, norm, scaled, sub } from "../tools/vectors.js";
 
 /** A direction's part below this is zero. */
 const BEAM_PARALLEL = 1e-12;
