@@ -48,7 +48,7 @@ def bare_browser(launch: Callable[..., Any]) -> Iterator[Any]:
 
 @pytest.fixture
 def evaluate(browser: Any) -> Iterator[Callable[..., Any]]:
-    """A function that runs an expression after some of the page's modules, in an empty page."""
+    """A function that runs an expression over what some of the page's modules export, in an empty page."""
     page = browser.new_page()
 
     def run(modules: tuple[str, ...], expression: str, argument: Any = None) -> Any:

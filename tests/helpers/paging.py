@@ -23,7 +23,7 @@ Array = NDArray[Any]
 
 GRID = Grid((3, 5, 7), 1.3)
 RANDOM = np.random.default_rng(7)
-ALL = ("data.js", "stage.js", "cast.js", "sheet.js")
+ALL = ("model/data.js", "model/stage.js", "model/cast.js", "model/sheet.js")
 #: The scene and the voxels of an argument, for an expression to go on with.
 GIVEN = """(async () => {
   const scene = await readScene(fromBase64(argument.scene));

@@ -9,7 +9,7 @@ import pytest
 from tests.viewer.test_shadows import given, on_stage, on_turntable
 
 Run = Callable[..., Any]
-MODULES = ("data.js", "stage.js", "camera.js")
+MODULES = ("tools/vectors.js", "model/stage.js", "room/furniture.js", "room/camera.js")
 CUBES = {"turntable": lambda: on_turntable("raised"), "stage": lambda: on_stage("two screens of different sizes")}
 
 

@@ -44,7 +44,7 @@ def test_voxels_come_through(
 def test_base64_is_read_with_and_without_help(evaluate: Evaluate, native: bool) -> None:
     without = "" if native else "delete Uint8Array.fromBase64, "
     sent = RANDOM.integers(0, 256, 1000).astype(np.uint8).tobytes()
-    found = evaluate(("data.js",), f"({without}[...fromBase64(argument)])", base64.b64encode(sent).decode())
+    found = evaluate(("model/data.js",), f"({without}[...fromBase64(argument)])", base64.b64encode(sent).decode())
     assert bytes(found) == sent
     broken = failure(evaluate, f"({without}fromBase64(argument))", "AAAA*AAA")
     assert broken == "the page's data is not base64, some of its letters are damaged: write or send the page again"

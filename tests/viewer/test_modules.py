@@ -1,25 +1,211 @@
-"""The page's mathematics, module by module in a browser, against the Python that it repeats."""
+"""The page's modules: their rooms, how they are joined, and their mathematics against the Python that it repeats."""
 
+import re
+import zipfile
+from graphlib import TopologicalSorter
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from hatchling.builders.wheel import WheelBuilder
 
+import lightcube
 from lightcube.drawing.standing import as_stage, standing
 from lightcube.forward.casting import play
 from lightcube.forward.turning import exposures_at, views_at
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import rotations
-from tests.helpers.paging import ANGLES, CUBES, RANDOM, Evaluate, asked, held_in_a_page, nearly
+from lightcube.viewer import modules
+from tests.helpers.paging import ANGLES, CUBES, GIVEN, PLAIN, RANDOM, Evaluate, asked, held_in_a_page, nearly
 
-# vectors.js and light.js
+WEB = Path(lightcube.__file__).parent / "viewer" / "web"
+MODULES = sorted(file.relative_to(WEB).as_posix() for file in WEB.rglob("*.js"))
+#: The rooms, and from which ones each may import; those at the door stand in none.
+ROOMS = {
+    "tools": {"tools"},
+    "model": {"tools", "model"},
+    "room": {"tools", "model", "room"},
+    "parts": {"tools", "model", "parts"},
+    "": {"tools", "model", "room", "parts", ""},
+}
+DOORS = ("page.js", "widget.js")
+
+
+def room(path: str) -> str:
+    """The folder that a module stands in."""
+    return path.rpartition("/")[0]
+
+
+def text_of(path: str) -> str:
+    """A module without its comments."""
+    return re.sub(r"/\*.*?\*/|(?<![:\"'`])//[^\n]*", "", modules.source(path), flags=re.DOTALL)
+
+
+# rooms
+
+
+@pytest.mark.parametrize("path", MODULES)
+def test_imports_run_downhill(path: str) -> None:
+    assert {room(needed) for needed in modules.imports(path)} <= ROOMS[room(path)]
+
+
+def test_nothing_imports_what_stands_at_the_door() -> None:
+    """But the page and the widget, which open the app."""
+    found = {(path, needed) for path in MODULES for needed in modules.imports(path) if room(needed) == ""}
+    assert found == {(door, "app.js") for door in DOORS}
+
+
+def test_imports_form_no_circle() -> None:
+    TopologicalSorter({path: modules.imports(path) for path in MODULES}).prepare()
+
+
+@pytest.mark.parametrize("path", MODULES)
+def test_what_is_imported_is_exported_and_used(path: str) -> None:
+    text = text_of(path)
+    for names, place in re.findall(r'^import \{([^}]*)\} from "([^"]*)";$', text, re.MULTILINE):
+        needed = (WEB / path).parent.joinpath(place).resolve().relative_to(WEB.resolve()).as_posix()
+        for name in re.findall(r"\w+", names):
+            assert name in modules.exports(needed), f"{needed} does not export {name}"
+            assert len(re.findall(rf"\b{name}\b", text)) > 1, f"{path} does not use {name}"
+
+
+def test_what_is_exported_is_taken() -> None:
+    """By another module, or by the tests."""
+    tests = "".join(file.read_text() for file in Path(__file__).parents[1].rglob("*.py"))
+    for path in MODULES:
+        others = "".join(text_of(other) for other in MODULES if path in modules.imports(other))
+        for name in modules.exports(path):
+            assert re.search(rf"\b{name}\b", others) or re.search(rf"\b{name}\b", tests), f"{path}: {name}"
+
+
+@pytest.mark.parametrize("path", MODULES)
+def test_a_module_says_first_what_it_is(path: str) -> None:
+    first, second, *_ = modules.source(path).splitlines()
+    assert re.fullmatch(r"// [A-Z].*\.", first)
+    assert second == ""
+
+
+MODEL = [path for path in MODULES if room(path) == "model"]
+
+
+@pytest.mark.parametrize("path", [*MODEL, "tools/vectors.js"])
+def test_the_model_has_no_document(path: str) -> None:
+    assert {room(needed) for needed in modules.imports(path)} <= {"model", "tools"}
+    assert "tools/elements.js" not in modules.imports(path)
+    assert not re.search(
+        r"\bdocument\b|(?<![.\w])window[.[]|\bHTML\w+|\bSVG\w+|\bmatchMedia\b|\bgetContext\b", text_of(path)
+    )
+
+
+#: Runs a text apart from the page, where there is no document, and hands back what it answers.
+APART = """new Promise((done, failed) => {
+  const worker = new Worker(URL.createObjectURL(new Blob([argument.text])));
+  worker.onmessage = ({ data }) => done(data);
+  worker.onerror = (event) => failed(new Error(event.message));
+  worker.postMessage(argument);
+})"""
+TOLD = """{
+  at: momentOf(scene, new Turning(stops(scene), true), exposures(scene, 10), { place: 0, row: 1, column: null }),
+  pictures: exposures(scene, 10).map((exposure) => castPicture(cube, exposure)),
+  sheet: sheetOf(cube, exposures(scene, 10)[0], 0, 1),
+  room: standing(scene, 10),
+  page: typeof document + typeof window,
+}"""
+
+
+def test_the_model_runs_without_a_page(evaluate: Evaluate) -> None:
+    data = held_in_a_page("stage")[2]
+    answer = f"onmessage = ({{ data: argument }}) => {GIVEN % (PLAIN % f'({TOLD})')}.then(postMessage, postMessage);"
+    apart = evaluate((), APART, data | {"text": f"{modules.joined(*MODEL)}\n{answer}"})
+    assert apart.pop("page") == "undefinedundefined"
+    inside = evaluate(tuple(MODEL), GIVEN % (PLAIN % f"({TOLD})"), data)
+    assert inside.pop("page") == "objectobject"
+    assert apart == inside
+
+
+# joined
+
+TWINS = {
+    "one.js": """const SIZE = 1;
+
+export function one() {
+  return size();
+}
+
+function size() {
+  return SIZE;
+}
+""",
+    "other.js": """import { one } from "./one.js";
+
+const SIZE = 2;
+
+export class Other {
+  both = [one(), size()];
+}
+
+function size() {
+  return SIZE;
+}
+""",
+}
+
+
+def test_names_that_are_not_exported_stay_in_their_module(evaluate: Evaluate, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(modules, "source", TWINS.__getitem__)
+    both, *unseen = evaluate(("other.js",), "[new Other().both, typeof one, typeof size, typeof SIZE]")
+    assert both == [1, 2]
+    assert unseen == ["undefined"] * 3
+
+
+def test_each_is_joined_once_and_after_what_it_imports() -> None:
+    found = re.findall(r"^const \$(\w+) = \(\(\) => \{$", modules.joined(*DOORS), re.MULTILINE)
+    names = {path: path.removesuffix(".js").replace("/", "_") for path in MODULES}
+    assert sorted(found) == sorted(names.values())
+    for path in MODULES:
+        assert all(found.index(names[needed]) < found.index(names[path]) for needed in modules.imports(path))
+
+
+def test_joined_text_imports_and_exports_nothing() -> None:
+    assert not re.search(r"^\s*(import|export)\b", modules.joined(*MODULES), re.MULTILINE)
+
+
+def test_each_works_as_a_module_of_its_own(browser: Any) -> None:
+    """Unjoined, and exports what it does where it is joined."""
+    tab = browser.new_page()
+
+    def send(route: Any) -> None:
+        name = route.request.url.removeprefix("http://lightcube.test/")
+        if name == "":
+            route.fulfill(body='<main id="lightcube"></main>', content_type="text/html")
+        else:
+            route.fulfill(body=modules.source(name), content_type="text/javascript")
+
+    tab.route("**/*", send)
+    tab.goto("http://lightcube.test/")
+    for path in MODULES:
+        assert sorted(modules.exports(path)) == tab.evaluate(f"import('/{path}').then(Object.keys)"), path
+    tab.close()
+
+
+def test_a_wheel_holds_all_of_the_page(tmp_path: Path) -> None:
+    root = Path(__file__).parents[1]
+    wheel = zipfile.ZipFile(next(WheelBuilder(str(root)).build(directory=str(tmp_path), versions=["standard"])))
+    for file in filter(Path.is_file, WEB.rglob("*")):
+        path = file.relative_to(WEB).as_posix()
+        assert wheel.read(f"lightcube/viewer/web/{path}") == file.read_bytes()
+        assert modules.source(path) == file.read_text(encoding="utf-8")
+
+
+# tools/vectors.js and model/light.js
 
 
 def test_rotations_are_those_of_python(evaluate: Evaluate) -> None:
     axes = RANDOM.normal(size=(4, 3)).tolist() + np.eye(3).tolist()
     angles = [*RANDOM.uniform(-800, 800, 5), *range(-450, 451, 90), 45.0, -1e-20]
     expression = "argument.axes.map((axis) => argument.angles.map((angle) => rotation(axis, angle)))"
-    found = evaluate(("vectors.js",), expression, {"axes": axes, "angles": angles})
+    found = evaluate(("tools/vectors.js",), expression, {"axes": axes, "angles": angles})
     wanted = np.stack([rotations(axis, np.array(angles)) for axis in axes])
     nearly(np.reshape(found, wanted.shape), wanted, 1e-14)
     right = np.array(found[-1]).reshape(-1, 3, 3)[5:16]
@@ -31,7 +217,7 @@ def test_vectors_are_those_of_numpy(evaluate: Evaluate) -> None:
     m = RANDOM.normal(size=(3, 3))
     expression = """(({ a, b, m }) => [[dot(a, b), norm(a), modulo(-7.5, 2)], cross(a, b), add(a, b), sub(a, b),
         scaled(a, 3), unit(b), apply(m, a), applyInverse(m, a)])(argument)"""
-    found = evaluate(("vectors.js",), expression, {"a": a.tolist(), "b": b.tolist(), "m": m.ravel().tolist()})
+    found = evaluate(("tools/vectors.js",), expression, {"a": a.tolist(), "b": b.tolist(), "m": m.ravel().tolist()})
     length = np.linalg.norm
     wanted = [[a @ b, length(a), 0.5], np.cross(a, b), a + b, a - b, 3 * a, b / length(b), m @ a, m.T @ a]
     nearly(found, wanted, 1e-14)
@@ -41,12 +227,12 @@ def test_vectors_are_those_of_numpy(evaluate: Evaluate) -> None:
 def test_display_values_are_those_of_python(evaluate: Evaluate, transfer: Any) -> None:
     values = np.concatenate([np.linspace(0, 0.05, 60), np.linspace(0.05, 3, 60), [0.04045, 0.0031308]])
     expression = f"argument.map((x) => [encode(x, '{transfer}'), decode(x, '{transfer}')])"
-    found = np.array(evaluate(("light.js",), expression, values.tolist()))
+    found = np.array(evaluate(("model/light.js",), expression, values.tolist()))
     nearly(found[:, 0], encode(values, transfer), 1e-14)
     nearly(found[:, 1], decode(values, transfer), 1e-14)
 
 
-# stage.js
+# model/stage.js
 
 
 @pytest.mark.parametrize("name", CUBES)
@@ -134,7 +320,7 @@ def test_all_stand_where_python_puts_them(evaluate: Evaluate, name: str) -> None
             assert lamp["parallel"] == stood.parallel
 
 
-# cast.js
+# model/cast.js
 
 
 @pytest.mark.parametrize("name", CUBES)

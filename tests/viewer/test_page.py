@@ -215,7 +215,7 @@ def test_a_widget_follows_its_model_and_leads_it(evaluate: Open) -> None:
     """Each is told once of what the other did, and not of what it did itself."""
     parts = given(turning())
     scene = base64.b64encode(zipped(parts["scene"])).decode()
-    found = evaluate(("widget.js",), MODEL, {"angle": 60.0, "scene": scene, "voxels": parts["voxels"]})
+    found = evaluate(("model/data.js", "widget.js"), MODEL, {"angle": 60.0, "scene": scene, "voxels": parts["voxels"]})
     assert found == {"told": [60.0, 0, 222.5, 0, 33, 1], "parts": 3, "outside": True, "left": 0}
 
 
@@ -261,14 +261,14 @@ def test_a_widget_says_where_it_holds_a_smaller_cube(evaluate: Open) -> None:
     ):
         parts["scene"]["kept"]["full"] = full
         scene = base64.b64encode(zipped(parts["scene"])).decode()
-        found = evaluate(("widget.js",), QUIET, {"scene": scene, "voxels": parts["voxels"]})
+        found = evaluate(("model/data.js", "widget.js"), QUIET, {"scene": scene, "voxels": parts["voxels"]})
         assert said in found if said else found is None
 
 
 def test_a_widget_is_as_dark_as_its_notebook(evaluate: Open) -> None:
     parts = given(turning())
     scene = base64.b64encode(zipped(parts["scene"])).decode()
-    found = evaluate(("widget.js",), GROUNDS, {"scene": scene, "voxels": parts["voxels"]})
+    found = evaluate(("model/data.js", "widget.js"), GROUNDS, {"scene": scene, "voxels": parts["voxels"]})
     assert found == ["light", "dark", "dark", "light", "dark"]
 
 

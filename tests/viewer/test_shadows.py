@@ -26,7 +26,7 @@ Run = Callable[..., Any]
 #: Levels of 255 that a shadow may be off: half of one by rounding, and what single precision costs.
 OFF = 0.5 + 0.05
 
-MODULES = ("data.js", "stage.js", "camera.js", "cast.js", "gpu.js", "flat.js")
+MODULES = ("model/data.js", "model/stage.js", "room/camera.js", "model/cast.js", "room/gpu.js", "room/flat.js")
 START = """(async () => {
   const { scene, voxels, angles, whole, kind } = argument;
   const cube = await readVoxels(fromBase64(voxels), scene);

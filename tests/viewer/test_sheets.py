@@ -37,7 +37,7 @@ def walked(evaluate: Evaluate, grid: Grid, views: Views) -> list[Any]:
     pixels = list(np.ndindex(*views.picture_shape))
     argument = {"views": plain_views(views), "pixels": pixels, "raster": views.picture_shape}
     argument |= {"shape": grid.shape, "mm": grid.voxel_mm}
-    found = evaluate(("beam.js",), PLAIN % BEAMS, argument)
+    found = evaluate(("model/beam.js",), PLAIN % BEAMS, argument)
     return [(view, *pixel, found[view][i]) for view in range(len(views)) for i, pixel in enumerate(pixels)]
 
 
@@ -75,7 +75,7 @@ def test_a_beam_to_the_lamp_itself_meets_nothing(evaluate: Evaluate) -> None:
     assert np.linalg.norm(beam["way"]) == 1
 
 
-# sheet.js
+# model/sheet.js
 
 
 SHEETS = """argument.angles.flatMap((angle) => exposures(scene, angle)).flatMap((exposure) =>

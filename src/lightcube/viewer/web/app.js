@@ -1,20 +1,20 @@
 // Puts the page together: the turntable, the room and the cards, and what is done to them.
 
-import { createCompare } from "./compare.js";
-import { createControls } from "./controls.js";
-import { degreesText, element, scoreText } from "./elements.js";
-import { createFilmstrip } from "./filmstrip.js";
-import { listenToGestures } from "./gestures.js";
-import { createHeader, createQuietLine } from "./header.js";
-import { createHelp, createHint } from "./help.js";
-import { listenToKeys } from "./keys.js";
-import { createLoop } from "./loop.js";
-import { momentOf } from "./moment.js";
-import { RoomView } from "./roomview.js";
-import { createScanline } from "./scanline.js";
-import { stops } from "./stage.js";
-import { followTheme } from "./theme.js";
-import { nearestOf, neighbourOf, Turning } from "./turning.js";
+import { momentOf } from "./model/moment.js";
+import { stops } from "./model/stage.js";
+import { nearestOf, neighbourOf, Turning } from "./model/turning.js";
+import { createCompare } from "./parts/compare.js";
+import { createControls } from "./parts/controls.js";
+import { createFilmstrip } from "./parts/filmstrip.js";
+import { listenToGestures } from "./parts/gestures.js";
+import { createHeader, createQuietLine } from "./parts/header.js";
+import { createHelp, createHint } from "./parts/help.js";
+import { listenToKeys } from "./parts/keys.js";
+import { createLoop } from "./parts/loop.js";
+import { createScanline } from "./parts/scanline.js";
+import { followTheme } from "./parts/theme.js";
+import { RoomView } from "./room/roomview.js";
+import { degreesText, element, scoreText } from "./tools/elements.js";
 
 /** Degrees by which a pixel of a drag turns the cube. */
 const TURN_SPEED = 0.35;

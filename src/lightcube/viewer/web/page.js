@@ -1,7 +1,7 @@
 // Opens the page: reads the data behind this text, shows the cube, and says a sentence where that fails.
 
 import { mount } from "./app.js";
-import { fromBase64, readScene, readVoxels } from "./data.js";
+import { fromBase64, readScene, readVoxels } from "./model/data.js";
 
 /** Say a sentence instead of the page; it comes without capital and full stop. */
 function saySentence(root, sentence) {

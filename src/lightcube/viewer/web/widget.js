@@ -1,7 +1,7 @@
 // A light cube in a notebook, for anywidget: the angle is the model's.
 
 import { mount } from "./app.js";
-import { readScene, readVoxels } from "./data.js";
+import { readScene, readVoxels } from "./model/data.js";
 
 /**
  * Show the cube of a model in an element.
@@ -10,7 +10,7 @@ import { readScene, readVoxels } from "./data.js";
  *   (degrees), which follows the cube, and the cube it
  * @returns {Promise<function(): void>} takes it away again
  */
-async function render({ model, el }) {
+export async function render({ model, el }) {
   const root = document.createElement("div");
   el.append(root);
   try {

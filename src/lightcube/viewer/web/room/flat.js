@@ -1,20 +1,21 @@
 // The renderer where there is no WebGL2: the same room on a 2-D canvas, plainer, its shadows cast one ray at a time.
-import { walk } from "./beam.js";
+
+import { walk } from "../model/beam.js";
+import { castPicture, transmittance } from "../model/cast.js";
+import { encode } from "../model/light.js";
+import { add, applyInverse, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, rayAt, seenAt } from "./camera.js";
-import { castPicture, transmittance } from "./cast.js";
-import { ROOM_TONES, cubeCorners, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
+import { TONES, cubeCorners, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, screenCorners, tableOf } from "./furniture.js";
-import { encode } from "./light.js";
-import { add, applyInverse, dot, norm, scaled, sub, unit } from "./vectors.js";
 
 /** Shadows that are kept. */
-const FLAT_KEPT = 64;
+const KEPT = 64;
 /** Rays along each side of the picture of the cube's glass, at rest and in motion. */
-const [FLAT_FINE, FLAT_COARSE] = [72, 28];
+const [FINE, COARSE] = [72, 28];
 /** Part of a picture that is seen through the screen's paper from behind. */
-const FLAT_THROUGH = 0.5;
+const THROUGH = 0.5;
 /** Patches along each side of a screen's picture, each drawn without perspective. */
-const FLAT_PATCHES = 8;
+const PATCHES = 8;
 
 /**
  * A renderer with the interface of gpu.js's, on a 2-D canvas; what it draws of the cube is coarse.
@@ -39,9 +40,9 @@ export function createFlat(canvas, scene, cube) {
     },
     drawShadow: (number, target) => target.getContext("2d").drawImage(shadows[number], 0, 0),
     draw(room, camera, { dark, mark, scale }) {
-      const tones = ROOM_TONES[dark ? "dark" : "light"];
+      const tones = TONES[dark ? "dark" : "light"];
       const what = { scene, cube, room, camera, tones, shadows, mark, exposed, floor: floor(room) };
-      drawFlat({ ...what, canvas, context: canvas.getContext("2d"), rays: scale < 1 ? FLAT_COARSE : FLAT_FINE });
+      drawRoom({ ...what, canvas, context: canvas.getContext("2d"), rays: scale < 1 ? COARSE : FINE });
     },
     dispose: () => kept.clear(),
   };
@@ -50,22 +51,22 @@ export function createFlat(canvas, scene, cube) {
 /** A canvas with a screen's shadow, computed where it is not among those seen last. */
 function keptShadow(kept, cube, scene, exposure) {
   const key = [exposure.screen, exposure.angle, ...exposure.raster].join(" ");
-  const shadow = kept.get(key) ?? flatShadow(cube, scene, exposure);
+  const shadow = kept.get(key) ?? castShadow(cube, scene, exposure);
   kept.delete(key);
   kept.set(key, shadow);
-  if (kept.size > FLAT_KEPT) kept.delete(kept.keys().next().value);
+  if (kept.size > KEPT) kept.delete(kept.keys().next().value);
   return shadow;
 }
 
-function flatShadow(cube, scene, exposure) {
+function castShadow(cube, scene, exposure) {
   const picture = castPicture(cube, exposure);
   const [[rows, columns], wide] = [exposure.window, exposure.raster[1]];
   const light = (row, column) => picture.subarray(3 * (row * wide + column), 3 * (row * wide + column) + 3);
-  return flatPicture(rows, columns, light, scene.transfer);
+  return paintPicture(rows, columns, light, scene.transfer);
 }
 
 /** A small canvas of linear light by row and column. */
-function flatPicture(rows, columns, lightAt, transfer) {
+function paintPicture(rows, columns, lightAt, transfer) {
   const picture = Object.assign(document.createElement("canvas"), { width: columns, height: rows });
   const levels = new ImageData(columns, rows);
   for (let row = 0; row < rows; row++) {
@@ -78,45 +79,45 @@ function flatPicture(rows, columns, lightAt, transfer) {
   return picture;
 }
 
-function drawFlat(stage) {
+function drawRoom(stage) {
   const { context, canvas, camera, room, tones } = stage;
   stage.seen = (point) => {
     const { x, y, depth } = seenAt(camera, point);
     return [x * canvas.width, y * canvas.height, depth];
   };
   context.setTransform(1, 0, 0, 1, 0, 0);
-  drawFlatFloor(stage);
-  drawFlatTable(stage);
+  drawFloor(stage);
+  drawTable(stage);
   const cubeAway = norm(camera.eye);
   const before = ({ corner, right, down, pixels }) =>
     norm(sub(camera.eye, add(corner, add(scaled(right, pixels[1] / 2), scaled(down, pixels[0] / 2))))) < cubeAway;
   const screens = fromFar(room, camera.eye);
   const lines = linesOf(stage.scene, stage.exposed, room, camera.eye, stage.mark, tones);
   const lamps = room.lamps.map((lamp) => ({ ...lamp, near: norm(sub(camera.eye, lamp.place)) < cubeAway }));
-  screens.filter((screen) => !before(screen)).forEach((screen) => drawFlatScreen(stage, screen));
-  lamps.filter((lamp) => !lamp.near).forEach((lamp) => drawFlatLamp(stage, lamp));
-  drawFlatSheet(stage);
-  lines.filter((line) => !line.over).forEach((line) => drawFlatLine(stage, line));
-  drawFlatGlass(stage);
-  lines.filter((line) => line.over).forEach((line) => drawFlatLine(stage, line));
-  screens.filter(before).forEach((screen) => drawFlatScreen(stage, screen));
-  lamps.filter((lamp) => lamp.near).forEach((lamp) => drawFlatLamp(stage, lamp));
+  screens.filter((screen) => !before(screen)).forEach((screen) => drawScreen(stage, screen));
+  lamps.filter((lamp) => !lamp.near).forEach((lamp) => drawLamp(stage, lamp));
+  drawSheet(stage);
+  lines.filter((line) => !line.over).forEach((line) => drawLine(stage, line));
+  drawGlass(stage);
+  lines.filter((line) => line.over).forEach((line) => drawLine(stage, line));
+  screens.filter(before).forEach((screen) => drawScreen(stage, screen));
+  lamps.filter((lamp) => lamp.near).forEach((lamp) => drawLamp(stage, lamp));
 }
 
 /** A colour of linear light as CSS has it. */
-function flatColour(light, part = 1) {
+function cssColour(light, part = 1) {
   const [red, green, blue] = light.map((x) => Math.round(255 * encode(Math.min(x, 1), "srgb")));
   return `rgba(${red}, ${green}, ${blue}, ${part})`;
 }
 
-function flatPath({ context, seen }, points) {
+function tracePath({ context, seen }, points) {
   context.beginPath();
   points.map(seen).forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
   context.closePath();
 }
 
 /** Fill everything with rings round a place on a plane, as they are seen near it. */
-function flatGlow({ context, canvas, seen }, middle, right, down, stops) {
+function drawGlow({ context, canvas, seen }, middle, right, down, stops) {
   const at = seen(middle);
   const steps = [right, down].map((step) => seen(add(middle, scaled(step, 0.01)))); // near it nothing is out of view
   context.save();
@@ -135,18 +136,18 @@ function flatGlow({ context, canvas, seen }, middle, right, down, stops) {
 }
 
 /** Stops of a bell-shaped fading between two colours of light. */
-function flatBell(colour, width) {
+function bellStops(colour, width) {
   return Array.from({ length: 9 }, (_, i) => [i / 8, colour(Math.exp(-((i / 8 / width) ** 2)))]);
 }
 
-function drawFlatFloor(stage) {
+function drawFloor(stage) {
   const { scene, room, camera, floor, tones } = stage;
   const size = longestSide(scene);
   const [middle, right] = [[0, 0, floor], scaled(camera.right, size)];
   const down = [right[1], -right[0], 0];
-  const mixed = (part) => flatColour(tones.far.map((far, i) => far + part * (tones.floor[i] - far)));
+  const mixed = (part) => cssColour(tones.far.map((far, i) => far + part * (tones.floor[i] - far)));
   const wide = (steps, factor) => steps.map((step) => scaled(step, factor));
-  flatGlow(stage, add(middle, down), scaled(right, 7), scaled(down, 6), flatBell(mixed, 0.5));
+  drawGlow(stage, add(middle, down), scaled(right, 7), scaled(down, 6), bellStops(mixed, 0.5));
   const [east, north] = [[size, 0, 0], [0, size, 0]];
   for (let i = -8; i <= 8; i++) {
     for (const [along, across] of [[east, north], [north, east]]) {
@@ -154,83 +155,83 @@ function drawFlatFloor(stage) {
       for (const way of [-5, 5]) {
         const strength = 0.5 * Math.exp(-(i * i) / 14);
         const ends = [start, add(start, scaled(along, way))];
-        drawFlatLine(stage, { ends, colour: tones.grid, parts: [strength, 0], width: 1 });
+        drawLine(stage, { ends, colour: tones.grid, parts: [strength, 0], width: 1 });
       }
     }
   }
-  const shadow = (part) => flatColour([0, 0, 0], 0.6 * tones.shade * part * (part > 0.02));
+  const shadow = (part) => cssColour([0, 0, 0], 0.6 * tones.shade * part * (part > 0.02));
   const table = tableOf(scene, room);
   const below = [table.middle[0], table.middle[1], floor];
-  flatGlow(stage, below, ...wide([right, down], (2.4 * norm(table.right)) / size), flatBell(shadow, 0.4));
+  drawGlow(stage, below, ...wide([right, down], (2.4 * norm(table.right)) / size), bellStops(shadow, 0.4));
 }
 
-function drawFlatTable(stage) {
+function drawTable(stage) {
   const { context, scene, room, tones } = stage;
   const { middle, right, down } = tableOf(scene, room);
   const at = (turn, radius) =>
     add(middle, add(scaled(right, radius * Math.cos(turn)), scaled(down, radius * Math.sin(turn))));
-  flatPath(stage, Array.from({ length: 90 }, (_, i) => at((i * Math.PI) / 45, 1)));
-  context.fillStyle = flatColour(tones.table, 0.5);
+  tracePath(stage, Array.from({ length: 90 }, (_, i) => at((i * Math.PI) / 45, 1)));
+  context.fillStyle = cssColour(tones.table, 0.5);
   context.fill();
-  context.strokeStyle = flatColour(tones.rim, 0.75);
-  context.lineWidth = 2 * flatDense(stage);
+  context.strokeStyle = cssColour(tones.rim, 0.75);
+  context.lineWidth = 2 * density(stage);
   context.stroke();
   for (let i = 0; i < 72; i++) {
     const ends = [at((i * Math.PI) / 36, i % 6 ? 0.95 : 0.925), at((i * Math.PI) / 36, 1)];
-    drawFlatLine(stage, { ends, colour: tones.rim, parts: [0.6, 0.6], width: i % 6 ? 1 : 1.6 });
+    drawLine(stage, { ends, colour: tones.rim, parts: [0.6, 0.6], width: i % 6 ? 1 : 1.6 });
   }
 }
 
 /** Pixels to a pixel of the page. */
-function flatDense({ canvas }) {
+function density({ canvas }) {
   return canvas.width / (canvas.clientWidth || canvas.width);
 }
 
-function drawFlatLine(stage, { ends, colour, parts, width }) {
+function drawLine(stage, { ends, colour, parts, width }) {
   const { context, camera, scene, seen } = stage;
   const kept = beforeEye(camera, ends, 0.05 * longestSide(scene));
   if (kept === null) return;
   const [start, end] = kept.map(seen);
   const fades = context.createLinearGradient(start[0], start[1], end[0], end[1]);
-  parts.forEach((part, i) => fades.addColorStop(i, flatColour(colour, part)));
+  parts.forEach((part, i) => fades.addColorStop(i, cssColour(colour, part)));
   context.strokeStyle = fades;
-  context.lineWidth = width * flatDense(stage);
+  context.lineWidth = width * density(stage);
   context.beginPath();
   context.moveTo(start[0], start[1]);
   context.lineTo(end[0], end[1]);
   context.stroke();
 }
 
-function drawFlatScreen(stage, { corner, right, down, pixels, facing, number }) {
+function drawScreen(stage, { corner, right, down, pixels, facing, number }) {
   const { context, scene, camera, tones, shadows } = stage;
   const rim = [right, down].map((step) => scaled(unit(step), frameWidth(scene)));
   const corners = screenCorners({ corner, right, down, pixels });
   const outside = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
   const rimmed = (each, [x, y]) => add(each, add(scaled(rim[0], x), scaled(rim[1], y)));
-  flatPath(stage, corners.map((each, i) => rimmed(each, outside[i])));
-  context.fillStyle = flatColour(tones.frame);
+  tracePath(stage, corners.map((each, i) => rimmed(each, outside[i])));
+  context.fillStyle = cssColour(tones.frame);
   context.fill();
-  for (let i = 0; i < FLAT_PATCHES; i++) {
-    for (let j = 0; j < FLAT_PATCHES; j++) {
+  for (let i = 0; i < PATCHES; i++) {
+    for (let j = 0; j < PATCHES; j++) {
       const at = (y, x) =>
-        add(corner, add(scaled(right, (x * pixels[1]) / FLAT_PATCHES), scaled(down, (y * pixels[0]) / FLAT_PATCHES)));
+        add(corner, add(scaled(right, (x * pixels[1]) / PATCHES), scaled(down, (y * pixels[0]) / PATCHES)));
       const patch = [at(i, j), at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)];
-      const place = { x: (j * pixels[1]) / FLAT_PATCHES, y: (i * pixels[0]) / FLAT_PATCHES };
-      drawFlatPatch(stage, shadows[number], patch, place, pixels);
+      const place = { x: (j * pixels[1]) / PATCHES, y: (i * pixels[0]) / PATCHES };
+      drawPatch(stage, shadows[number], patch, place, pixels);
     }
   }
   if (dot(sub(camera.eye, corner), facing) > 0) return;
-  flatPath(stage, corners);
-  context.globalAlpha = 1 - FLAT_THROUGH;
-  context.fillStyle = flatColour(tones.back);
+  tracePath(stage, corners);
+  context.globalAlpha = 1 - THROUGH;
+  context.fillStyle = cssColour(tones.back);
   context.fill();
   context.globalAlpha = 1;
 }
 
 /** A patch of a picture, a little larger on the right and below, so that no seams are seen. */
-function drawFlatPatch({ context, seen }, picture, patch, { x, y }, pixels) {
+function drawPatch({ context, seen }, picture, patch, { x, y }, pixels) {
   const [at, beside, below, across] = patch.map(seen);
-  const [wide, high] = [pixels[1] / FLAT_PATCHES, pixels[0] / FLAT_PATCHES];
+  const [wide, high] = [pixels[1] / PATCHES, pixels[0] / PATCHES];
   const right = [0, 1].map((i) => (beside[i] - at[i] + across[i] - below[i]) / 2);
   const down = [0, 1].map((i) => (below[i] - at[i] + across[i] - beside[i]) / 2);
   const centre = [0, 1].map((i) => (at[i] + beside[i] + below[i] + across[i]) / 4 - (right[i] + down[i]) / 2);
@@ -242,7 +243,7 @@ function drawFlatPatch({ context, seen }, picture, patch, { x, y }, pixels) {
 }
 
 /** What the cube lets through, a coarse picture that dims what is behind it. */
-function drawFlatGlass(stage) {
+function drawGlass(stage) {
   const { context, canvas, scene, cube, room, camera, seen, rays } = stage;
   const corners = cubeCorners(scene, room);
   const places = corners.map(seen);
@@ -251,7 +252,7 @@ function drawFlatGlass(stage) {
   const [left, top] = [Math.min(...xs), Math.min(...ys)];
   const [wide, high] = [Math.max(...xs) - left, Math.max(...ys) - top];
   const eye = applyInverse(room.turn, camera.eye);
-  const glass = flatPicture(rays, rays, (row, column) => {
+  const glass = paintPicture(rays, rays, (row, column) => {
     const [x, y] = [left + ((column + 0.5) / rays) * wide, top + ((row + 0.5) / rays) * high];
     const way = applyInverse(room.turn, rayAt(camera, x / canvas.width, y / canvas.height).way);
     const { voxels, lengths } = walk(cube.shape, cube.mm, eye, way, 0);
@@ -273,7 +274,7 @@ function drawFlatGlass(stage) {
   context.restore();
 }
 
-function drawFlatLamp({ context, scene, canvas, camera, seen, tones }, { place, light }) {
+function drawLamp({ context, scene, canvas, camera, seen, tones }, { place, light }) {
   const [x, y, depth] = seen(place);
   if (depth <= 0) return;
   const radius = Math.max((lampRadius(scene) * canvas.height) / (2 * camera.tall * depth), 2.5);
@@ -286,19 +287,19 @@ function drawFlatLamp({ context, scene, canvas, camera, seen, tones }, { place, 
   };
   if (pure) {
     const halo = context.createRadialGradient(x, y, radius, x, y, 4 * radius);
-    [0.6, 0.24, 0.1, 0.03, 0].forEach((part, i) => halo.addColorStop(i / 4, flatColour(pure, part)));
+    [0.6, 0.24, 0.1, 0.03, 0].forEach((part, i) => halo.addColorStop(i / 4, cssColour(pure, part)));
     disc(4 * radius, halo);
   }
-  disc(1.09 * radius, flatColour(tones.off, 0.45));
-  disc(radius, flatColour(pure ? pure.map((part) => 0.45 + 0.55 * part) : tones.off));
+  disc(1.09 * radius, cssColour(tones.off, 0.45));
+  disc(radius, cssColour(pure ? pure.map((part) => 0.45 + 0.55 * part) : tones.off));
 }
 
-function drawFlatSheet(stage) {
+function drawSheet(stage) {
   const sheet = markedSheet(stage.scene, stage.exposed, stage.room, stage.mark);
   if (!sheet) return;
   const { kind, corner, sides } = sheet;
   const [one, other] = sides.map((side) => add(corner, side));
-  flatPath(stage, kind === 1 ? [corner, one, add(one, sides[1]), other] : [corner, one, other]);
-  stage.context.fillStyle = flatColour(stage.tones.mark, 0.12);
+  tracePath(stage, kind === 1 ? [corner, one, add(one, sides[1]), other] : [corner, one, other]);
+  stage.context.fillStyle = cssColour(stage.tones.mark, 0.12);
   stage.context.fill();
 }

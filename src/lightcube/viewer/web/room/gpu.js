@@ -1,15 +1,16 @@
 // The renderer on WebGL2: exact shadows into textures, and the room with the cube as coloured glass.
+
+import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, seenAt } from "./camera.js";
-import { ROOM_TONES, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
+import { TONES, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, tableOf } from "./furniture.js";
-import { SHADER_CAST, SHADER_EVERYWHERE, SHADER_ROOM } from "./shaders.js";
-import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
+import { CAST, EVERYWHERE, ROOM } from "./shaders.js";
 
 /** What is infinite, in single precision. */
-const GPU_NEVER = 1e30;
+const NEVER = 1e30;
 /** As in the tie rule: parts of directions, and distances from a face in voxel sides, below which they are zero. */
-const GPU_PARALLEL = 1e-12;
-const GPU_ON_FACE = 1e-9;
+const PARALLEL = 1e-12;
+const ON_FACE = 1e-9;
 /** Texture units. */
 const [VOXEL_UNIT, VIEW_UNIT, SHADOW_UNIT] = [0, 1, 2];
 /** Screens, lamps and lines that are drawn at most: as many as the room's program has room for. */
@@ -37,7 +38,7 @@ export function createRenderer(canvas, scene, cube) {
     throw new Error(`The cube has ${most} voxels along a side, more than the ${longest} that this browser draws.`);
   }
   const floor = floorOf(scene);
-  let [kit, shown] = [gpuKit(gl, scene, cube), []];
+  let [kit, shown] = [makeKit(gl, scene, cube), []];
   const renderer = {
     kind: "webgl2",
     onRestored: null,
@@ -59,7 +60,7 @@ export function createRenderer(canvas, scene, cube) {
   };
   const lost = (event) => event.preventDefault(); // else it would not come back
   const restored = () => {
-    kit = gpuKit(gl, scene, cube);
+    kit = makeKit(gl, scene, cube);
     castAll(kit, scene, shown);
     renderer.onRestored?.();
   };
@@ -69,16 +70,16 @@ export function createRenderer(canvas, scene, cube) {
 }
 
 /** All that lives on the graphics processor. */
-function gpuKit(gl, scene, cube) {
+function makeKit(gl, scene, cube) {
   const kit = {
     gl,
-    caster: gpuProgram(gl, SHADER_CAST),
-    painter: gpuProgram(gl, SHADER_ROOM),
-    voxels: gpuTexture(gl, gl.TEXTURE_3D, VOXEL_UNIT, gl.NEAREST),
+    caster: makeProgram(gl, CAST),
+    painter: makeProgram(gl, ROOM),
+    voxels: makeTexture(gl, gl.TEXTURE_3D, VOXEL_UNIT, gl.NEAREST),
     shadows: null,
     layers: "",
     target: gl.createFramebuffer(),
-    views: gpuTexture(gl, gl.TEXTURE_2D, VIEW_UNIT, gl.NEAREST),
+    views: makeTexture(gl, gl.TEXTURE_2D, VIEW_UNIT, gl.NEAREST),
     things: gl.createBuffer(),
     small: { frame: gl.createFramebuffer(), texture: null, size: "" },
   };
@@ -112,9 +113,9 @@ function uploadVoxels({ gl }, { shape, bits, codes }) {
   gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGB10_A2UI, ...size, ...kind, texels);
 }
 
-function gpuProgram(gl, fragments) {
+function makeProgram(gl, fragments) {
   const made = gl.createProgram();
-  for (const [kind, text] of [[gl.VERTEX_SHADER, SHADER_EVERYWHERE], [gl.FRAGMENT_SHADER, fragments]]) {
+  for (const [kind, text] of [[gl.VERTEX_SHADER, EVERYWHERE], [gl.FRAGMENT_SHADER, fragments]]) {
     const shader = gl.createShader(kind);
     gl.shaderSource(shader, text);
     gl.compileShader(shader);
@@ -129,7 +130,7 @@ function gpuProgram(gl, fragments) {
   return { made, at: (name) => (places[name] ??= gl.getUniformLocation(made, name)) };
 }
 
-function gpuTexture(gl, kind, place, filter, smaller = filter) {
+function makeTexture(gl, kind, place, filter, smaller = filter) {
   const texture = gl.createTexture();
   gl.activeTexture(gl.TEXTURE0 + place);
   gl.bindTexture(kind, texture);
@@ -145,7 +146,7 @@ function makeLayers(kit, rows, columns, count) {
   if (kit.layers === layers) return;
   const { gl } = kit;
   gl.deleteTexture(kit.shadows);
-  kit.shadows = gpuTexture(gl, gl.TEXTURE_2D_ARRAY, SHADOW_UNIT, gl.LINEAR, gl.LINEAR_MIPMAP_LINEAR);
+  kit.shadows = makeTexture(gl, gl.TEXTURE_2D_ARRAY, SHADOW_UNIT, gl.LINEAR, gl.LINEAR_MIPMAP_LINEAR);
   const levels = 1 + Math.floor(Math.log2(Math.max(rows, columns)));
   gl.texStorage3D(gl.TEXTURE_2D_ARRAY, levels, gl.RGBA8, columns, rows, count);
   kit.layers = layers;
@@ -194,7 +195,7 @@ function inVoxels(view, mm) {
     scaled(each, 1 / mm),
   );
   const [reach, falloff, [fullAt]] = [view.reach, view.falloff, [view.full_at]].map((lengths) =>
-    lengths.map((length) => Math.min(length / mm, GPU_NEVER)),
+    lengths.map((length) => Math.min(length / mm, NEVER)),
   );
   return { ...view, lamp, origin, right, down, reach, falloff, fullAt, point: view.light[3] !== 0 };
 }
@@ -210,21 +211,21 @@ function putBeams(put, scene, view, rows, columns) {
   const half = halfSides(scene).map((side) => side / scene.voxels.mm);
   const { point, lamp, origin, right, down } = view;
   const normal = unit(cross(right, down));
-  const way = unit(lamp).map((part) => nearZero(part, GPU_PARALLEL));
+  const way = unit(lamp).map((part) => nearZero(part, PARALLEL));
   const nearness = point ? towardsMiddle(lamp, origin, normal) : 1;
   const moved = (vector) => (point ? scaled(vector, nearness) : sub(vector, scaled(way, dot(vector, way))));
   const start = add(half, point ? add(lamp, scaled(sub(origin, lamp), nearness)) : moved(origin));
   const putPlace = (row, texel, place) => {
     const whole = place.map(Math.round);
     put(row, texel, whole);
-    put(row + 1, texel, sub(place, whole).map((rest) => nearZero(rest, GPU_ON_FACE)));
+    put(row + 1, texel, sub(place, whole).map((rest) => nearZero(rest, ON_FACE)));
   };
   for (let i = 0; i < columns; i++) putPlace(0, i, add(start, scaled(moved(right), i - (columns - 1) / 2)));
   for (let i = 0; i < rows; i++) putPlace(2, i, scaled(moved(down), i - (rows - 1) / 2));
   const stood = add(lamp, half);
   const whole = stood.map(Math.round);
   put(4, 0, point ? [...whole, 1] : [...way, 0]);
-  put(4, 1, [...sub(stood, whole).map((rest) => nearZero(rest, GPU_ON_FACE)), 1 / nearness]);
+  put(4, 1, [...sub(stood, whole).map((rest) => nearZero(rest, ON_FACE)), 1 / nearness]);
   put(4, 2, [...view.power, view.cosine ? 1 : 0]);
   put(4, 3, [view.reach[0], view.falloff[0], view.reach[1], view.falloff[1]]);
   put(4, 4, [...normal, view.fullAt]);
@@ -305,7 +306,7 @@ function setSight(gl, painter, { scene, room, camera, floor }, width, height) {
 
 /** What stands in the room, in which colours. */
 function setThings(gl, painter, { scene, exposures, room, camera, dark, mark }, counts) {
-  const tones = ROOM_TONES[dark ? "dark" : "light"];
+  const tones = TONES[dark ? "dark" : "light"];
   const { middle, right, down } = tableOf(scene, room);
   gl.uniform1i(painter.at("shadows"), SHADOW_UNIT);
   gl.uniform3iv(painter.at("counts"), counts);
@@ -339,7 +340,7 @@ function thingTable({ scene, exposures, room, camera, dark, mark }, width, heigh
   const near = 1e-3 * longestSide(scene);
   const screens = screenRows(scene, room, camera.eye);
   const lamps = room.lamps.map((lamp) => lampRow(scene, lamp, camera, seen, height));
-  const lines = linesOf(scene, exposures, room, camera.eye, mark, ROOM_TONES[dark ? "dark" : "light"])
+  const lines = linesOf(scene, exposures, room, camera.eye, mark, TONES[dark ? "dark" : "light"])
     .map((line) => ({ ...line, ends: beforeEye(camera, line.ends, near) }))
     .filter((line) => line.ends !== null)
     .map((line) => lineRow(line, seen, dense));

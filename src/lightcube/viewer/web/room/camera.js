@@ -1,14 +1,15 @@
 // A camera on an orbit round the cube, and what its rays meet; lengths are mm, in the room.
+
+import { add, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { extentOf } from "./furniture.js";
-import { add, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
 
 /** Heights of the eye above its target's level, degrees: above the floor, and with an upright picture. */
-const ORBIT_LOWEST = 2;
-const ORBIT_HIGHEST = 88;
+export const LOWEST = 2;
+export const HIGHEST = 88;
 /** Width by height of the picture whose width spans the orbit's field. */
-const ORBIT_ASPECT = 16 / 9;
+const ASPECT = 16 / 9;
 /** Part of the picture that stays free at each edge. */
-const ORBIT_MARGIN = 0.05;
+const MARGIN = 0.05;
 
 const RADIANS = Math.PI / 180;
 
@@ -26,7 +27,7 @@ export function orbitFrom({ eye, target, field }) {
 
 /** The orbit with its height within bounds: the eye stays above the floor, and up is up in its picture. */
 function limited(orbit) {
-  return { ...orbit, height: Math.min(Math.max(orbit.height, ORBIT_LOWEST), ORBIT_HIGHEST) };
+  return { ...orbit, height: Math.min(Math.max(orbit.height, LOWEST), HIGHEST) };
 }
 
 /** Where the eye is. */
@@ -50,7 +51,7 @@ function fromTarget(orbit) {
 export function cameraOf(orbit, aspect) {
   const ahead = scaled(fromTarget(orbit), -1);
   const right = unit(cross(ahead, [0, 0, 1]));
-  const across = Math.tan((orbit.field / 2) * RADIANS) * Math.sqrt(aspect / ORBIT_ASPECT);
+  const across = Math.tan((orbit.field / 2) * RADIANS) * Math.sqrt(aspect / ASPECT);
   return { eye: eyeOf(orbit), right, up: cross(right, ahead), ahead, across, tall: across / aspect };
 }
 
@@ -70,7 +71,7 @@ export function fitted(orbit, scene, rooms, aspect) {
   const points = rooms.flatMap((room) => extentOf(scene, room));
   let [eye, depth] = [[0, 0, 0], Infinity];
   for (const [axis, half] of [[right, across], [up, tall]]) {
-    const free = half * (1 - 2 * ORBIT_MARGIN);
+    const free = half * (1 - 2 * MARGIN);
     const most = Math.max(...points.map((point) => dot(point, axis) - free * dot(point, ahead)));
     const least = Math.max(...points.map((point) => -dot(point, axis) - free * dot(point, ahead)));
     eye = add(eye, scaled(axis, (most - least) / 2));

@@ -1,4 +1,4 @@
-// Makes the page's elements and icons in few words, and formats its numbers.
+// Makes the page's elements and icons in few words, measures on them, and formats numbers.
 
 /** Pixels of a canvas to a pixel of the page, at most. */
 const DENSEST = 2;
@@ -78,6 +78,12 @@ export function fitCanvas(canvas) {
   const sides = [canvas.clientWidth, canvas.clientHeight];
   const [width, height] = sides.map((side) => Math.max(1, Math.round(side * density)));
   if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+}
+
+/** Where a pointer is, 0..1 from an element's upper left. */
+export function placeIn(area, event) {
+  const box = area.getBoundingClientRect();
+  return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
 }
 
 /** A number with one decimal, 0 never negative: -0.04 is "0.0". */

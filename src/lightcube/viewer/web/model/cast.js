@@ -1,4 +1,5 @@
 // What a screen shows: the sum of the lamps' light behind the cube, in linear light.
+
 import { beamOf, mostPieces, walkInto } from "./beam.js";
 import { fallingLight } from "./light.js";
 
@@ -25,7 +26,7 @@ export function castPicture(cube, exposure) {
 export function castRow(cube, exposure, row) {
   const columns = exposure.raster[1];
   const light = new Float32Array(columns * 3);
-  const scratch = castScratch(cube);
+  const scratch = scratchFor(cube);
   for (let column = 0; column < columns; column++) {
     light.set(castInto([0, 0, 0], cube, exposure, row, column, scratch), 3 * column);
   }
@@ -51,7 +52,7 @@ export function transmittance(cube, voxels, lengths, count = voxels.length) {
   return [Math.exp(-red), Math.exp(-green), Math.exp(-blue)];
 }
 
-function castScratch(cube) {
+function scratchFor(cube) {
   const most = mostPieces(cube.shape);
   return { voxels: new Int32Array(most), lengths: new Float64Array(most) };
 }

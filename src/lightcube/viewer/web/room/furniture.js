@@ -1,9 +1,10 @@
 // What stands in the room besides pictures, and its colours: the same for both renderers. Lengths are mm, in the room.
-import { standing } from "./stage.js";
-import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "./vectors.js";
+
+import { standing } from "../model/stage.js";
+import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 
 /** Linear light of the room and of what stands in it. */
-export const ROOM_TONES = {
+export const TONES = {
   dark: {
     floor: [0.15, 0.153, 0.162],
     far: [0.02, 0.0215, 0.0255],
@@ -35,9 +36,9 @@ export const ROOM_TONES = {
 };
 
 /** Angles that stand for all that the table comes to, degrees. */
-const ROOM_AROUND = Array.from({ length: 12 }, (_, i) => 30 * i);
+const AROUND = Array.from({ length: 12 }, (_, i) => 30 * i);
 /** A lamp so many times as far from the cube as anything else need not be seen. */
-const ROOM_FAR = 3;
+const FAR = 3;
 /** A lamp's radius, in widths of the cube. */
 const LAMP_RADIUS = 0.036;
 /** With more lamps than this, lines to the corners of all pictures would hide the room. */
@@ -113,7 +114,7 @@ export function extentOf(scene, room) {
     add(middle, add(scaled(right, Math.cos(turn)), scaled(down, Math.sin(turn)))),
   );
   const points = [...cubeCorners(scene, room), ...disc, ...room.screens.flatMap(screenCorners)];
-  const far = ROOM_FAR * Math.max(...points.map(norm));
+  const far = FAR * Math.max(...points.map(norm));
   const around = 0.1 * longestSide(scene);
   for (const { place } of room.lamps) {
     if (norm(place) >= far) continue;
@@ -127,7 +128,7 @@ export function extentOf(scene, room) {
 
 /** Rooms that stand for all that the table comes to. */
 export function roomsAround(scene, whole = false) {
-  return ROOM_AROUND.map((angle) => standing(scene, angle, whole));
+  return AROUND.map((angle) => standing(scene, angle, whole));
 }
 
 /**

@@ -1,10 +1,9 @@
 // The card that shows the nearest stop's picture as it was wanted and as it is shown, and the lamps that make it.
 
-import { clampTo, degreesText, element, figuresText, scoreText } from "./elements.js";
-import { wantedImage } from "./filmstrip.js";
-import { placeIn } from "./gestures.js";
-import { middleOfShadow } from "./stage.js";
-import { dot, sub } from "./vectors.js";
+import { middleOfShadow } from "../model/stage.js";
+import { lampPowers, wantedImage } from "../tools/cards.js";
+import { clampTo, degreesText, element, figuresText, placeIn, scoreText } from "../tools/elements.js";
+import { dot, sub } from "../tools/vectors.js";
 
 const COLOURS = ["red", "green", "blue"];
 
@@ -161,16 +160,6 @@ function createLamps(scene) {
       if (!same) body.replaceChildren(...order);
     },
   };
-}
-
-/** Light of each lamp that is lit, summed over its samples: lamp → [red, green, blue]. */
-export function lampPowers(exposure) {
-  const powers = new Map();
-  for (const { lamp, power } of exposure.views) {
-    const before = powers.get(lamp) ?? [0, 0, 0];
-    if (power.some((part) => part > 0)) powers.set(lamp, before.map((part, i) => part + power[i]));
-  }
-  return powers;
 }
 
 function lampEntry(scene, lamp) {

@@ -1,6 +1,6 @@
 // The renderer's programs in GLSL ES 3.00: light through the cube, what the screens show, and the room.
 
-const SHADER_HEAD = `#version 300 es
+const HEAD = `#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -9,13 +9,13 @@ precision highp usampler3D;
 `;
 
 /** One triangle that covers everything. */
-export const SHADER_EVERYWHERE = `#version 300 es
+export const EVERYWHERE = `#version 300 es
 void main() {
   gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
 }`;
 
 /** Display values and linear light: IEC 61966-2-1. */
-const SHADER_TRANSFER = `
+const TRANSFER = `
 vec3 toDisplay(vec3 light) {
   vec3 powered = 1.055 * pow(max(light, 0.0031308), vec3(1.0 / 2.4)) - 0.055;
   return mix(powered, light * 12.92, lessThanEqual(light, vec3(0.0031308)));
@@ -34,7 +34,7 @@ vec3 toLinear(vec3 shown) {
  * whole part and a small rest, and each crossing follows from the number of its plane, so that single precision is
  * enough for rays that run almost along a face.
  */
-const SHADER_GLASS = `
+const GLASS = `
 uniform usampler3D voxels;
 uniform vec3 rates;    // extinction of a code c: least (2 ^ (rates c) - 1), per voxel side
 uniform float least;
@@ -90,7 +90,7 @@ vec3 absorbed(ivec3 base, vec3 off, vec3 way, float from, float to) {
 `;
 
 /** What one screen shows: row 0 of the target is the picture's top. The table's layout is gpu.js's `putBeams`. */
-export const SHADER_CAST = `${SHADER_HEAD}${SHADER_TRANSFER}${SHADER_GLASS}
+export const CAST = `${HEAD}${TRANSFER}${GLASS}
 uniform sampler2D views;
 uniform ivec2 range;   // the first of the screen's views, and after the last
 uniform ivec2 window;  // columns and rows that lie on the screen
@@ -148,7 +148,7 @@ void main() {
  * The room. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
  * light behind the cube's glass, or on a veil before it. The things' layout is gpu.js's `thingTable`.
  */
-export const SHADER_ROOM = `${SHADER_HEAD}${SHADER_TRANSFER}${SHADER_GLASS}
+export const ROOM = `${HEAD}${TRANSFER}${GLASS}
 uniform vec2 canvas;      // pixels
 uniform mat3 sight;       // to the right edge, to the upper edge, ahead
 uniform mat3 inCube;      // mm in the room to voxel sides in the cube

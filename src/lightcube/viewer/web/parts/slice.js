@@ -1,8 +1,8 @@
 // Draws one slice of the cube with its beams: the light goes from left to right, as seen along the axis left out.
 
-import { fitCanvas } from "./elements.js";
-import { encode } from "./light.js";
-import { scaled, sub, unit } from "./vectors.js";
+import { encode } from "../model/light.js";
+import { fitCanvas } from "../tools/elements.js";
+import { scaled, sub, unit } from "../tools/vectors.js";
 
 /** How much light a deep voxel (nine in ten are lighter) lets through as it is drawn; real ones hardly take any. */
 const DEEP = 0.15;

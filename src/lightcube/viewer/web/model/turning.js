@@ -1,6 +1,6 @@
 // The turntable in time: at rest, in the hand, on its way to an angle, running out, or playing.
 
-import { modulo } from "./vectors.js";
+import { modulo } from "../tools/vectors.js";
 
 /** Degrees per second of playing at speed 1. */
 export const PLAY_SPEED = 24;

@@ -12,7 +12,7 @@ const TYPED_IN = "select, textarea, input:not([type=range]), [contenteditable]";
  * @returns {function(): void} stops listening
  */
 export function listenToKeys(area, does) {
-  const actions = keyActions(does);
+  const actions = actionsOf(does);
   const pressed = (event) => {
     if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey) return;
     if (event.target.closest?.(TYPED_IN)) return;
@@ -26,7 +26,7 @@ export function listenToKeys(area, does) {
   return () => area.removeEventListener("keydown", pressed);
 }
 
-function keyActions(does) {
+function actionsOf(does) {
   const fine = (event) => (event.shiftKey ? 0.1 : 1);
   return {
     ArrowLeft: (event) => does.turn(-fine(event)),

@@ -1,10 +1,11 @@
 // One beam through the cube: which voxels it meets, and for how long (Siddon's method, Medical Physics 12 (1985) 252).
-import { add, norm, scaled, sub } from "./vectors.js";
+
+import { add, norm, scaled, sub } from "../tools/vectors.js";
 
 /** A direction's part below this is zero. */
-const BEAM_PARALLEL = 1e-12;
+const PARALLEL = 1e-12;
 /** A beam along a face counts as on it within this distance, in voxel sides. */
-const BEAM_ON_FACE = 1e-9;
+const ON_FACE = 1e-9;
 
 /**
  * The beam that lights a pixel: the points start + t way, first <= t <= last.
@@ -58,7 +59,7 @@ export function mostPieces(shape) {
 export function walkInto(voxels, lengths, shape, mm, start, way, first, last) {
   const counts = [shape[2], shape[1], shape[0]];
   const places = start.map((value, axis) => value / mm + counts[axis] / 2);
-  const sides = places.map((place, axis) => beamSides(place, way[axis]));
+  const sides = places.map((place, axis) => sidesAt(place, way[axis]));
   const scale = mm / (sides[0].length * sides[1].length * sides[2].length);
   let count = 0;
   for (const x of sides[0]) {
@@ -72,28 +73,28 @@ export function walkInto(voxels, lengths, shape, mm, start, way, first, last) {
 }
 
 /** Where a beam runs on one axis: half a voxel to either side where that is along a face. */
-function beamSides(place, part) {
+function sidesAt(place, part) {
   if (!runsOnFace(place, part)) return [place];
   return [Math.round(place) - 0.5, Math.round(place) + 0.5];
 }
 
 function runsOnFace(place, part) {
-  return Math.abs(part) < BEAM_PARALLEL && Math.abs(place - Math.round(place)) <= BEAM_ON_FACE;
+  return Math.abs(part) < PARALLEL && Math.abs(place - Math.round(place)) <= ON_FACE;
 }
 
 /** Append the pieces of a beam that runs along no face, in voxel sides from the cube's lowest corner. */
 function walkOffFaces(voxels, lengths, count, counts, p, d, first, last, scale) {
   let [t, end] = [first, last];
   for (let axis = 0; axis < 3; axis++) {
-    const [into, out] = beamCrossings(p[axis], d[axis], counts[axis]);
+    const [into, out] = crossings(p[axis], d[axis], counts[axis]);
     t = Math.max(t, into);
     end = Math.min(end, out);
   }
   if (!(t < end)) return count;
   const at = [0, 1, 2].map((axis) => Math.min(Math.max(Math.floor(p[axis] + t * d[axis]), 0), counts[axis] - 1));
-  const [xWay, yWay, zWay] = d.map((part) => (Math.abs(part) < BEAM_PARALLEL ? 0 : Math.sign(part)));
+  const [xWay, yWay, zWay] = d.map((part) => (Math.abs(part) < PARALLEL ? 0 : Math.sign(part)));
   let [tx, ty, tz] = at.map((cell, axis) => nextFace(p[axis], d[axis], cell));
-  const [xGap, yGap, zGap] = d.map((part) => (Math.abs(part) < BEAM_PARALLEL ? Infinity : 1 / Math.abs(part)));
+  const [xGap, yGap, zGap] = d.map((part) => (Math.abs(part) < PARALLEL ? Infinity : 1 / Math.abs(part)));
   let [x, y, z] = at;
   const [nx, ny, nz] = counts;
   while (t < end) {
@@ -120,14 +121,14 @@ function walkOffFaces(voxels, lengths, count, counts, p, d, first, last, scale) 
 }
 
 /** Parameters at which p + t d enters and leaves [0, n]; empty where it misses. */
-function beamCrossings(p, d, n) {
-  if (Math.abs(d) < BEAM_PARALLEL) return p > 0 && p < n ? [-Infinity, Infinity] : [Infinity, -Infinity];
+function crossings(p, d, n) {
+  if (Math.abs(d) < PARALLEL) return p > 0 && p < n ? [-Infinity, Infinity] : [Infinity, -Infinity];
   const [one, other] = [-p / d, (n - p) / d];
   return one < other ? [one, other] : [other, one];
 }
 
 function nextFace(p, d, cell) {
-  if (Math.abs(d) < BEAM_PARALLEL) return Infinity;
+  if (Math.abs(d) < PARALLEL) return Infinity;
   return d > 0 ? (cell + 1 - p) / d : (cell - p) / d;
 }
 
@@ -142,7 +143,7 @@ export function stretchInside(shape, mm, beam) {
   let [enter, leave] = [beam.first / mm, beam.last / mm];
   for (let axis = 0; axis < 3; axis++) {
     const place = beam.start[axis] / mm + shape[2 - axis] / 2;
-    const kept = beamSides(place, beam.way[axis]).map((side) => beamCrossings(side, beam.way[axis], shape[2 - axis]));
+    const kept = sidesAt(place, beam.way[axis]).map((side) => crossings(side, beam.way[axis], shape[2 - axis]));
     enter = Math.max(enter, Math.min(...kept.map((ends) => ends[0])));
     leave = Math.min(leave, Math.max(...kept.map((ends) => ends[1])));
   }

@@ -1,5 +1,7 @@
 // What a mouse, fingers and a wheel do on the room: turn the cube, move the eye, zoom, point.
 
+import { placeIn } from "../tools/elements.js";
+
 /** Milliseconds before letting go that say how fast it went. */
 const RECENT = 90;
 /** Pixels that a tap may move, and a drag before it turns anything. */
@@ -70,12 +72,6 @@ export function listenToGestures(area, does, polite) {
     does.begin();
     does.zoom(Math.exp(-0.02 * lines * (event.ctrlKey ? 4 : 1)));
   }, { passive: false });
-}
-
-/** Where a pointer is, 0..1 from an element's upper left. */
-export function placeIn(area, event) {
-  const box = area.getBoundingClientRect();
-  return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
 }
 
 /** Middle of the fingers, and their mean distance from it (pixels). */

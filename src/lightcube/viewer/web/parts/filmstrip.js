@@ -1,6 +1,7 @@
 // The strip of all wanted pictures: a click turns the cube to one, and the nearest one is marked.
 
-import { degreesText, element, scoreText } from "./elements.js";
+import { wantedImage } from "../tools/cards.js";
+import { degreesText, element, scoreText } from "../tools/elements.js";
 
 /**
  * The film strip, in the order of the turn.
@@ -54,20 +55,6 @@ function thumbnail(scene, number, pressed) {
     wantedImage(scene, picture),
     element("span", { class: "name", text: picture.name }),
     element("span", { class: "score", text: score || degreesText(picture.angle) }));
-}
-
-/**
- * A wanted picture as an image that is loaded when it is seen; an empty frame where none was kept.
- *
- * @param {Object} scene
- * @param {Object} picture of the scene
- * @returns {HTMLElement}
- */
-export function wantedImage(scene, picture) {
-  if (picture.wanted === null) return element("span", { class: "image empty", "aria-hidden": "true" });
-  const classes = picture.mirrored ? "image mirrored" : "image";
-  const src = scene.wanted[picture.wanted];
-  return element("img", { class: classes, src, alt: "", loading: "lazy", decoding: "async", draggable: "false" });
 }
 
 function mark(button, on) {

@@ -1,6 +1,6 @@
 // What tells a person what to do: a hint until the first gesture, and the list of gestures and keys.
 
-import { element, icon, iconButton } from "./elements.js";
+import { element, icon, iconButton } from "../tools/elements.js";
 
 const WHAT_IT_IS = "Light falls through a block of coloured glass.";
 const AT_STOPS = "At each stop of the turntable its shadow is another picture.";

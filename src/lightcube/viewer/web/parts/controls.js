@@ -1,7 +1,7 @@
 // The controls below the room: the slider over the turn with a tick at every stop, playing, and what can be chosen.
 
-import { degreesText, element, icon, iconButton } from "./elements.js";
-import { PLAY_SPEED } from "./turning.js";
+import { PLAY_SPEED } from "../model/turning.js";
+import { degreesText, element, icon, iconButton } from "../tools/elements.js";
 
 /** Speeds of playing. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4];

@@ -1,8 +1,9 @@
 // How display values follow from linear light, and how much light and shadow of a lamp reaches a pixel.
-import { cross, dot, norm, scaled, sub } from "./vectors.js";
+
+import { cross, dot, norm, scaled, sub } from "../tools/vectors.js";
 
 /** Shortest way from a lamp to a pixel that it stands on, mm. */
-const LIGHT_SHORTEST = 1e-12;
+const SHORTEST = 1e-12;
 
 /**
  * Linear light (1 = white) to a display value: IEC 61966-2-1, or the same number; never clipped.
@@ -44,7 +45,7 @@ export function fading(distance, reach, falloff) {
 export function fallingLight(view, pixel) {
   const point = view.light[3] !== 0;
   const way = point ? sub(pixel, view.light) : view.light.slice(0, 3);
-  const length = Math.max(norm(way), LIGHT_SHORTEST);
+  const length = Math.max(norm(way), SHORTEST);
   const ahead = scaled(way, 1 / length);
   let light = 1;
   if (view.cosine) {

@@ -1,6 +1,6 @@
 // Draws when something has changed, coarser while it moves where the machine is slow, and finely once it rests.
 
-import { clampTo } from "./elements.js";
+import { clampTo } from "../tools/elements.js";
 
 /** Milliseconds of a frame above which it is drawn coarser, and below which finer. */
 const [TOO_SLOW, FAST] = [22, 17.5];

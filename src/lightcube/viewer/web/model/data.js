@@ -1,7 +1,7 @@
 // From the bytes that a page carries to its scene and its voxels, or one sentence that says what is damaged.
 
-const DATA_FORMAT = 1;
-const DATA_AGAIN = "write or send the page again";
+const FORMAT = 1;
+const AGAIN = "write or send the page again";
 
 /**
  * Unpack gzipped bytes; their checksum tells where any is damaged.
@@ -17,7 +17,7 @@ export async function gunzip(bytes, name = "data") {
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
     return new Uint8Array(await new Response(stream).arrayBuffer());
   } catch {
-    throw new Error(`the page's ${name} came damaged or cut off (its gzip does not unpack): ${DATA_AGAIN}`);
+    throw new Error(`the page's ${name} came damaged or cut off (its gzip does not unpack): ${AGAIN}`);
   }
 }
 
@@ -31,7 +31,7 @@ export function fromBase64(text) {
     if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
     return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   } catch {
-    throw new Error(`the page's data is not base64, some of its letters are damaged: ${DATA_AGAIN}`);
+    throw new Error(`the page's data is not base64, some of its letters are damaged: ${AGAIN}`);
   }
 }
 
@@ -46,14 +46,14 @@ export async function readScene(bytes) {
   try {
     scene = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(unpacked));
   } catch {
-    throw new Error(`the page's scene is not readable JSON: ${DATA_AGAIN}`);
+    throw new Error(`the page's scene is not readable JSON: ${AGAIN}`);
   }
   const format = scene?.format;
-  if (format === DATA_FORMAT) return scene;
-  if (format > DATA_FORMAT) {
-    throw new Error(`the page's data has format ${format}, newer than ${DATA_FORMAT}: update the viewer that opens it`);
+  if (format === FORMAT) return scene;
+  if (format > FORMAT) {
+    throw new Error(`the page's data has format ${format}, newer than ${FORMAT}: update the viewer that opens it`);
   }
-  throw new Error(`the page's data has format ${format}, not ${DATA_FORMAT}: write the page again with this version`);
+  throw new Error(`the page's data has format ${format}, not ${FORMAT}: write the page again with this version`);
 }
 
 /**
@@ -74,7 +74,7 @@ export async function readVoxels(bytes, scene) {
   const size = count * channels + Math.ceil((count * channels * low) / 8);
   if (unpacked.length !== size) {
     const sizes = `${unpacked.length} bytes, not the ${size} of ${shape.join(" x ")} voxels in ${channels} channels`;
-    throw new Error(`the page's voxels have ${sizes}: ${DATA_AGAIN}`);
+    throw new Error(`the page's voxels have ${sizes}: ${AGAIN}`);
   }
   const codes = new Uint16Array(3 * count);
   for (let channel = 0; channel < 3; channel++) {
@@ -86,11 +86,11 @@ export async function readVoxels(bytes, scene) {
       codes[3 * voxel + channel] = (unpacked[place] << low) | rest;
     }
   }
-  const tables = [0, 1, 2].map((channel) => dataTable(bits, least, rates[channels === 1 ? 0 : channel]));
+  const tables = [0, 1, 2].map((channel) => tableOf(bits, least, rates[channels === 1 ? 0 : channel]));
   return { shape, mm, bits, codes, tables };
 }
 
 /** Extinction (1/mm) by code: nearly even steps up to about `least`, beyond it they grow with the extinction. */
-function dataTable(bits, least, rate) {
+function tableOf(bits, least, rate) {
   return Float32Array.from({ length: 2 ** bits }, (_, code) => least * Math.expm1(rate * code));
 }

@@ -1,6 +1,6 @@
 // The title, the quiet line that says what the page holds, and the buttons of the page itself.
 
-import { element, iconButton, oneDecimal } from "./elements.js";
+import { element, iconButton, oneDecimal } from "../tools/elements.js";
 
 /**
  * Title and buttons.

@@ -1,8 +1,9 @@
 // What stands where at a turntable angle, in the cube's frame (exposures) and in the room's (standing); lengths are mm.
-import { add, apply, cross, dot, modulo, norm, rotation, scaled, sub, unit } from "./vectors.js";
+
+import { add, apply, cross, dot, modulo, norm, rotation, scaled, sub, unit } from "../tools/vectors.js";
 
 /** Stops nearer to each other than this, in degrees, are one. */
-const STAGE_SAME = 1e-6;
+const SAME = 1e-6;
 
 /**
  * The angles at which pictures are wanted.
@@ -11,7 +12,7 @@ const STAGE_SAME = 1e-6;
  */
 export function stops(scene) {
   const angles = scene.pictures.map((picture) => modulo(picture.angle, 360)).sort((a, b) => a - b);
-  return angles.filter((angle, i) => i === 0 || angle - angles[i - 1] > STAGE_SAME);
+  return angles.filter((angle, i) => i === 0 || angle - angles[i - 1] > SAME);
 }
 
 /**
@@ -52,7 +53,7 @@ export function exposures(scene, angle, whole = false) {
   return screens.map((screen) => {
     const number = nearestPicture(scene, screen, angle);
     const { angle: stop, window } = scene.pictures[number];
-    const lit = degreesApart(angle, stop) < nearest + STAGE_SAME;
+    const lit = degreesApart(angle, stop) < nearest + SAME;
     const views = viewsOf(scene, number).map((view) => {
       const power = lit ? powerBetween(scene, view.pair, angle) : [0];
       return exposedView(scene, view, angle - stop, power, full !== null);
@@ -67,7 +68,7 @@ function viewsOf(scene, picture) {
 }
 
 function exposedView(scene, view, degrees, power, whole) {
-  const [lampTurn, screenTurn] = stageTurns(scene, view, degrees);
+  const [lampTurn, screenTurn] = turnsOf(scene, view, degrees);
   const light = [...apply(lampTurn, view.light), view.light[3]];
   const [origin, right, down] = [view.origin, view.right, view.down].map((vector) => apply(screenTurn, vector));
   return {
@@ -85,7 +86,7 @@ function exposedView(scene, view, degrees, power, whole) {
 }
 
 /** How the lamp, and the screen, have gone round the cube when the table has turned on by so many degrees. */
-function stageTurns(scene, view, degrees) {
+function turnsOf(scene, view, degrees) {
   return [0, 1].map((i) => rotation(scene.axis, view.turning[i] ? view.way[i] * degrees : 0));
 }
 
@@ -178,7 +179,7 @@ function lampPlace(scene, lamp, angle) {
   const { picture } = scene.views.find((view) => view.lamp === lamp);
   const own = viewsOf(scene, picture).filter((view) => view.lamp === lamp); // the samples of its disc
   const degrees = angle - scene.pictures[picture].angle;
-  const places = own.map((view) => apply(stageTurns(scene, view, degrees)[0], view.light));
+  const places = own.map((view) => apply(turnsOf(scene, view, degrees)[0], view.light));
   return { place: meanOf(places), parallel: own[0].light[3] === 0 };
 }
 

@@ -1,8 +1,8 @@
 // The card that shows one scan-line from above: a slice of the cube, the beams through it, and the pixels they make.
 
-import { lampPowers } from "./compare.js";
-import { element } from "./elements.js";
-import { beamFacts, sheetOf } from "./sheet.js";
+import { beamFacts, sheetOf } from "../model/sheet.js";
+import { lampPowers } from "../tools/cards.js";
+import { element } from "../tools/elements.js";
 import { SliceDrawing } from "./slice.js";
 
 /**

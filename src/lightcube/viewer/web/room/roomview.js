@@ -1,16 +1,15 @@
 // The room on its canvas: which renderer draws it, from where it is seen, and what one points at in it.
 
-import { cameraOf, fitted, orbitFrom, pointed, rayAt } from "./camera.js";
-import { clampTo, element, fitCanvas } from "./elements.js";
+import { exposures, standing } from "../model/stage.js";
+import { clampTo, element, fitCanvas } from "../tools/elements.js";
+import { HIGHEST, LOWEST, cameraOf, fitted, orbitFrom, pointed, rayAt } from "./camera.js";
 import { createFlat } from "./flat.js";
 import { roomsAround } from "./furniture.js";
 import { createRenderer } from "./gpu.js";
-import { exposures, standing } from "./stage.js";
 
 /** Degrees that the eye moves by for a pixel. */
 const EYE_SPEED = 0.3;
-/** How high the eye may stand (degrees), and how far it may go, in parts of the distance at which all is seen. */
-const [LOWEST, HIGHEST] = [2, 88];
+/** How far the eye may go, in parts of the distance at which all is seen. */
 const [NEAREST, FARTHEST] = [0.2, 3];
 
 /**

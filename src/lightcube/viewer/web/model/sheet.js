@@ -1,11 +1,12 @@
 // One scan-line from above: the voxels and the beams in the plane through a row of pixels and the light that makes it.
+
+import { cross, dot } from "../tools/vectors.js";
 import { beamOf, stretchInside, walk } from "./beam.js";
 import { castRow, transmittance } from "./cast.js";
 import { encode } from "./light.js";
-import { cross, dot } from "./vectors.js";
 
 /** A plane counts as on a face within this distance, in voxel sides. */
-const SHEET_ON_FACE = 1e-9;
+const ON_FACE = 1e-9;
 
 /**
  * What the plane of a row meets, seen along the axis of the cube that it is most upright on.
@@ -34,7 +35,7 @@ export function sheetOf(cube, exposure, viewNumber, row) {
     const shown = [0, 1, 2].map((channel) => Math.min(displayed[3 * column + channel], 1));
     return { column, start: inside?.start ?? null, end: inside?.end ?? null, pixel: beam.pixel, shown };
   });
-  return { ...sheetCells(cube, ...sheetPlane(view, row, exposure.raster)), beams };
+  return { ...cellsOf(cube, ...planeOf(view, row, exposure.raster)), beams };
 }
 
 /**
@@ -54,14 +55,14 @@ export function beamFacts(cube, exposure, viewNumber, row, column) {
 }
 
 /** Normal of the plane through a row's beams, and a point of it, mm. */
-function sheetPlane(view, row, raster) {
+function planeOf(view, row, raster) {
   const { way, pixel } = beamOf(view, row, (raster[1] - 1) / 2, raster);
   return [cross(way, view.right), pixel];
 }
 
-function sheetCells({ shape, mm }, normal, point) {
+function cellsOf({ shape, mm }, normal, point) {
   const steep = normal.map(Math.abs);
-  const axis = [2, 1, 0].reduce((best, each) => (steep[each] > steep[best] + SHEET_ON_FACE ? each : best));
+  const axis = [2, 1, 0].reduce((best, each) => (steep[each] > steep[best] + ON_FACE ? each : best));
   const [slow, fast] = [2, 1, 0].filter((each) => each !== axis);
   const count = (each) => shape[2 - each];
   const [n, m] = [count(slow), count(fast)];
@@ -73,7 +74,7 @@ function sheetCells({ shape, mm }, normal, point) {
       middle[slow] = (i + 0.5 - n / 2) * mm;
       middle[fast] = (j + 0.5 - m / 2) * mm;
       const height = (dot(normal, point) - dot(normal, middle)) / normal[axis] / mm + count(axis) / 2;
-      const place = sheetSlice(height, count(axis));
+      const place = sliceAt(height, count(axis));
       if (place >= 0) cells[i * m + j] = i * strides[slow] + j * strides[fast] + place * strides[axis];
     }
   }
@@ -81,7 +82,7 @@ function sheetCells({ shape, mm }, normal, point) {
 }
 
 /** Number of the slice at a height in voxel sides, or -1 outside. */
-function sheetSlice(height, count) {
-  if (!(height >= -SHEET_ON_FACE && height <= count + SHEET_ON_FACE)) return -1;
-  return Math.min(Math.max(Math.floor(height + SHEET_ON_FACE), 0), count - 1);
+function sliceAt(height, count) {
+  if (!(height >= -ON_FACE && height <= count + ON_FACE)) return -1;
+  return Math.min(Math.max(Math.floor(height + ON_FACE), 0), count - 1);
 }
