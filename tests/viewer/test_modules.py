@@ -190,7 +190,7 @@ def test_each_works_as_a_module_of_its_own(browser: Any) -> None:
 
 
 def test_a_wheel_holds_all_of_the_page(tmp_path: Path) -> None:
-    root = Path(__file__).parents[1]
+    root = Path(__file__).parents[2]
     wheel = zipfile.ZipFile(next(WheelBuilder(str(root)).build(directory=str(tmp_path), versions=["standard"])))
     for file in filter(Path.is_file, WEB.rglob("*")):
         path = file.relative_to(WEB).as_posix()
