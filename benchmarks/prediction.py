@@ -22,7 +22,7 @@ import skimage.data
 from numpy.typing import NDArray
 
 from lightcube import io
-from lightcube.backward.recipe import Powers
+from lightcube.backward.recipe import Recipe, from_plain
 from lightcube.backward.solving import solve
 from lightcube.forward.casting import cast
 from lightcube.optics.grid import Grid, raster_shape
@@ -76,7 +76,8 @@ class Case(NamedTuple):
     picture: tuple[int, int]
     #: ``photo``, ``saturated``, ``gray``, or the name of a scene.
     style: str
-    lamp: Powers
+    #: Or ``"fixed"``, at power 1.
+    powers: str
     lamp_max: float
     #: Only a disc in the middle of the pictures counts.
     disc: bool
@@ -85,11 +86,11 @@ class Case(NamedTuple):
     hold: float
 
     @property
-    def lamps(self) -> dict[str, Any]:
-        """What `solve` is told of the lamp."""
-        if self.lamp == "fixed":
-            return {"lamp": "fixed", "lamp_power": 1.0}
-        return {"lamp": self.lamp, "lamp_max": self.lamp_max}
+    def recipe(self) -> Recipe:
+        """How it is solved."""
+        if self.powers == "fixed":
+            return Recipe(lamp_power=1.0, hold_deg=self.hold)
+        return from_plain({"powers": self.powers, "lamp_max": self.lamp_max, "hold_deg": self.hold})
 
 
 def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
@@ -106,9 +107,8 @@ def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
         ny, nx = nx, ny
     style = str(rng.choice(["photo", "photo", "photo", "saturated", "gray"]))
     lamp_max = float(rng.choice([1, 4, 16, 16, 16, 64]))
-    other: tuple[Powers, ...] = ("global", "fixed")
     kind = int(rng.integers(8))
-    lamp: Powers = "per-view" if kind < 6 else other[kind - 6]
+    powers = "per-picture" if kind < 6 else ("shared", "fixed")[kind - 6]
     load = math.exp(rng.uniform(math.log(1.5 if held else 2.5), math.log(6 if held else 14)))
     disc, tour = bool(rng.random() < 0.16), bool(rng.random() < 0.2)
     width = load * math.sqrt(nx * ny) / views if level else math.sqrt(load * nx * ny * nz / n / views * aspect)
@@ -119,7 +119,7 @@ def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
     hold = float(min(rng.choice([1.5, 3, 6]), (180 if level else 360) / views / 2)) if held else 0.0
     if not held and rng.random() < 0.22:
         style, tour = str(rng.choice(SCENES)), False
-    return Case(seed, (nz, ny, nx), views, elevation, picture, style, lamp, lamp_max, disc, tour, hold)
+    return Case(seed, (nz, ny, nx), views, elevation, picture, style, powers, lamp_max, disc, tour, hold)
 
 
 def even_with(value: float, parity: int, most: int) -> int:
@@ -211,7 +211,7 @@ def kept(problems: list[Case]) -> list[list[float]]:
 def measured(problem: Case) -> list[float]:
     """PSNR of each picture of a case that is solved for real."""
     frames, grid = frames_of(problem)
-    cube = solve(frames, grid, hold=problem.hold, **problem.lamps).cube
+    cube = solve(frames, grid, problem.recipe).cube
     shown = cast(cube, cube.views, cube.powers)
     pairs = zip(shown, frames.pictures, frames.weight, strict=True)
     return [round(psnr(encode(picture), encode(wanted), weight), 3) for picture, wanted, weight in pairs]
@@ -229,7 +229,7 @@ class Rehearsed(NamedTuple):
 def rehearsed(problem: Case, wanted: list[float]) -> Rehearsed:
     """Rehearse a case that was measured."""
     frames, grid = frames_of(problem)
-    reached, width = rehearse(frames, grid, problem.hold, **problem.lamps)
+    reached, width = rehearse(frames, grid, problem.recipe)
     return Rehearsed(problem, np.array(wanted), reached, max(grid.shape[1:]) / width)
 
 

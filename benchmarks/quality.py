@@ -32,6 +32,7 @@ import numpy as np
 from PIL import Image
 
 import lightcube as lc
+from lightcube.backward.recipe import Recipe
 from lightcube.drawing import plots
 from lightcube.optics.transfer import encode, to_uint8
 from lightcube.pictures import samples
@@ -196,13 +197,12 @@ def measure(problem: Problem) -> Row:
     row: Row = {}
     if problem.order == "best":
         began = time.perf_counter()
-        frames = best_order(frames, grid, lamp_max=problem.lamp_max or 1.0)(frames)
+        frames = best_order(frames, grid, Recipe(lamp_max=problem.lamp_max or 1.0))(frames)
         row["order_seconds"] = time.perf_counter() - began
     lamp: dict[str, Any] = {"lamp_power": 1.0} if problem.lamp_max is None else {"lamp_max": float(problem.lamp_max)}
+    recipe = Recipe(method=problem.method, hold_deg=problem.hold or 0.0, passes=problem.passes, **lamp)
     began = time.perf_counter()
-    solution = lc.solve(
-        frames, grid, method=problem.method, hold=problem.hold or 0.0, iterations=problem.passes, **lamp
-    )
+    solution = lc.solve(frames, grid, recipe)
     row["seconds"] = time.perf_counter() - began
     scores = lc.score(solution.cube, frames)
     row |= {name: scores[name] for name in ("psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean")}

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 import lightcube as lc
 from lightcube.backward.problem import pose
+from lightcube.backward.recipe import Recipe
 from lightcube.io import read_stage, read_stage_frames
 from lightcube.optics.rig import sampled
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
@@ -96,7 +97,7 @@ def frames_of(stage: Stage, pictures: lc.Pictures, lamp_samples: int = 1) -> lc.
 def measured(name: str, grid: lc.Grid, frames: lc.Frames, passes: int, **more: Any) -> tuple[Row, lc.Cube]:
     """Solve, and say how good it is and how long it took."""
     began = time.perf_counter()
-    solution = lc.solve(frames, grid, iterations=passes)
+    solution = lc.solve(frames, grid, Recipe(passes=passes))
     seconds = time.perf_counter() - began
     scores = lc.score(solution.cube, frames)
     figures = {"psnr_mean": scores["psnr_mean"], "psnr_min": scores["psnr_min"], "passes": len(solution.residuals)}
@@ -164,7 +165,7 @@ def starts(n: int, passes: int) -> Iterator[Row]:
         coarser = max(stage.grid.shape) / n
         screens = tuple(replace(screen, pitch_mm=screen.pitch_mm * coarser) for screen in stage.screens)
         stage = replace(stage, grid=lc.Grid((n, n, n), stage.grid.voxel_mm * coarser), screens=screens)
-        problem = pose(frames_of(stage, samples.photographs(8)), stage.grid, 0.0, "per-view")
+        problem = pose(frames_of(stage, samples.photographs(8)), stage.grid, Recipe())
         assert problem.mixture is not None  # noqa: S101
         lamps = len(np.unique(problem.lamp_of_view))
         bounds = np.full((lamps, 3), 1e-4), np.full((lamps, 3), float(stage.lamps[0].power_max))

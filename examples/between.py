@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import lightcube as lc
+from lightcube.backward.recipe import Recipe
 from lightcube.drawing import plots
 from lightcube.optics.disturbance import DISTURBANCES
 from lightcube.optics.transfer import to_uint8
@@ -89,7 +90,7 @@ def main(folder: Path) -> None:
     for name, n, make, hold, drawn in CASES:
         grid = block(n)
         frames = make(grid)
-        cube = lc.solve(frames, grid, hold=hold).cube
+        cube = lc.solve(frames, grid, Recipe(hold_deg=hold)).cube
         found = curve(cube, frames)
         print(f"| {name} | {over_the_turn(found)} |", flush=True)
         if drawn:

@@ -4,6 +4,7 @@ python examples/methods.py
 """
 
 import lightcube as lc
+from lightcube.backward.recipe import Recipe
 from lightcube.pictures import samples
 
 
@@ -20,7 +21,7 @@ def main() -> None:
     for name, frames in pictures.items():
         for method, power in (("display", None), *((m, 1.0) for m in ("display", "sirt", "cgls", "gauss-seidel"))):
             sweeps = 100 if method == "gauss-seidel" else 200
-            solution = lc.solve(frames, grid, method=method, lamp_power=power, iterations=sweeps)
+            solution = lc.solve(frames, grid, Recipe(method=method, lamp_power=power, passes=sweeps))
             scores = lc.score(solution.cube, frames)
             figures = f"{scores['psnr_mean']:.1f} / {scores['psnr_min']:.1f} dB"
             thrown = len(solution.rejected) / frames.pictures.size

@@ -1,5 +1,6 @@
 """Pictures in, a cube of coloured shadows out."""
 
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution
 from lightcube.backward.solving import solve
 from lightcube.errors import InputError
@@ -9,6 +10,7 @@ from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frame
 from lightcube.jobs.cubes import load, publish
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.material import Material
 from lightcube.optics.rig import Lighting, sampled
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
 from lightcube.optics.views import Views, spread_angles, turntable
@@ -35,10 +37,12 @@ __all__ = [
     "InputError",
     "Lamp",
     "Lighting",
+    "Material",
     "Pictures",
     "Plan",
     "Prediction",
     "Projector",
+    "Recipe",
     "Result",
     "Scene",
     "Screen",

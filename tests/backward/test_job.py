@@ -15,6 +15,7 @@ from lightcube.backward import needs
 from lightcube.backward.job import Job, differences, fingerprint, shares
 from lightcube.backward.pieces import Step, solve_piece
 from lightcube.backward.problem import is_level, pose
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution, merged
 from lightcube.backward.solving import make_job, run, solve
 from lightcube.backward.store import Arrays, MemoryStore
@@ -27,6 +28,7 @@ from lightcube.optics.views import spread_angles, turntable
 from lightcube.pictures.frames import Frames
 from lightcube.solvers import METHODS
 from tests.conftest import INTERPRETED
+from tests.helpers.recipes import asked
 
 SHAPE = (4, 7, 6)
 
@@ -42,7 +44,7 @@ def some_frames(
 
 
 def job(elevation: float = 35.0, size: tuple[int, int] = (3, 5), **options: Any) -> Job:
-    return make_job(some_frames(size=size, elevation=elevation), Grid(SHAPE, 0.7), **{"iterations": 12, **options})
+    return make_job(some_frames(size=size, elevation=elevation), Grid(SHAPE, 0.7), **asked(**{"passes": 12, **options}))
 
 
 LEVEL: dict[str, Any] = {"elevation": 0.0, "size": (4, 5), "units": 3}
@@ -51,8 +53,8 @@ KINDS: list[dict[str, Any]] = [
     {},
     RAISED,
     LEVEL,
-    {**RAISED, "lamp": "global", "hold": 2.0},
-    {"lamp": "coarse"},
+    {**RAISED, "powers": "shared", "hold_deg": 2.0},
+    {"powers": "coarse"},
     {**LEVEL, "method": "sirt"},
     {**RAISED, "method": "cgls"},
 ]
@@ -88,7 +90,7 @@ def test_units_are_all_of_the_cube_once(slices: int, colours: int, count: int, l
 def test_the_parts_of_a_problem_are_the_problem(elevation: float, size: tuple[int, int]) -> None:
     """Columns of light and weights, and what is made of unknowns and beams, part by part and all at once."""
     frames, grid = some_frames(size=size, elevation=elevation), Grid(SHAPE, 0.7)
-    whole = pose(frames, grid, 2.0, "per-view")
+    whole = pose(frames, grid, Recipe(hold_deg=2.0))
     random = np.random.default_rng(1)
     volume = random.random((3, *SHAPE)).astype(np.float32)
     seen, powers = whole.matrix.forward(whole.unknowns(volume)), random.random((3, 3))
@@ -98,7 +100,7 @@ def test_the_parts_of_a_problem_are_the_problem(elevation: float, size: tuple[in
     level = is_level(grid, frames.views)
     assert level == (size[0] == 4)
     for part in split(SHAPE, 3, 2, level=level):
-        own = pose(frames, grid, 2.0, "per-view", part=part)
+        own = pose(frames, grid, Recipe(hold_deg=2.0), part)
         chosen = columns[part.slices if level else slice(None), part.colours].ravel()
         assert np.array_equal(own.light, whole.light[:, chosen])
         assert np.array_equal(own.weights, whole.weights[:, chosen])
@@ -116,7 +118,7 @@ def test_pieces_come_in_order_and_share_the_work(monkeypatch: pytest.MonkeyPatch
     assert job().pieces == ["unit-0"]
     assert job(**RAISED).pieces == ["level-1", "unit-0", "unit-1"]
     assert job(**RAISED, lamp_power=1.0).pieces == ["unit-0", "unit-1"]
-    assert job(lamp="coarse").pieces == ["level-1", "unit-0"]
+    assert job(powers="coarse").pieces == ["level-1", "unit-0"]
     assert job(**LEVEL).pieces_of(1) == ["level-1", "unit-1"]
     monkeypatch.setattr("lightcube.backward.units.COARSEST", 3)
     assert job(**LEVEL).pieces == ["level-2", "level-1", "unit-0", "unit-1", "unit-2"]
@@ -142,9 +144,9 @@ def test_fingerprints_name_what_changed() -> None:
         (replace(one, frames=lighter), "the weights differ"),
         (replace(one, frames=turned), "the angles and screens differ"),
         (replace(one, grid=Grid((4, 7, 7), 0.7)), "voxels was 4 x 7 x 6 and is 4 x 7 x 7"),
-        (replace(one, hold=1.5), "hold was 0 and is 1.5"),
+        (job(hold_deg=1.5), "hold was 0 and is 1.5"),
         (replace(one, units=3), "units was 1 and is 3"),
-        (replace(one, max_extinction=2.0), "largest extinction was none and is 2"),
+        (job(max_extinction=2.0), "largest extinction was none and is 2"),
     ]
     assert differences(fingerprint(one), fingerprint(job())) == []
     for other, sentence in changes:
@@ -278,13 +280,13 @@ def test_progress_runs_over_all_units_and_shows_each_ones_own() -> None:
 
 def test_few_units_where_memory_is_ample_and_more_where_it_is_not() -> None:
     frames, grid = some_frames((64, 64, 64), (64, 4), elevation=0.0), Grid((64, 64, 64), 0.7)
-    one = make_job(frames, grid, lamp_power=1.0, units=1)
-    assert make_job(frames, grid, lamp_power=1.0).units == 1
+    one = make_job(frames, grid, Recipe(lamp_power=1.0), units=1)
+    assert make_job(frames, grid, Recipe(lamp_power=1.0)).units == 1
     all_at_once = needs.job_memory(one)
-    halved = make_job(frames, grid, lamp_power=1.0, memory=all_at_once - 1)
+    halved = make_job(frames, grid, Recipe(lamp_power=1.0), memory=all_at_once - 1)
     assert halved.units > 1
     assert needs.job_memory(halved) < all_at_once
-    least = make_job(frames, grid, lamp_power=1.0, memory=1)
+    least = make_job(frames, grid, Recipe(lamp_power=1.0), memory=1)
     assert needs.job_memory(least) == min(needs.job_memory(replace(one, units=units)) for units in range(1, 65))
 
 
@@ -329,7 +331,7 @@ def test_memory_is_as_much_as_is_said(
     count: int,
     options: dict[str, Any],
 ) -> None:
-    made = make_job(some_frames(shape, size, elevation, count), Grid(shape, 0.7), **options, iterations=2)
+    made = make_job(some_frames(shape, size, elevation, count), Grid(shape, 0.7), **asked(**options, passes=2))
     rows = SHAPE[0] if size[0] == shape[0] and not elevation else 2
     small = replace(made, frames=some_frames(SHAPE, (rows, 2), elevation), grid=Grid(SHAPE, 0.7))
     run(small, open_partial(tmp_path / "small.zarr", small))  # numba compiles
@@ -359,24 +361,24 @@ def test_time_is_measured_on_a_smaller_cube(method: str, monkeypatch: pytest.Mon
 
 
 def test_a_look_takes_no_more_passes_at_smaller_sizes() -> None:
-    assert job(iterations=30).coarse_passes == 30
-    assert job(iterations=1000).coarse_passes == 100
-    assert job(method="sirt", lamp_power=1.0, iterations=None).coarse_passes == 100
+    assert job(passes=30).coarse_passes == 30
+    assert job(passes=1000).coarse_passes == 100
+    assert job(method="sirt", lamp_power=1.0, passes=None).coarse_passes == 100
 
 
 def test_passes_count_the_coarse_ones_by_their_work() -> None:
-    assert needs.expected_passes(job(iterations=7)) == 7
-    assert needs.expected_passes(job(**RAISED, iterations=7)) == pytest.approx(7 + 7 / 8)
-    assert needs.expected_passes(job(method="sirt", iterations=None)) == 100
-    assert needs.expected_passes(job(method="row-reduction", iterations=None)) is None
+    assert needs.expected_passes(job(passes=7)) == 7
+    assert needs.expected_passes(job(**RAISED, passes=7)) == pytest.approx(7 + 7 / 8)
+    assert needs.expected_passes(job(method="sirt", passes=None)) == 100
+    assert needs.expected_passes(job(method="row-reduction", passes=None)) is None
 
 
 @pytest.mark.parametrize("method", [method for method in METHODS if method != "display"])
 def test_units_of_every_method_with_a_fixed_lamp(method: str) -> None:
     """Slabs are solved by themselves and together: with the same pictures they come to nearly the same."""
     frames, grid = some_frames(size=(4, 5), elevation=0.0), Grid(SHAPE, 0.7)
-    passes: dict[str, Any] = {} if method == "row-reduction" else {"iterations": 400}
-    one, two = (solve(frames, grid, method=method, units=units, dtype=np.float64, **passes) for units in (1, 2))
+    passes: dict[str, Any] = {} if method == "row-reduction" else {"passes": 400}
+    one, two = (solve(frames, grid, Recipe(method=method, dtype="float64", **passes), units=units) for units in (1, 2))
     assert np.allclose(one.cube.extinction, two.cube.extinction, atol=2e-3)
     assert two.residuals[-1] == pytest.approx(one.residuals[-1], rel=1e-2)
     assert one.undetermined == two.undetermined

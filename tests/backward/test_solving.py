@@ -7,25 +7,28 @@ import numpy as np
 import pytest
 
 from lightcube.backward.pieces import Step
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
 from lightcube.errors import InputError
 from lightcube.forward.casting import play
 from lightcube.forward.turning import lamp_at
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.material import Material
 from lightcube.optics.transfer import BLACK, decode
 from lightcube.optics.views import held, spread_angles, turntable
 from lightcube.pictures.frames import Frames
 from lightcube.scoring.metrics import score
 from lightcube.solvers import METHODS
+from tests.helpers.recipes import asked
 
 SHAPE = (3, 4, 5)
-ITERATIONS: Mapping[str, dict[str, Any]] = {
-    "display": {"iterations": 300},
-    "gauss-seidel": {"iterations": 300},
+PASSES: Mapping[str, dict[str, Any]] = {
+    "display": {"passes": 300},
+    "gauss-seidel": {"passes": 300},
     "row-reduction": {},
-    "sirt": {"iterations": 1500},
-    "cgls": {"iterations": 300},
+    "sirt": {"passes": 1500},
+    "cgls": {"passes": 300},
 }
 
 
@@ -37,7 +40,7 @@ def known_cube(views: int, elevation: float, power: float) -> Cube:
 
 
 def test_every_method_is_tested_here() -> None:
-    assert set(ITERATIONS) == set(METHODS)
+    assert set(PASSES) == set(METHODS)
 
 
 @pytest.mark.parametrize("elevation", [0.0, 35.0])
@@ -45,7 +48,7 @@ def test_every_method_is_tested_here() -> None:
 def test_a_cubes_own_shadows_come_back(method: str, elevation: float) -> None:
     cube = known_cube(6, elevation, power=1.0)
     frames = Frames(play(cube), cube.views)
-    solution = solve(frames, cube.grid, method=method, dtype=np.float64, **ITERATIONS[method])
+    solution = solve(frames, cube.grid, Recipe(method=method, dtype="float64", **PASSES[method]))
     assert solution.cube.status == "complete"
     assert solution.cube.provenance["method"] == method
     assert score(solution.cube, frames)["psnr_min"] >= 60
@@ -56,7 +59,7 @@ def test_a_cubes_own_shadows_come_back(method: str, elevation: float) -> None:
 def test_a_stronger_lamp_is_accounted_for(method: str) -> None:
     cube = known_cube(4, 0.0, power=2.5)
     frames = Frames(play(cube), cube.views)
-    solution = solve(frames, cube.grid, method=method, lamp_power=2.5, dtype=np.float64, **ITERATIONS[method])
+    solution = solve(frames, cube.grid, Recipe(method=method, lamp_power=2.5, dtype="float64", **PASSES[method]))
     assert np.all(solution.cube.powers == 2.5)
     assert score(solution.cube, frames)["psnr_min"] >= 60
 
@@ -68,7 +71,11 @@ def test_pixels_of_no_weight_do_not_matter(method: str) -> None:
     weights = np.random.default_rng(1).integers(0, 2, shown.shape[:3]).astype(np.float32)
     spoiled = np.where(weights[..., None] > 0, shown, np.float32(0.123))
     one, other = (
-        solve(Frames(pictures, cube.views, weights), cube.grid, method=method, dtype=np.float64, **ITERATIONS[method])
+        solve(
+            Frames(pictures, cube.views, weights),
+            cube.grid,
+            Recipe(method=method, dtype="float64", **PASSES[method]),
+        )
         for pictures in (shown, spoiled)
     )
     assert np.allclose(one.cube.extinction, other.cube.extinction, atol=1e-6)
@@ -79,7 +86,7 @@ def test_pixels_of_no_weight_do_not_matter(method: str) -> None:
 def test_the_largest_extinction_is_kept(method: str) -> None:
     cube = known_cube(4, 0.0, power=1.0)
     dark = Frames(play(cube) * np.float32(0.01), cube.views)
-    solution = solve(dark, cube.grid, method=method, max_extinction=0.3, iterations=20)
+    solution = solve(dark, cube.grid, Recipe(method=method, material=Material(0.3), passes=20))
     assert solution.cube.extinction.max() <= 0.3 * (1 + 1e-6)
     if method != "gauss-seidel":  # which throws out equations that ask for more
         assert solution.cube.extinction.max() == pytest.approx(0.3)
@@ -88,7 +95,7 @@ def test_the_largest_extinction_is_kept(method: str) -> None:
 def test_black_pictures_are_raised_to_the_screens_black() -> None:
     grid = Grid(SHAPE)
     views = turntable(grid, [20.0, 100.0], picture_shape=(3, 2))
-    solution = solve(Frames(np.zeros((2, 3, 2, 3), np.float32), views), grid, iterations=200)
+    solution = solve(Frames(np.zeros((2, 3, 2, 3), np.float32), views), grid, Recipe(passes=200))
     darkest = float(decode(np.array([BLACK]))[0])
     assert np.all(play(solution.cube) < 2 * darkest)
 
@@ -103,7 +110,7 @@ def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
         seen.append(step.shown())
         return step.iteration == 3
 
-    solution = solve(frames, cube.grid, lamp_power=2.0, callback=callback)
+    solution = solve(frames, cube.grid, Recipe(lamp_power=2.0), callback=callback)
     assert len(seen) == 3
     assert solution.cube.status == "interrupted"
     assert solution.stop_reason == "callback"
@@ -120,7 +127,7 @@ def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation: flo
     wrong = (5, rows // 2, columns // 2, 1)
     shown[wrong] *= 0.5
     frames = Frames(shown.astype(np.float32), cube.views)
-    solution = solve(frames, cube.grid, method="gauss-seidel", dtype=np.float64, iterations=3000)
+    solution = solve(frames, cube.grid, Recipe(method="gauss-seidel", dtype="float64", passes=3000))
     assert solution.rejected.tolist() == [list(wrong)]
     assert solution.cube.provenance["rejected"] == 1
 
@@ -134,19 +141,22 @@ def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation: flo
         {"lamp_power": 1e300},
         {"lamp_max": 0.5},
         {"lamp_max": float("inf")},
-        {"lamp": "fixed", "lamp_max": 4.0},
-        {"lamp": "per-view", "lamp_power": 1.0},
-        {"lamp": "global", "lamp_power": 1.0},
-        {"lamp": "strobe"},
-        {"lamp": "per-view", "method": "sirt"},
+        {"lamp_power": 1.0, "lamp_max": 4.0},
+        {"powers": "coarse", "lamp_power": 1.0},
+        {"powers": "shared", "lamp_power": 1.0},
+        {"powers": "strobe"},
+        {"powers": "shared", "method": "sirt"},
+        {"lamp_max": 4.0, "method": "sirt"},
+        {"hold_deg": -1.0},
+        {"dtype": "int8"},
         {"max_extinction": -1.0},
-        {"iterations": 0},
+        {"passes": 0},
     ],
 )
 def test_nonsense_is_refused(options: dict[str, Any]) -> None:
     cube = known_cube(2, 0.0, power=1.0)
     with pytest.raises(InputError):
-        solve(Frames(play(cube), cube.views), cube.grid, **options)
+        solve(Frames(play(cube), cube.views), cube.grid, **asked(**options))
 
 
 def test_frames_of_another_grid_are_refused() -> None:
@@ -161,14 +171,14 @@ def test_lamp_powers_are_found_per_view_or_for_all_views(elevation: float) -> No
     cube = known_cube(5, elevation, power=1.0)
     powers = np.random.default_rng(6).uniform(0.5, 3.0, (5, 3))
     frames = Frames(play(Cube(cube.extinction, cube.grid, cube.views, lamp_powers=powers)), cube.views)
-    free = solve(frames, cube.grid, iterations=600, dtype=np.float64).cube
-    assert free.provenance["lamp"] == "per-view"
+    free = solve(frames, cube.grid, Recipe(passes=600, dtype="float64")).cube
+    assert free.provenance["powers"] == "per-picture"
     assert np.allclose(free.powers, powers, rtol=0.05)
     assert score(free, frames)["psnr_min"] > 50
-    shared = solve(frames, cube.grid, lamp="global", lamp_max=4.0, iterations=100).cube
+    shared = solve(frames, cube.grid, Recipe(powers="shared", lamp_max=4.0, passes=100)).cube
     assert np.all(shared.powers == shared.powers[0])
     assert np.all((shared.powers >= powers.min(axis=0) * 0.9) & (shared.powers <= 4.0))
-    fixed = solve(frames, cube.grid, lamp_power=2.0, iterations=100).cube
+    fixed = solve(frames, cube.grid, Recipe(lamp_power=2.0, passes=100)).cube
     assert np.all(fixed.powers == 2.0)
     assert score(free, frames)["psnr_mean"] > score(shared, frames)["psnr_mean"] > score(fixed, frames)["psnr_mean"]
 
@@ -190,7 +200,7 @@ def test_a_held_picture_stands_around_its_stop(elevation: float) -> None:
             assert step.shown is not None
             seen.append(step.shown())
 
-        cube = solve(frames, grid, hold=hold, iterations=200, callback=look).cube
+        cube = solve(frames, grid, Recipe(hold_deg=hold, passes=200), callback=look).cube
         assert cube.hold_deg == hold
         assert cube.powers.shape == (3, 3)
         assert np.allclose(seen[-1], play(cube), rtol=1e-3, atol=1e-4)
@@ -238,4 +248,4 @@ def test_a_hold_that_meets_another_stops_mirror_image_is_refused() -> None:
 def test_a_hold_wider_than_half_the_spacing_is_refused(hold: float) -> None:
     cube = known_cube(3, 0.0, power=1.0)
     with pytest.raises(InputError, match="hold"):
-        solve(Frames(play(cube), cube.views), cube.grid, hold=hold)
+        solve(Frames(play(cube), cube.views), cube.grid, Recipe(hold_deg=hold))

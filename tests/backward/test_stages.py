@@ -9,6 +9,7 @@ import pytest
 
 from lightcube.backward.needs import job_memory
 from lightcube.backward.problem import pose
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import make_job, solve
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play
@@ -66,7 +67,7 @@ PASSES = 6 if INTERPRETED else 300
 def test_known_cubes_come_back(room: str) -> None:
     """Not the cube, which so few pictures do not tell, but all that it shows."""
     _, frames = known(stage(room), ROOMS[room][2])
-    solution = solve(frames, GRID, iterations=PASSES)
+    solution = solve(frames, GRID, Recipe(passes=PASSES))
     assert solution.lower_bound is None
     if INTERPRETED:
         assert solution.residuals[-1] < 0.3 * solution.residuals[0]
@@ -78,7 +79,7 @@ def test_known_cubes_come_back(room: str) -> None:
 def test_no_start_gets_stuck(room: str) -> None:
     """The problem is not convex; yet from anywhere the objective ends as low."""
     _, frames = known(stage(room), ROOMS[room][2])
-    problem = pose(frames, GRID, 0.0, "per-view")
+    problem = pose(frames, GRID, Recipe())
     assert problem.mixture is not None
     assert frames.lighting is not None
     pairs = len(frames.lighting.pairs)
@@ -100,24 +101,24 @@ def test_no_start_gets_stuck(room: str) -> None:
     assert max(ends) < (0.5 if INTERPRETED else 0.02) * begun
 
 
-@pytest.mark.parametrize("lamp", ["per-view", "global", "coarse"])
-def test_lamps_keep_their_bounds_and_are_shared_as_asked(lamp: Any) -> None:
+@pytest.mark.parametrize("powers", ["per-picture", "shared", "coarse"])
+def test_lamps_keep_their_bounds_and_are_shared_as_asked(powers: Any) -> None:
     lamps = (replace(RED, power=1.3), replace(BLUE, power_max=1.5), Lamp("out", (1.0, 0.0, 0.0)))
     made = stage("two coloured lamps", lamps=lamps)
     made = replace(made, shots=(made.shots[0], replace(made.shots[1], lamps=("blue",)), made.shots[2]))
     _, frames = known(made)
     lighting = frames.lighting
     assert lighting is not None
-    cube = solve(frames, GRID, lamp=lamp, iterations=5).cube
+    cube = solve(frames, GRID, Recipe(powers=powers, passes=5)).cube
     assert cube.powers.shape == (len(lighting.pairs), 3) == (5, 3)
     red = lighting.pairs[:, 1] == 0
     assert np.all(cube.powers[red] == 1.3)
     assert np.all((cube.powers >= 1e-4) & (cube.powers[:] <= np.where(red, 1.3, 1.5)[:, None]))
     blue = cube.powers[~red]
-    assert np.all(blue == blue[0]) == (lamp == "global")
-    for given in ({"lamp": "fixed"}, {"lamp_power": 1.0}, {"lamp_max": 4.0}):
+    assert np.all(blue == blue[0]) == (powers == "shared")
+    for given in (Recipe(lamp_power=1.0), Recipe(lamp_max=4.0)):
         with pytest.raises(InputError, match="said on the stage"):
-            solve(frames, GRID, **given)
+            solve(frames, GRID, given)
 
 
 @pytest.mark.parametrize("units", [1, 3])
@@ -125,7 +126,7 @@ def test_held_pictures_stand_still_for_a_while(units: int) -> None:
     """Better within the hold than without one, under the lamps of the stop; a hold that is too wide is refused."""
     _, frames = known(stage("two coloured lamps", stops=(0.0, 40.0, 230.0)))
     wide, passes = (2.0, 2 if INTERPRETED else 100)
-    solutions = [solve(frames, GRID, hold=hold, iterations=passes, units=units) for hold in (0.0, wide)]
+    solutions = [solve(frames, GRID, Recipe(hold_deg=hold, passes=passes), units=units) for hold in (0.0, wide)]
     cubes = [solution.cube for solution in solutions]
     assert [cube.provenance["angles_per_view"] for cube in cubes] == [1, 3]
     assert [cube.powers.shape for cube in cubes] == [(6, 3), (6, 3)]
@@ -137,7 +138,7 @@ def test_held_pictures_stand_still_for_a_while(units: int) -> None:
     np.testing.assert_allclose(powers, cubes[1].powers)
     assert INTERPRETED or off[1] < 0.7 * off[0]
     with pytest.raises(InputError, match="a hold of 21 degrees is wider"):
-        solve(frames, GRID, hold=21.0, iterations=1)
+        solve(frames, GRID, Recipe(hold_deg=21.0, passes=1))
 
 
 def test_a_level_lamp_that_a_slanted_table_tilts_can_be_held_in_units() -> None:
@@ -146,7 +147,9 @@ def test_a_level_lamp_that_a_slanted_table_tilts_can_be_held_in_units() -> None:
     wall = replace(WALL, centre=(5.0, 0.0, 0.0))
     made = stage("two coloured lamps", lamps=lamps, screens=(wall,), axis=(0.2, 0.0, 1.0))
     _, frames = known(replace(made, shots=made.shots[:1], stops=(0.0,)))
-    whole, parts = (solve(frames, GRID, hold=4.0, iterations=4, units=units, lamp="coarse") for units in (1, 3))
+    whole, parts = (
+        solve(frames, GRID, Recipe(hold_deg=4.0, passes=4, powers="coarse"), units=units) for units in (1, 3)
+    )
     np.testing.assert_allclose(parts.cube.extinction, whole.cube.extinction, rtol=1e-4, atol=1e-6)
 
 

@@ -74,7 +74,7 @@ def test_paper_is_the_papers_set_up(run, frames: Path, tmp_path: Path) -> None: 
         ("--span", "360"),
         ("--angles", "0,1,2,3"),
         ("--frame-width", "0.5"),
-        ("--lamp", "global"),
+        ("--powers", "shared"),
         ("--lamp-power", "2"),
         ("--lamp-max", "4"),
         ("--hold", "1"),
@@ -100,7 +100,7 @@ def test_paper_with_what_contradicts_it_is_refused(run, frames: Path, tmp_path: 
         ("--black", "-0.5"),
         ("--frame-width", "0"),
         ("--frame-width", "1.9"),
-        ("--lamp", "coarse", "--lamp-power", "3"),
+        ("--powers", "coarse", "--lamp-power", "3"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(run, frames: Path, tmp_path: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
@@ -154,9 +154,9 @@ def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, qual
 def test_options_are_settled_before_anything_is_read() -> None:
     with pytest.raises(InputError, match="--paper"):
         solving.settled(Options(paper=True, hold=1.0))
-    assert solving.settled(Options(method="cgls")).lamp == "fixed"
-    assert solving.settled(Options()).power == 16
-    assert solving.settled(Options(paper=True)).power == 1
+    assert solving.settled(Options(method="cgls")).recipe.lamp_bounds == (1, 1)
+    assert solving.settled(Options()).recipe.lamp_bounds[1] == 16
+    assert solving.settled(Options(paper=True)).recipe.lamp_bounds == (1, 1)
 
 
 @pytest.mark.parametrize(
@@ -165,7 +165,7 @@ def test_options_are_settled_before_anything_is_read() -> None:
         ("--lamp-power", "0.5"),
         ("--frame-width", "1", "--elevation", "0", "--lamp-max", "1e5"),
         ("--black", "0.4"),
-        ("--lamp", "coarse", "--max-extinction", "0.5"),
+        ("--powers", "coarse", "--max-extinction", "0.5"),
         ("--elevation", "-20", "--order", "best", "--shift", "1"),
     ],
 )

@@ -135,7 +135,7 @@ def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  
         (["--n", "8"], "--n is not for a stage"),
         (["--elevation", "0"], "--elevation is not for a stage"),
         (["--lamp-max", "4"], "--lamp-max is not for a stage"),
-        (["--lamp", "fixed"], "--lamp fixed"),
+        (["--lamp-power", "1"], "--lamp-power is not for a stage"),
         (["--paper"], "--paper is not for a stage"),
         (["--method", "sirt"], "cannot choose the power of lamp 'sun'"),
         (["--quality", "best", "--iterations", "3"], "--quality and --iterations both"),

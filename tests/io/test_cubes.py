@@ -20,6 +20,7 @@ from hypothesis.extra import numpy as st_numpy
 
 from lightcube.backward.job import Job
 from lightcube.backward.pieces import solve_piece
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import merged
 from lightcube.errors import InputError
 from lightcube.io import _zarr, check_cube_target, save
@@ -470,7 +471,7 @@ def begun(out: Path, *pieces: str) -> Job:
     """A partial folder with some pieces of a job in it."""
     views = turntable(Grid((3, 5, 7)), [10.0, 80.0], picture_shape=(3, 5))
     frames = Frames(np.full((2, 3, 5, 3), 0.5, np.float32), views)
-    job = Job(frames, Grid((3, 5, 7)), method="sirt", lamp="fixed", lamp_power=1.0, iterations=2, units=2)
+    job = Job(frames, Grid((3, 5, 7)), Recipe(method="sirt", passes=2), units=2)
     store = open_partial(out, job)
     for name in pieces:
         solve_piece(job, name, store)

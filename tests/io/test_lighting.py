@@ -24,6 +24,7 @@ from lightcube.optics.stage import exposures
 from lightcube.pictures.fitting import targets
 from lightcube.pictures.frames import Frames
 from tests.backward.test_job import same
+from tests.helpers.recipes import asked
 from tests.io.test_cubes import SUFFIXES, change, partial_path, put
 from tests.io.test_cubes import assert_same as assert_same_but_lighting
 from tests.optics.test_rig import GRID, ROOM, extinction, made, powers_of
@@ -109,10 +110,15 @@ def job(**options: Any) -> Job:
     views, lighting = exposures(stage)
     pictures = np.random.default_rng(2).uniform(0.1, 1, (4, 5, 5, 3)).astype(np.float32)
     frames = Frames(pictures, views, lighting.inside((5, 5)).astype(np.float32), lighting=lighting)
-    return make_job(frames, GRID, **{"iterations": 4, **options})
+    return make_job(frames, GRID, **asked(**{"passes": 4, **options}))
 
 
-KINDS: list[dict[str, Any]] = [{}, {"units": 2, "hold": 2.0}, {"lamp": "global", "units": 3}, {"lamp": "coarse"}]
+KINDS: list[dict[str, Any]] = [
+    {},
+    {"units": 2, "hold_deg": 2.0},
+    {"powers": "shared", "units": 3},
+    {"powers": "coarse"},
+]
 
 
 @pytest.mark.parametrize("options", KINDS, ids=str)

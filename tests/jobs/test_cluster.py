@@ -29,6 +29,7 @@ from lightcube.pictures.frames import Frames
 from tests.backward.test_job import same
 from tests.cli.test_cli import frames, run
 from tests.conftest import INTERPRETED
+from tests.helpers.recipes import asked
 from tests.io.test_cubes import assert_same, content
 from tests.io.test_places import bucket
 
@@ -65,7 +66,7 @@ DiskStore.keep = slow
 def some_job(**options: Any) -> Job:
     views = turntable(GRID, spread_angles(3, elevation=0.0), picture_shape=(12, 4))
     pictures = np.random.default_rng(5).uniform(0.1, 1, (3, 12, 4, 3)).astype(np.float32)
-    return make_job(Frames(pictures, views), GRID, **{"iterations": 9, "units": 4, **options})
+    return make_job(Frames(pictures, views), GRID, **asked(**{"passes": 9, "units": 4, **options}))
 
 
 @pytest.fixture(autouse=True)
@@ -141,7 +142,7 @@ def pressing(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
 
 
 def test_ctrl_c_keeps_states_and_the_work_goes_on_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = some_job(iterations=PASSES)
+    made = some_job(passes=PASSES)
     store = open_partial(tmp_path / "a.zarr", made)
     with scheduler(tmp_path) as address:
         pressing(monkeypatch, 1)
@@ -158,7 +159,7 @@ def test_ctrl_c_keeps_states_and_the_work_goes_on_here(tmp_path: Path, monkeypat
 
 
 def test_workers_stop_when_nobody_wants_their_work(tmp_path: Path) -> None:
-    made = some_job(iterations=PASSES)
+    made = some_job(passes=PASSES)
     store = open_partial(tmp_path / "a.zarr", made)
     with scheduler(tmp_path, workers=1) as address:
         program = (
@@ -190,7 +191,7 @@ def test_workers_say_what_is_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_a_local_scheduler_comes_and_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = some_job(lamp="fixed", units=3)  # no coarse passes: they are as many as they are in other processes
+    made = some_job(lamp_power=1.0, units=3)  # no coarse passes: they are as many as they are in other processes
     monkeypatch.setattr("dask.system.CPU_COUNT", 2)
     assert cluster.count_workers("local") == 2
     store = open_partial(tmp_path / "a.zarr", made)

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import threading
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -167,7 +166,10 @@ def test_what_changed_is_named_and_nothing_is_lost(run, photographs: Path, tmp_p
     said = options("--iterations", "2")
     assert run("solve", photographs, "-o", out, *said, "--unit", "1/2").code == 0
     before = content(partial_path(out))
-    for change, sentence in ((("--iterations", "3"), "passes was 2 and is 3"), (("--lamp-max", "4"), "lamp power was")):
+    for change, sentence in (
+        (("--iterations", "3"), "passes was 2 and is 3"),
+        (("--lamp-max", "4"), "largest lamp power was"),
+    ):
         refused = run("solve", photographs, "-o", out, *said, *change, "--unit", "1/2")
         assert refused.code == 2
         assert sentence in refused.err
@@ -324,10 +326,10 @@ def test_damage_is_one_sentence(tmp_path: Path, name: str, harm: str) -> None:
 
 def test_pieces_of_another_job_are_refused(tmp_path: Path) -> None:
     one = begun(tmp_path / "a.zarr", job(), "unit-0")
-    other = begun(tmp_path / "b.zarr", job(hold=1.0))
+    other = begun(tmp_path / "b.zarr", job(hold_deg=1.0))
     (Path(one.folder) / "unit-0.npz").rename(Path(other.folder) / "unit-0.npz")
     with pytest.raises(InputError, match="belongs to another cube"):
-        merged(job(hold=1.0), other)
+        merged(job(hold_deg=1.0), other)
 
 
 def test_another_version_refuses_to_go_on_but_publishes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -384,4 +386,4 @@ def test_a_full_disk_keeps_the_state_before(tmp_path: Path, monkeypatch: pytest.
         store.keep("unit-0", {"x": np.ones(3)})
     assert content(Path(store.folder)) == before
     with pytest.raises(InputError, match="no space"):
-        open_partial(tmp_path / "b.zarr", replace(job(), hold=1.0))
+        open_partial(tmp_path / "b.zarr", job(hold_deg=1.0))

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lightcube.backward.problem import held_views, pose
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import split
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
@@ -125,17 +126,18 @@ def test_what_is_cast_is_the_plain_sum(samples: dict[str, Any]) -> None:
     np.testing.assert_allclose(play(cube), expected, rtol=1e-4, atol=1e-6)
 
 
-@pytest.mark.parametrize("lamp", ["per-view", "global"])
+@pytest.mark.parametrize("powers_of_lamps", ["per-picture", "shared"])
 @pytest.mark.parametrize("hold", [0.0, 3.0])
-def test_solvers_see_the_plain_sum(lamp: Any, hold: float) -> None:
+def test_solvers_see_the_plain_sum(powers_of_lamps: Any, hold: float) -> None:
     """And so does whoever asks a problem for what is shown; at the stops themselves where pictures are held."""
     cube = made(ROOM)
     assert cube.lighting is not None
     wanted = np.full((4, 5, 5, 3), 0.5, np.float32)
-    problem = pose(Frames(wanted, cube.views, lighting=cube.lighting), GRID, hold, lamp, dtype=np.float64)
+    recipe = Recipe(powers=powers_of_lamps, hold_deg=hold, dtype="float64")
+    problem = pose(Frames(wanted, cube.views, lighting=cube.lighting), GRID, recipe)
     assert problem.mixture is not None
-    powers = cube.powers if lamp == "per-view" else powers_of(cube.lighting)[:3]
-    each = powers if lamp == "per-view" else powers[cube.lighting.pairs[:, 1]]
+    powers = cube.powers if powers_of_lamps == "per-picture" else powers_of(cube.lighting)[:3]
+    each = powers if powers_of_lamps == "per-picture" else powers[cube.lighting.pairs[:, 1]]
     absorbed = problem.matrix.forward(problem.unknowns(cube.extinction.astype(np.float64)))
     inside = cube.lighting.inside((5, 5))[..., None]
     shown = problem.shown(absorbed, powers) * inside
@@ -152,11 +154,11 @@ def test_the_parts_of_a_problem_are_the_problem(level: bool, count: int) -> None
     cube = made(Stage(GRID, lamps, (wall,), shots, (10.0, 50.0)))
     wanted = np.random.default_rng(3).random((2, 4, 5, 3)).astype(np.float32)
     frames = Frames(wanted, cube.views, lighting=cube.lighting)
-    whole = pose(frames, GRID, 0.0, "per-view")
+    whole = pose(frames, GRID, Recipe())
     assert whole.matrix.level == level
     shown = whole.shown(whole.matrix.forward(whole.unknowns(cube.extinction)), cube.powers)
     for part in split(GRID.shape, 3, count, level=level):
-        own = pose(frames, GRID, 0.0, "per-view", part=part)
+        own = pose(frames, GRID, Recipe(), part)
         absorbed = own.matrix.forward(own.unknowns(cube.extinction[part.colours, part.slices]))
         mine = own.shown(absorbed, cube.powers[:, part.colours])
         np.testing.assert_allclose(mine, shown[:, own.rows, :, part.colours], rtol=1e-6)

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
 from lightcube.forward.casting import cast, play
 from lightcube.io import read_stage, read_stage_frames
@@ -57,7 +58,7 @@ def test_the_shadows_of_a_known_cube_come_back(path: Path) -> None:
     stage = smaller(read_stage(path)[0], SIDE)
     cube, frames = known(stage, 3 if path.stem == "soft-lamp" else 1)
     assert np.mean(frames.pictures < 0.5) > 0.1  # there are shadows
-    solved = solve(frames, stage.grid, iterations=100 if INTERPRETED else 400)
+    solved = solve(frames, stage.grid, Recipe(passes=100 if INTERPRETED else 400))
     scores = score(solved.cube, frames)
     assert scores["psnr_min"] >= 50
     assert not np.allclose(solved.cube.extinction, cube.extinction, atol=1e-3)  # other cubes have the same shadows

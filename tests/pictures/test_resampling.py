@@ -5,6 +5,7 @@ import pytest
 
 from lightcube.backward.pieces import Step
 from lightcube.backward.problem import pose
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
 from lightcube.backward.units import coarser, halvings
 from lightcube.forward.casting import play
@@ -68,7 +69,10 @@ def test_a_smooth_cube_casts_nearly_the_same_at_half_the_size(elevation: float) 
     small, small_grid = halved(frames, grid)
     half = volume.reshape(3, 3, 2, 6, 2, 5, 2).mean((2, 4, 6))
     totals = []
-    for problem, extinction in ((pose(frames, grid, 0, "fixed"), volume), (pose(small, small_grid, 0, "fixed"), half)):
+    for problem, extinction in (
+        (pose(frames, grid, Recipe(lamp_power=1.0)), volume),
+        (pose(small, small_grid, Recipe(lamp_power=1.0)), half),
+    ):
         pixels = problem.matrix.shape[0] * problem.light.shape[1]
         totals.append(float(np.sum(problem.matrix.forward(problem.unknowns(extinction)))) / pixels)
     assert totals[1] == pytest.approx(totals[0], rel=0.06)
@@ -84,7 +88,7 @@ def test_coarser_sizes_run_down_to_the_coarsest() -> None:
 
 def test_the_unknowns_are_the_extinction() -> None:
     frames = some_frames((3, 7, 5), (3, 3), 0.0)
-    problem = pose(frames, Grid((3, 7, 5), 0.7), 0, "fixed")
+    problem = pose(frames, Grid((3, 7, 5), 0.7), Recipe(lamp_power=1.0))
     volume = np.random.default_rng(0).random((3, 3, 7, 5)).astype(np.float32)
     assert np.array_equal(problem.extinction(problem.unknowns(volume)), volume)
 
@@ -94,8 +98,8 @@ def test_units_are_independent_once_the_lamp_is_known(elevation: float, size: tu
     """Colours, or slabs of slices, solved one by one give what they give together."""
     grid = Grid((6, 7, 5), 0.7)
     frames = some_frames((6, 7, 5), size, elevation)
-    apart = solve(frames, grid, units=2, lamp_max=4, iterations=400)
-    problem = pose(frames, grid, 0, "coarse")
+    apart = solve(frames, grid, Recipe(lamp_max=4, passes=400), units=2)
+    problem = pose(frames, grid, Recipe(powers="coarse"))
     powers = apart.cube.powers
     assert np.max(powers) <= 4 * (1 + 1e-6)
     together = METHODS["display"](
@@ -117,9 +121,9 @@ def test_the_start_at_half_the_size_saves_passes(monkeypatch: pytest.MonkeyPatch
     rows, columns = np.mgrid[:6, :6] / 6
     pictures = np.stack([np.stack([0.2 + 0.7 * rows, 0.9 - 0.6 * columns, 0.5 + 0.3 * rows * columns], -1)] * 4)
     frames = Frames(pictures.astype(np.float32), views)
-    cold = solve(frames, grid, iterations=5)
+    cold = solve(frames, grid, Recipe(passes=5))
     monkeypatch.setattr("lightcube.backward.units.COARSEST", 8)
-    warm = solve(frames, grid, iterations=5)
+    warm = solve(frames, grid, Recipe(passes=5))
     assert warm.residuals[0] < 0.5 * cold.residuals[0]
     assert warm.residuals[-1] < cold.residuals[-1]
 
@@ -148,7 +152,7 @@ def test_the_work_done_grows_to_all_of_it(monkeypatch: pytest.MonkeyPatch, lamp:
     grid = Grid((6, 8, 8), 0.7)
     frames = some_frames((6, 8, 8), (4, 4), 35.0)
     done: list[float] = []
-    solve(frames, grid, lamp=lamp, iterations=7, callback=lambda step: done.append(step.done))  # type: ignore[arg-type]
+    solve(frames, grid, Recipe(powers=lamp, passes=7), callback=lambda step: done.append(step.done))  # type: ignore[arg-type]
     assert done == sorted(done)
     assert done[-1] == pytest.approx(1)
     assert 0 < done[0] < 0.1
@@ -166,8 +170,8 @@ def test_halves_are_problems_of_their_own() -> None:
 def test_enough_is_enough(lamp: str, enough_db: float) -> None:
     grid = Grid((6, 8, 8), 0.7)
     frames = some_frames((6, 8, 8), (4, 4), 35.0, count=2)
-    most = solve(frames, grid, lamp=lamp, iterations=150)  # type: ignore[arg-type]
-    enough = solve(frames, grid, lamp=lamp, iterations=150, enough_db=enough_db)  # type: ignore[arg-type]
+    most = solve(frames, grid, Recipe(powers=lamp, passes=150))  # type: ignore[arg-type]
+    enough = solve(frames, grid, Recipe(powers=lamp, passes=150, enough_db=enough_db))  # type: ignore[arg-type]
     assert most.stop_reason != "enough"
     assert enough.stop_reason == "enough"
     assert enough.cube.status == "complete"
@@ -187,7 +191,7 @@ def test_stopped_at_the_coarsest_of_several_sizes_the_cube_is_whole(monkeypatch:
         calls.append(step)
         return len(calls) == 60
 
-    cube = solve(frames, grid, lamp_power=1.0, callback=callback).cube
+    cube = solve(frames, grid, Recipe(lamp_power=1.0), callback=callback).cube
     middle, outside = cube.extinction[:, 2:6, 6:10, 6:10].mean(), cube.extinction[:, 2:6, 1:3, 6:10].mean()
     assert cube.status == "interrupted"
     assert outside > 0.2 * middle
@@ -196,4 +200,4 @@ def test_stopped_at_the_coarsest_of_several_sizes_the_cube_is_whole(monkeypatch:
 def test_slabs_of_one_colour_are_no_colours() -> None:
     views = turntable(Grid((4, 6, 6)), [20.0, 80.0, 140.0], picture_shape=(4, 4))
     frames = Frames(np.random.default_rng(0).uniform(0.2, 1, (3, 4, 4, 1)).astype(np.float32), views)
-    assert solve(frames, Grid((4, 6, 6)), lamp="coarse", iterations=5).cube.powers.shape == (3, 1)
+    assert solve(frames, Grid((4, 6, 6)), Recipe(powers="coarse", passes=5)).cube.powers.shape == (3, 1)

@@ -1,10 +1,9 @@
 """How large the pictures are made, the cube's proportions, and hold: laws, with a prediction that is a formula."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
+from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import widest_hold
@@ -26,7 +25,8 @@ def formula(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """Predict 60 dB less 100 times the part of the cube's area, and 0.8 dB for each degree of hold; count the calls."""
     calls: list[float] = []
 
-    def predict(frames: Frames, grid: Grid, *, hold: float = 0.0, **_: Any) -> Prediction:
+    def predict(frames: Frames, grid: Grid, recipe: Recipe) -> Prediction:
+        hold = recipe.hold_deg
         rows, columns = frames.views.picture_shape
         calls.append(hold)
         part = rows * columns / (grid.shape[0] * grid.shape[1])
@@ -46,7 +46,7 @@ def test_pictures_are_as_wide_as_good_ones_can_be(formula: list[float]) -> None:
 
 
 def test_where_none_is_good_they_are_as_narrow_as_they_get(monkeypatch: pytest.MonkeyPatch) -> None:
-    def bad(frames: Frames, _grid: Grid, **_: Any) -> Prediction:
+    def bad(frames: Frames, _grid: Grid, _recipe: Recipe) -> Prediction:
         return Prediction(np.full(len(frames), 10.0), 20)
 
     monkeypatch.setattr(planning, "predict", bad)
@@ -54,7 +54,7 @@ def test_where_none_is_good_they_are_as_narrow_as_they_get(monkeypatch: pytest.M
 
 
 def test_where_all_are_good_they_fill_the_cube(monkeypatch: pytest.MonkeyPatch) -> None:
-    def good(frames: Frames, _grid: Grid, **_: Any) -> Prediction:
+    def good(frames: Frames, _grid: Grid, _recipe: Recipe) -> Prediction:
         return Prediction(np.full(len(frames), 70.0), 20)
 
     monkeypatch.setattr(planning, "predict", good)
@@ -63,20 +63,20 @@ def test_where_all_are_good_they_fill_the_cube(monkeypatch: pytest.MonkeyPatch) 
 
 def test_hold_grows_while_it_costs_less_than_a_decibel(formula: list[float]) -> None:
     """At 0.8 dB a degree a hold of 1 degree is the longest of those tried; where nothing is good there is none."""
-    planned = plan(pictures(), 64, frame_width=0.4, hold=None)
+    planned = plan(pictures(), 64, longest_hold=True, frame_width=0.4)
     without = plan(pictures(), 64, frame_width=0.4)
-    assert planned.hold == 1.0
+    assert planned.recipe.hold_deg == 1.0
     assert planned.prediction.psnr_mean == pytest.approx(without.prediction.psnr_mean - 0.8)
     assert 40 < without.prediction.psnr_mean < 45
-    perfect = plan(pictures(), 64, frame_width=0.25, hold=None)
-    assert 1 < perfect.hold <= widest_hold(perfect.frames.views)
+    perfect = plan(pictures(), 64, longest_hold=True, frame_width=0.25)
+    assert 1 < perfect.recipe.hold_deg <= widest_hold(perfect.frames.views)
     assert perfect.prediction.psnr_mean >= 44
-    assert plan(pictures(), 64, frame_width=0.6, hold=None).hold == 0
+    assert plan(pictures(), 64, longest_hold=True, frame_width=0.6).recipe.hold_deg == 0
 
 
 def test_a_hold_that_is_asked_for_is_part_of_the_prediction(formula: list[float]) -> None:
-    planned = plan(pictures(), 64, hold=2.5)
-    assert planned.hold == 2.5
+    planned = plan(pictures(), 64, Recipe(hold_deg=2.5))
+    assert planned.recipe.hold_deg == 2.5
     assert set(formula) == {2.5}
 
 

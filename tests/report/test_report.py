@@ -148,7 +148,7 @@ def made(names: tuple[str, ...] = (), **changed: Any) -> Cube:
     targets = random.integers(1, 255, (3, 3, 5, 4), dtype=np.uint8)
     targets[..., 3] = 255
     views = turntable(grid, spread_angles(3, 360), elevation=20, picture_shape=(3, 5))
-    provenance = {"lightcube": "0.1.0", "method": "display", "lamp": "per-view", "lamp_max": 4.0}
+    provenance = {"lightcube": "0.1.0", "method": "display", "powers": "per-picture", "lamp_max": 4.0}
     return replace(Cube(extinction, grid, views, None, targets, names, provenance=provenance), **changed)
 
 
@@ -175,9 +175,9 @@ SOLVES = {
     "draft": "--n 6 --frame-width 0.5 --hold 0 --quality draft",
     "angles": "--shape 5,7,6 --frame-width 0.7 --elevation 20 --angles 3,100.52,181,-85 --iterations 3 --lamp-max 4.5 "
     "--black 0.02 --hold 1.25",
-    "span": "--n 7 --span 200 --size-mm 33.3 --frame-width 0.6 --hold 0 --fit pad --lamp global --transfer linear "
+    "span": "--n 7 --span 200 --size-mm 33.3 --frame-width 0.6 --hold 0 --fit pad --powers shared --transfer linear "
     "--max-extinction 0.5 --iterations 2",
-    "order": "--n 6 --frame-width 0.5 --hold 0 --order best --shift 1 --lamp coarse --iterations 2",
+    "order": "--n 6 --frame-width 0.5 --hold 0 --order best --shift 1 --powers coarse --iterations 2",
     "paper": "--n 6 --paper --iterations 3",
     "gauss-seidel": "--n 5 --paper --method gauss-seidel",
     "sirt": "--n 5 --frame-width 0.8 --method sirt --lamp-power 2.5 --iterations 4",

@@ -11,6 +11,7 @@ from PIL import Image
 
 from lightcube import io
 from lightcube.backward import solving
+from lightcube.backward.recipe import Recipe
 from lightcube.optics.cube import Cube
 from lightcube.pictures.samples import photographs
 from lightcube.planning.plan import plan
@@ -25,8 +26,8 @@ __all__ = ["run"]
 @pytest.fixture(scope="module")
 def cube() -> Cube:
     """Eight photographs in 48 x 48 x 48 voxels."""
-    planned = plan(photographs(8), 48, frame_width=0.6, hold=0.0)
-    found = solving.solve(planned.frames, planned.grid, iterations=150).cube
+    planned = plan(photographs(8), 48, frame_width=0.6)
+    found = solving.solve(planned.frames, planned.grid, Recipe(passes=150)).cube
     return replace(found, scores=metrics.score(found, planned.frames))
 
 

@@ -10,9 +10,11 @@ import pytest
 
 from lightcube import io
 from lightcube.backward import solving
+from lightcube.backward.recipe import Recipe
 from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.material import Material
 from lightcube.optics.views import turntable
 from lightcube.pictures.fitting import frames_from_targets
 from lightcube.pictures.frames import Frames
@@ -24,6 +26,7 @@ from lightcube.viewer.packing import lost, pack
 from lightcube.viewer.smaller import shown_coarsely, smaller
 from tests.backward.test_stages import known, stage
 from tests.cli.test_cli import run
+from tests.helpers.recipes import asked
 
 __all__ = ["run"]
 
@@ -36,7 +39,7 @@ def solved() -> Cube:
     down, across = np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 8), indexing="ij")
     waves = [0.5 + 0.4 * np.sin(3 * down + 4 * across + phase) for phase in range(6)]
     pictures = np.stack([np.stack(waves[:3], -1), np.stack(waves[3:], -1)]).astype(np.float32)
-    return solving.solve(Frames(pictures, views), grid, iterations=60).cube
+    return solving.solve(Frames(pictures, views), grid, Recipe(passes=60)).cube
 
 
 def test_a_cube_that_fits_is_kept(solved: Cube) -> None:
@@ -63,8 +66,9 @@ BOUNDS: dict[str, dict[str, Any]] = {
     "as it comes": {},
     "extinction": {"max_extinction": 0.02},
     "a lamp of power 1": {"lamp_power": 1.0},
-    "one lamp": {"lamp": "global", "lamp_max": 3.0},
+    "one lamp": {"powers": "shared", "lamp_max": 3.0},
     "weak lamps": {"lamp_max": 1.5},
+    "extinction of a voxel": {"material": Material(0.04, "voxel")},
     "black": {"black": 0.3},
     "all": {"lamp_power": 2.0, "max_extinction": 0.03, "black": 0.2},
 }
@@ -74,26 +78,26 @@ BOUNDS: dict[str, dict[str, Any]] = {
 def test_what_bounded_the_cube_bounds_the_smaller_one(
     solved: Cube, bounds: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    cube = solving.solve(frames_from_targets(solved), solved.grid, iterations=20, **bounds).cube
+    cube = solving.solve(frames_from_targets(solved), solved.grid, **asked(passes=20, **bounds)).cube
     monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
     small = smaller(cube)
-    assert small.extinction.max() <= bounds.get("max_extinction", np.inf) * (1 + 1e-6)
+    assert small.extinction.max() <= bounds.get("max_extinction", 0.02 if "material" in bounds else np.inf) * (1 + 1e-6)
     least, most = bounds.get("lamp_power", 0), bounds.get("lamp_power", bounds.get("lamp_max", 16))
     assert np.all((least <= small.powers) & (small.powers <= most))
-    if bounds.get("lamp") == "global":
+    if bounds.get("powers") == "shared":
         assert np.all(small.powers == small.powers[0])
-    for bound in ("lamp", "lamp_power", "lamp_max", "max_extinction", "black"):
+    for bound in ("powers", "lamp_power", "lamp_max", "black"):
         assert small.provenance.get(bound) == cube.provenance.get(bound), bound
 
 
 def test_what_bounded_a_stages_cube_bounds_the_smaller_one(monkeypatch: pytest.MonkeyPatch) -> None:
     known_cube, wanted = known(stage("two coloured lamps"))
-    bounds: dict[str, Any] = {"lamp": "global", "max_extinction": 0.05, "black": 0.1}
-    cube = solving.solve(wanted, known_cube.grid, iterations=20, **bounds).cube
+    bounds: dict[str, Any] = {"powers": "shared", "max_extinction": 0.05, "black": 0.1}
+    cube = solving.solve(wanted, known_cube.grid, **asked(passes=20, **bounds)).cube
     monkeypatch.setattr(page_cube, "MOST_SIDE", max(cube.grid.shape) - 1)
     small = smaller(cube)
     assert small.extinction.max() <= 0.05 * (1 + 1e-6)
-    for bound in ("lamp", "max_extinction", "black"):
+    for bound in ("powers", "max_extinction", "black"):
         assert small.provenance[bound] == cube.provenance[bound], bound
 
 

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.backward.problem import held_views, is_level
-from lightcube.backward.recipe import Powers
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import Part, halvings, split
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import LAMP_MIN, Lighting
-from lightcube.optics.transfer import BLACK
+from lightcube.optics.rig import Lighting
 from lightcube.pictures.frames import Frames
 
 #: Passes at each of the coarser sizes at most; no more than of the cube itself.
@@ -32,16 +31,8 @@ class Job:
     ----------
     frames, grid
         The pictures and the cube.
-    method
-        A name in `lightcube.solvers.METHODS`.
-    lamp, lamp_power
-        Kind of the lamp, and its power where it is fixed, else the largest one.
-    hold, black, max_extinction, enough_db
-        As in `lightcube.solve`.
-    iterations
-        At most so many at full size; None = the method's own number.
-    dtype
-        Of the computation: ``"float32"`` or ``"float64"``.
+    recipe
+        How the cube is solved.
     units
         How many parts of the cube are solved one after the other. With more than one the lamp powers are those
         found at half the size.
@@ -51,15 +42,7 @@ class Job:
 
     frames: Frames
     grid: Grid
-    method: str = "display"
-    lamp: Powers = "per-view"
-    lamp_power: float = 16.0
-    hold: float = 0.0
-    black: float = BLACK
-    max_extinction: float = np.inf
-    iterations: int | None = None
-    enough_db: float = np.inf
-    dtype: str = "float32"
+    recipe: Recipe = field(default_factory=Recipe)
     units: int = 1
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
@@ -71,35 +54,41 @@ class Job:
     @property
     def frozen(self) -> bool:
         """Whether lamp powers that are free are found at half the size and then kept."""
-        return self.lamp == "coarse" or (self.lamp != "fixed" and self.units > 1)
+        return self.recipe.powers == "coarse" or (self.units > 1 and not self.recipe.is_lamp_fixed)
 
     @property
     def levels(self) -> int:
         """How often the cube is halved for its start; smaller cubes come first."""
-        return max(halvings(self.grid), int(self.frozen)) if self.method == "display" else 0
+        return max(halvings(self.grid), int(self.frozen)) if self.recipe.chooses_powers else 0
 
     @property
     def coarse_passes(self) -> int:
         """Passes at each of the coarser sizes."""
-        return min(COARSE_PASSES, self.iterations or COARSE_PASSES)
+        return min(COARSE_PASSES, self.recipe.passes or COARSE_PASSES)
 
     @property
     def lamp_bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Lower and upper bound of the lamp powers, each ``(lamps, channels)``; a stage's lamps have their own."""
-        lighting = self.frames.lighting
+        lighting, shared = self.frames.lighting, self.recipe.powers == "shared"
         if lighting is not None:
-            lamps = np.arange(len(lighting.most)) if self.lamp == "global" else lighting.pairs[:, 1]
+            lamps = np.arange(len(lighting.most)) if shared else lighting.pairs[:, 1]
             low, high = (
                 np.repeat(bound[lamps, None], self.channels, axis=1) for bound in (lighting.least, lighting.most)
             )
             return low, high
-        high = np.full((1 if self.lamp == "global" else len(self.frames), self.channels), self.lamp_power)
-        return (high if self.lamp == "fixed" else np.full_like(high, LAMP_MIN)), high
+        shape = (1 if shared else len(self.frames), self.channels)
+        least, most = self.recipe.lamp_bounds
+        return np.full(shape, least), np.full(shape, most)
+
+    @property
+    def max_extinction(self) -> float:
+        """The largest extinction, 1/mm; that of coarser cubes too."""
+        return self.recipe.material.most(self.grid)
 
     @property
     def level(self) -> bool:
         """Whether each slice of the cube casts one row of the pictures by itself, at all angles that are asked for."""
-        return is_level(self.grid, held_views(self.frames, self.hold, self.grid)[0])
+        return is_level(self.grid, held_views(self.frames, self.recipe.hold_deg, self.grid)[0])
 
     @property
     def parts(self) -> list[Part]:
@@ -136,7 +125,7 @@ def shares(job: Job) -> dict[str, float]:
     columns = sum(part.columns for part in job.parts)
     work = {level_name(level): job.coarse_passes / 8**level for level in range(job.levels, 0, -1)}
     for name, part in zip(job.unit_names, job.parts, strict=True):
-        work[name] = (job.iterations or 1) * part.columns / columns
+        work[name] = (job.recipe.passes or 1) * part.columns / columns
     return work
 
 
@@ -155,15 +144,7 @@ def fingerprint(job: Job) -> Fingerprint:
         "voxels": f"{nz} x {ny} x {nx}",
         "voxel side": job.grid.voxel_mm,
         "transfer": frames.transfer,
-        "method": job.method,
-        "lamp": job.lamp,
-        "lamp power": float(job.lamp_power),
-        "hold": float(job.hold),
-        "black": float(job.black),
-        "largest extinction": None if np.isinf(job.max_extinction) else float(job.max_extinction),
-        "passes": job.iterations,
-        "PSNR that is enough": None if np.isinf(job.enough_db) else float(job.enough_db),
-        "precision": job.dtype,
+        **{_WORDS.get(name, name): value for name, value in job.recipe.plain().items()},
         "units": job.units,
     }
 
@@ -177,6 +158,17 @@ def differences(old: Fingerprint, new: Fingerprint) -> list[str]:
     ]
 
 
+#: Fields of a recipe, where people call them otherwise.
+_WORDS = {
+    "powers": "lamp powers",
+    "lamp_power": "lamp power",
+    "lamp_max": "largest lamp power",
+    "hold_deg": "hold",
+    "max_extinction": "largest extinction",
+    "per": "what extinction is counted along",
+    "enough_db": "PSNR that is enough",
+    "dtype": "precision",
+}
 _CHECKSUMS = ("pictures", "weights", "names", "angles and screens", "lamps")
 
 

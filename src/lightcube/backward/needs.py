@@ -114,12 +114,12 @@ def job_memory(job: Job) -> int:
     """`memory_needed` of a job."""
     views, lighting = job.frames.views, job.frames.lighting
     steepest = float(np.max(np.abs(views.elevations)))
-    angles = len(held_views(job.frames, job.hold, job.grid)[0]) // len(views)
+    angles = len(held_views(job.frames, job.recipe.hold_deg, job.grid)[0]) // len(views)
     mixed = (
         0 if lighting is None or lighting.is_plain else _MIXED * angles * len(views) * math.prod(views.picture_shape)
     )
     return mixed + memory_needed(
-        job.method,
+        job.recipe.method,
         job.grid,
         views.picture_shape,
         len(views),
@@ -128,7 +128,7 @@ def job_memory(job: Job) -> int:
         levels=job.levels,
         units=job.units,
         channels=job.channels,
-        dtype=job.dtype,
+        dtype=job.recipe.dtype,
     )
 
 
@@ -142,10 +142,10 @@ def fewest_units(job: Job, memory: int) -> int:
 
 def expected_passes(job: Job) -> float | None:
     """At most so many passes of the whole cube, coarse ones counting by their work; None for a direct method."""
-    if job.method == "row-reduction":
+    if job.recipe.method == "row-reduction":
         return None
-    own = inspect.signature(METHODS[job.method]).parameters["iterations"].default
-    return sum(shares(replace(job, iterations=job.iterations or own)).values())
+    own = inspect.signature(METHODS[job.recipe.method]).parameters["iterations"].default
+    return sum(shares(replace(job, recipe=replace(job.recipe, passes=job.recipe.passes or own))).values())
 
 
 def seconds_a_pass(job: Job) -> float:
@@ -157,10 +157,10 @@ def seconds_a_pass(job: Job) -> float:
     frames, grid = job.frames, job.grid
     while _work(job, frames, grid)[0] > _REHEARSED:
         frames, grid = coarser(frames, grid, 1)
-    problem = pose(frames, grid, job.hold, job.lamp, job.black, job.dtype)
+    problem = pose(frames, grid, job.recipe)
     low, high = job.lamp_bounds
     marks: list[float] = []
-    METHODS[job.method](
+    METHODS[job.recipe.method](
         problem.matrix,
         problem.light,
         weights=problem.weights,
@@ -196,5 +196,5 @@ def _seconds_of_products(problem: Problem) -> float:
 def _work(job: Job, frames: Frames, grid: Grid) -> tuple[float, float]:
     """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
     rows, columns = frames.views.picture_shape
-    pixels = len(held_views(frames, job.hold, grid)[0]) * rows * columns * job.channels
+    pixels = len(held_views(frames, job.recipe.hold_deg, grid)[0]) * rows * columns * job.channels
     return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)

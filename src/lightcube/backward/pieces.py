@@ -84,7 +84,7 @@ def solve_piece(
     state = _handed(store.state(name))
     watch = _Watch(job, name, problem, store, callback, checkpoints=checkpoints)
     options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
-    result = METHODS[job.method](
+    result = METHODS[job.recipe.method](
         problem.matrix,
         problem.light,
         weights=problem.weights,
@@ -113,7 +113,7 @@ def _posed(
         level, (frames, grid), part = int(number), coarser(job.frames, job.grid, int(number)), None
     else:
         level, (frames, grid), part = 0, (job.frames, job.grid), job.parts[int(number)]
-    problem = pose(frames, grid, job.hold, job.lamp, job.black, job.dtype, part)
+    problem = pose(frames, grid, job.recipe, part)
     bounds = job.lamp_bounds
     if kind == "unit" and job.frozen:
         powers = _finished(store, level_name(1))[POWERS]
@@ -125,7 +125,7 @@ def _posed(
             return None
         return problem.unknowns(start_of(job, store, level, problem.part))
 
-    return problem, start, (low, high), job.coarse_passes if kind == "level" else job.iterations
+    return problem, start, (low, high), job.coarse_passes if kind == "level" else job.recipe.passes
 
 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats:
@@ -197,12 +197,12 @@ class _Watch:
         names = list(work)
         self._before = sum(work[earlier] for earlier in names[: names.index(name)]) / sum(work.values())
         self._own = work[name] / sum(work.values())
-        self._level, self._most = name.startswith("level"), job.iterations or 0
+        self._level, self._most = name.startswith("level"), job.recipe.passes or 0
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
         self._wanted = -1.0  # an exact 0 is not enough by itself
-        if not self._level and job.method == "display" and job.enough_db < np.inf:
+        if not self._level and job.recipe.chooses_powers and job.recipe.enough_db < np.inf:
             weight = float(np.sum(problem.weights, dtype=np.float64))
-            self._wanted = 0.5 * 10 ** (-job.enough_db / 10) * weight
+            self._wanted = 0.5 * 10 ** (-job.recipe.enough_db / 10) * weight
         self.enough = self.stopped = False
 
     def __call__(self, progress: Progress) -> bool:

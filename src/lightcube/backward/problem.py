@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
-from lightcube.backward.recipe import Powers
+from lightcube.backward.recipe import Powers, Recipe
 from lightcube.backward.units import Part
 from lightcube.kernels.layout import (
     columns_from_pictures,
@@ -17,7 +17,7 @@ from lightcube.kernels.layout import (
 from lightcube.optics.grid import Grid, dense_step
 from lightcube.optics.law import falling_light
 from lightcube.optics.rig import Lighting, held_lighting
-from lightcube.optics.transfer import BLACK, Transfer, decode
+from lightcube.optics.transfer import Transfer, decode
 from lightcube.optics.views import Views, held
 from lightcube.pictures.frames import Frames
 from lightcube.projection.projector import Projector
@@ -127,27 +127,19 @@ def is_level(grid: Grid, views: Views) -> bool:
     return is_stacked(grid, views) and StackedBeams(grid, views).level
 
 
-def pose(
-    frames: Frames,
-    grid: Grid,
-    hold: float,
-    lamp: Powers,
-    black: float = BLACK,
-    dtype: DTypeLike = np.float32,
-    part: Part | None = None,
-) -> Problem:
-    """Pose the problem of the cube `grid` whose shadows are `frames`, held for so many degrees on either side.
+def pose(frames: Frames, grid: Grid, recipe: Recipe, part: Part | None = None) -> Problem:
+    """Pose the problem of the cube `grid` whose shadows are `frames`, by a recipe.
 
     Only the columns of `part` are made: None = all colours and slices; some slices only where `is_level`.
 
-    Pixels darker than `black`, a display value, are wanted at it. The ends of a hold, with nothing to hold on to
-    beyond, count twice: else they are what falls apart first (measured).
+    Pixels darker than the screen's black are wanted at it. The ends of a hold, with nothing to hold on to beyond,
+    count twice: else they are what falls apart first (measured).
     """
-    views, lighting, kept = held_views(frames, hold, grid)
+    views, lighting, kept = held_views(frames, recipe.hold_deg, grid)
     angles = (len(views) if lighting is None else lighting.pictures) // len(frames)
     heard = np.repeat(frames.weight > 0, angles, axis=0)
     matrix = Projector(grid, views, heard if lighting is None else heard[lighting.picture])
-    darkest = decode(np.array([black], np.float32), frames.transfer)
+    darkest = decode(np.array([recipe.black], np.float32), frames.transfer)
     high, channels = views.picture_shape[0], frames.pictures.shape[-1]
     part = part or Part(slice(0, channels), slice(0, grid.shape[0]))
     rows = slice(0, high)
@@ -155,15 +147,15 @@ def pose(
         rows = slice(high - part.slices.stop, high - part.slices.start)
 
     def block(pictures: Floats) -> Floats:
-        columns = columns_from_pictures(np.repeat(pictures.astype(dtype), angles, axis=0))
+        columns = columns_from_pictures(np.repeat(pictures.astype(recipe.dtype), angles, axis=0))
         return columns.reshape(columns.shape[0] * (1 if matrix.level else high), -1)
 
-    importance = np.ones(angles, dtype)
+    importance = np.ones(angles, recipe.dtype)
     if angles > 1:
         importance[[0, -1]] = 2
     weights = block(np.repeat(frames.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
     weights *= np.repeat(np.tile(importance, len(frames)), len(weights) // (len(frames) * angles))[:, None]
-    lamp_of_view = lamp_numbers(frames, lamp)[kept]
+    lamp_of_view = lamp_numbers(frames, recipe.powers)[kept]
     mixture = None
     if lighting is not None and not lighting.is_plain:
         mixture = mixture_of(views, lighting, lamp_of_view, part.colours, rows)
@@ -192,12 +184,12 @@ def held_views(frames: Frames, hold: float, grid: Grid) -> tuple[Views, Lighting
     return views, None, np.repeat(np.arange(len(frames)), len(views) // len(frames))
 
 
-def lamp_numbers(frames: Frames, lamp: Powers) -> NDArray[np.intp]:
-    """``(views,)``: which power each view has: every lamp has one for each of its pictures, or one (``"global"``)."""
+def lamp_numbers(frames: Frames, powers: Powers) -> NDArray[np.intp]:
+    """``(views,)``: which power each view has: every lamp has one for each of its pictures, or one (``"shared"``)."""
     lighting = frames.lighting
     if lighting is None:
-        return np.zeros(len(frames), np.intp) if lamp == "global" else np.arange(len(frames))
-    return lighting.lamp if lamp == "global" else lighting.pair
+        return np.zeros(len(frames), np.intp) if powers == "shared" else np.arange(len(frames))
+    return lighting.lamp if powers == "shared" else lighting.pair
 
 
 def mixture_of(

@@ -82,7 +82,7 @@ def merged(job: Job, store: Store) -> Solution:
         names=job.frames.names,
         transfer=job.frames.transfer,
         status="complete" if complete else "interrupted",
-        hold_deg=float(job.hold),
+        hold_deg=job.recipe.hold_deg,
         lighting=job.frames.lighting,
         provenance=_made_with(job) | made,
     )
@@ -93,7 +93,7 @@ def merged(job: Job, store: Store) -> Solution:
 
 def _of_pictures(job: Job, powers: NDArray[np.float64]) -> NDArray[np.float64]:
     """The powers of each picture's lamps, as a cube keeps them, from those that the job solves for."""
-    if job.lamp != "global":
+    if job.recipe.powers != "shared":
         return powers
     if job.frames.lighting is None:
         return np.repeat(powers, len(job.frames), axis=0)
@@ -152,33 +152,22 @@ def _together(job: Job, histories: list[NDArray[np.float64]]) -> NDArray[np.floa
         return histories[0]
     longest = max(map(len, histories))
     padded = np.array([np.pad(history, (0, longest - len(history)), "edge") for history in histories])
-    return np.sum(padded, axis=0) if job.method == "display" else np.sqrt(np.sum(padded**2, axis=0))
+    return np.sum(padded, axis=0) if job.recipe.chooses_powers else np.sqrt(np.sum(padded**2, axis=0))
 
 
 def _slowest(reasons: list[str]) -> str:
     return next(reason for reason in ("iterations", "enough", "converged") if reason in reasons)
 
 
-def _lamp_power(job: Job) -> dict[str, float]:
-    """The power of a fixed lamp, or the largest one; a stage's lamps have bounds of their own, in its lighting."""
-    if job.frames.lighting is not None:
-        return {}
-    return {"lamp_power" if job.lamp == "fixed" else "lamp_max": float(job.lamp_power)}
-
-
 def _made_with(job: Job) -> dict[str, Any]:
-    """What the cube remembers of how it was made."""
+    """What the cube remembers of how it was made, beside its hold."""
+    recipe = job.recipe.plain()
+    del recipe["hold_deg"]
+    views = len(held_views(job.frames, job.recipe.hold_deg, job.grid)[0])
     return {
         "lightcube": version("lightcube"),
-        "method": job.method,
-        "lamp": job.lamp,
-        **_lamp_power(job),
-        "max_extinction": None if np.isinf(job.max_extinction) else float(job.max_extinction),
-        "black": float(job.black),
-        "passes": job.iterations,
-        "enough_db": None if np.isinf(job.enough_db) else float(job.enough_db),
-        "dtype": job.dtype,
-        "angles_per_view": len(held_views(job.frames, job.hold, job.grid)[0]) // len(job.frames.views),
+        **recipe,
+        "angles_per_view": views // len(job.frames.views),
         "units": job.units,
         **job.provenance,
     }

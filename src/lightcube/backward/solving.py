@@ -5,19 +5,17 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike
 
 from lightcube.backward.job import Job
 from lightcube.backward.needs import MEMORY, fewest_units
 from lightcube.backward.pieces import Watching, solve_pieces
-from lightcube.backward.recipe import LAMP_MAX, QUALITIES, Powers, check_options
+from lightcube.backward.recipe import QUALITIES, Recipe
 from lightcube.backward.solution import Solution, merged
 from lightcube.backward.store import MemoryStore, Store
 from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import Lighting
-from lightcube.optics.transfer import BLACK
 from lightcube.pictures.frames import Frames
 from lightcube.projection.stacked import is_stacked
 
@@ -25,17 +23,8 @@ from lightcube.projection.stacked import is_stacked
 def solve(
     frames: Frames,
     grid: Grid,
+    recipe: Recipe | None = None,
     *,
-    method: str = "display",
-    lamp: Powers | None = None,
-    lamp_power: float | None = None,
-    lamp_max: float | None = None,
-    hold: float = 0.0,
-    black: float = BLACK,
-    max_extinction: float = np.inf,
-    iterations: int | None = None,
-    enough_db: float = np.inf,
-    dtype: DTypeLike = np.float32,
     units: int | None = None,
     memory: int | None = None,
     callback: Watching | None = None,
@@ -53,30 +42,8 @@ def solve(
         The wanted pictures, their views and weights.
     grid
         The block of voxels.
-    method
-        A name in `lightcube.solvers.METHODS`.
-    lamp
-        ``"per-view"``: each view and colour has the lamp power that suits it best; ``"global"``: each colour has one
-        for all views; ``"coarse"``: as per-view, but found at half the size and then kept; ``"fixed"``: all have
-        `lamp_power`. Default per-view, but fixed where `lamp_power` is given or the method cannot choose.
-    lamp_power
-        Power of a fixed lamp, linear light; 1 (the default) shows white where a beam meets nothing.
-    lamp_max
-        Largest power of a lamp that is not fixed, linear light, at least 1; default 16.
-    hold
-        Degrees on either side of its stop over which each picture shall stand, at most half the way to the next one:
-        it is asked for at several angles (`lightcube.optics.views.held`), under one lamp power.
-    black
-        Display value, in [0, 1), that the screen cannot be darker than; pixels darker than it are wanted at it.
-    max_extinction
-        Upper bound of the extinction, 1/mm.
-    iterations
-        At most so many at full size; None = the method's own number.
-    enough_db
-        Method display stops as soon as the mean squared difference of all weighted pixels (the too dark ones
-        linearised) is as small as at this PSNR, dB.
-    dtype
-        Of the computation: float32 or float64.
+    recipe
+        How it is solved; None = ``Recipe()``.
     units
         In so many parts the cube is solved, one after the other and each in its part of the memory: colours, or slabs
         of slices where the lamp is level. With more than one the powers of lamps that are not fixed are found at half
@@ -89,33 +56,16 @@ def solve(
         Keeps the pieces that are finished, and the state of the running one after 2 s, ever more seldom up to every
         30 s, and when stopped; what is in it already is not computed again, and a solver that was stopped goes on
         from its state: the cube is the same, bit for bit, as that of a run without a stop. It must have been used
-        for this very job only (`lightcube.io.DiskStore` sees to that).
+        for this very job only (`lightcube.jobs.partial.DiskStore` sees to that).
     provenance
         What else the cube shall remember of how it was made.
 
     Raises
     ------
     InputError
-        For an unknown method, numbers out of range, or frames that do not belong to the grid.
+        For frames that do not belong to the grid, or a recipe that cannot be followed there.
     """
-    job = make_job(
-        frames,
-        grid,
-        method=method,
-        lamp=lamp,
-        lamp_power=lamp_power,
-        lamp_max=lamp_max,
-        hold=hold,
-        black=black,
-        max_extinction=max_extinction,
-        iterations=iterations,
-        enough_db=enough_db,
-        dtype=dtype,
-        units=units,
-        memory=memory,
-        provenance=provenance,
-    )
-    return run(job, store, callback)
+    return run(make_job(frames, grid, recipe, units=units, memory=memory, provenance=provenance), store, callback)
 
 
 def run(job: Job, store: Store | None = None, callback: Watching | None = None) -> Solution:
@@ -128,57 +78,41 @@ def run(job: Job, store: Store | None = None, callback: Watching | None = None) 
 def make_job(
     frames: Frames,
     grid: Grid,
+    recipe: Recipe | None = None,
     *,
-    method: str = "display",
-    lamp: Powers | None = None,
-    lamp_power: float | None = None,
-    lamp_max: float | None = None,
-    hold: float = 0.0,
-    black: float = BLACK,
-    max_extinction: float = np.inf,
-    iterations: int | None = None,
-    enough_db: float = np.inf,
-    dtype: DTypeLike = np.float32,
     units: int | None = None,
     memory: int | None = None,
     provenance: Mapping[str, Any] | None = None,
 ) -> Job:
     """Check what `solve` is asked for, and leave nothing open; parameters and errors as there."""
-    kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations, black)
+    recipe = recipe or Recipe()
     check_frames(frames, grid)
     if frames.lighting is not None:
-        if lamp == "fixed" or lamp_power is not None or lamp_max is not None:
-            raise InputError("the powers of a stage's lamps are said on the stage: leave out those given beside it")
-        _check_method_on_stage(method, frames.lighting)
-    job = Job(
-        frames=frames,
-        grid=grid,
-        method=method,
-        lamp=kind,
-        lamp_power=float(lamp_power or lamp_max or (1.0 if kind == "fixed" else LAMP_MAX)),
-        hold=float(hold),
-        black=float(black),
-        max_extinction=float(max_extinction),
-        iterations=iterations or (QUALITIES["normal"][0] if method == "display" else None),
-        enough_db=float(enough_db),
-        dtype=np.dtype(dtype).name,
-        provenance=dict(provenance or {}),
-    )
+        _check_on_stage(recipe, frames.lighting)
+    if recipe.passes is None and recipe.chooses_powers:
+        recipe = replace(recipe, passes=QUALITIES["normal"][0])
+    job = Job(frames, grid, recipe, provenance=dict(provenance or {}))
     most = most_units(grid.shape, job.channels, level=job.level)
     if units is not None and not 1 <= units <= most:
         raise InputError(f"this cube can be solved in 1 to {most} units, not in {units}: ask for a number between")
     return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)
 
 
-def _check_method_on_stage(method: str, lighting: Lighting) -> None:
-    """Raise `InputError` where a method cannot do what a stage asks for."""
+def _check_on_stage(recipe: Recipe, lighting: Lighting) -> None:
+    """Raise `InputError` where a recipe contradicts a stage, or its method cannot do what that asks for."""
+    if recipe.lamp_power is not None or recipe.lamp_max is not None:
+        raise InputError("the powers of a stage's lamps are said on the stage: leave out those given beside it")
+    if recipe.chooses_powers:
+        return
     free = lighting.lamp_names[int(np.argmax(lighting.least < lighting.most))]
-    if method != "display" and np.any(lighting.least < lighting.most):
+    if np.any(lighting.least < lighting.most):
         raise InputError(
-            f"method {method} cannot choose the power of lamp {free!r}: give it one, or use method display"
+            f"method {recipe.method} cannot choose the power of lamp {free!r}: give it one, or use method display"
         )
-    if method != "display" and not lighting.is_plain:
-        raise InputError(f"method {method} takes logarithms, and light that adds up has none: use method display")
+    if not lighting.is_plain:
+        raise InputError(
+            f"method {recipe.method} takes logarithms, and light that adds up has none: use method display"
+        )
 
 
 def check_frames(frames: Frames, grid: Grid) -> None:

@@ -18,11 +18,12 @@ def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = Fal
         return
     options = solving.settled(options)
     with err.status("rehearsing"):
-        prepared = solving.prepare(frames, options)
-    advice = words.what_to_change(prepared, options)
-    facts = words.facts(prepared, options)
+        planned = solving.prepare(frames, options)
+        order = solving.another_order(planned)
+    advice = [] if options.paper else words.what_to_change(planned)  # all that would help contradicts it
+    facts = words.facts(planned, order)
     if as_json:
         json_document({**facts, "advice": advice})
         return
-    for line in [*words.in_short(prepared, options), "", *words.table(facts), "", *advice]:
+    for line in [*words.in_short(planned, order), "", *words.table(facts), "", *advice]:
         out.print(line)

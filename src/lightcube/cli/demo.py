@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.backward import solving
+from lightcube.backward.recipe import Recipe
 from lightcube.cli.console import out, progress
 from lightcube.drawing.sheet import contact_sheet
 from lightcube.forward import casting, turning
@@ -46,9 +47,9 @@ def run(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     grid = Grid((_SIDE, _SIDE, _SIDE), 100 / _SIDE)
     out.print(f"Two cubes of {_SIDE} x {_SIDE} x {_SIDE} voxels, 100 mm wide.")
-    planned = plan(photographs(), _SIDE, hold=None)
+    planned = plan(photographs(), _SIDE, longest_hold=True)
     rows = [
-        _one("photographs", planned.frames, grid, folder, planned.hold),
+        _one("photographs", planned.frames, grid, folder, planned.recipe),
         _one("juggler", _juggler(grid), grid, folder),
     ]
     io.write_json(folder / "metrics.json", {row["name"]: row for row in rows}, overwrite=True)
@@ -73,11 +74,11 @@ def _juggler(grid: Grid) -> Frames:
         return scene_frames(io.read_scene("juggler"), views, grid, callback=advance)
 
 
-def _one(name: str, frames: Frames, grid: Grid, folder: Path, hold: float = 0.0) -> dict[str, Any]:
+def _one(name: str, frames: Frames, grid: Grid, folder: Path, recipe: Recipe | None = None) -> dict[str, Any]:
     """Solve, save, play and score one cube; returns a row of the table."""
     began = time.monotonic()
     with progress(f"solving {name}", as_json=False) as advance:
-        solution = solving.solve(frames, grid, hold=hold, callback=lambda step: advance(round(1000 * step.done), 1000))
+        solution = solving.solve(frames, grid, recipe, callback=lambda step: advance(round(1000 * step.done), 1000))
     seconds = time.monotonic() - began
     scores = metrics.score(solution.cube, frames)
     cube = replace(solution.cube, scores=scores)

@@ -118,9 +118,10 @@ def _asked(frames: str, options: Options, memory: int | None, units: int | None)
         return staging.job(stage, wanted, options, memory=memory, units=units), lambda: staging.in_short(stage, wanted)
     options = solving.settled(options)
     with err.status("rehearsing"):
-        prepared = solving.prepare(frames, options)
-    job = solving.job(prepared, options, memory=memory, units=units)
-    return job, lambda: [*words.in_short(prepared, options), *words.what_to_change(prepared, options)]
+        planned = solving.prepare(frames, options)
+        order = solving.another_order(planned)
+    job = solving.job(planned, memory=memory, units=units)
+    return job, lambda: [*words.in_short(planned, order), *([] if options.paper else words.what_to_change(planned))]
 
 
 def _finish(job: Job, store: DiskStore, output: str | Path, seconds: float, *, overwrite: bool, as_json: bool) -> None:

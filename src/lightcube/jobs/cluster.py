@@ -255,7 +255,7 @@ class _Meter:
         self._own: Mapping[str, float] = {name: each / total for name, each in work.items()}
         self._before = dict(zip(work, accumulate(self._own.values(), initial=0.0), strict=False))
         self._told: dict[str, float] = {}
-        self._passes = job.iterations or 1
+        self._passes = job.recipe.passes or 1
 
     def hear(self, event: tuple[float, tuple[str, float]]) -> None:
         """Take in what a worker says, in a thread of the client's own."""

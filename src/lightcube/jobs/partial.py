@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lightcube.backward.job import Fingerprint, Job, differences, fingerprint
-from lightcube.backward.recipe import Powers
+from lightcube.backward.recipe import from_plain
 from lightcube.backward.store import Arrays
 from lightcube.errors import InputError
 from lightcube.io._files import PARTIAL_SUFFIX, system_errors
@@ -72,15 +72,7 @@ class _JobJson(BaseModel):
     names: list[str]
     transfer: Transfer
     lighting: LightingJson | None = None
-    method: str
-    lamp: Powers
-    lamp_power: Annotated[float, Field(gt=0, allow_inf_nan=False)]
-    hold: Annotated[float, Field(ge=0, le=180)]
-    black: Annotated[float, Field(gt=0, lt=1)]
-    max_extinction: Annotated[float, Field(gt=0)] | None
-    iterations: Annotated[int, Field(ge=1)] | None
-    enough_db: float | None
-    dtype: Literal["float32", "float64"]
+    recipe: dict[str, str | int | float | None]
     units: Annotated[int, Field(ge=1)]
     provenance: dict[str, Any]
 
@@ -264,20 +256,16 @@ def load_job(partial: str | Path) -> Job:
         job = Job(
             frames=Frames(pictures, views, weights, tuple(said.names), said.transfer, lighting),
             grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),
-            max_extinction=np.inf if said.max_extinction is None else said.max_extinction,
-            enough_db=np.inf if said.enough_db is None else said.enough_db,
-            **{name: getattr(said, name) for name in _PLAIN},
+            recipe=from_plain(said.recipe),
+            units=said.units,
+            provenance=said.provenance,
         )
-    except (ValueError, IndexError, KeyError) as error:
+    except (ValueError, TypeError, IndexError, KeyError) as error:
         raise _damaged(path, str(error)) from error
     changed = differences({**said.fingerprint, "lightcube": version("lightcube")}, fingerprint(job))
     if changed:
         raise _damaged(path, "; ".join(changed))
     return job
-
-
-#: Fields of a job that are JSON as they are.
-_PLAIN = ("method", "lamp", "lamp_power", "hold", "black", "iterations", "dtype", "units", "provenance")
 
 
 def _write_job(folder: Place, job: Job) -> None:
@@ -293,9 +281,9 @@ def _write_job(folder: Place, job: Job) -> None:
         "names": list(frames.names),
         "transfer": frames.transfer,
         "lighting": lighting_to_json(frames.lighting),
-        "max_extinction": None if np.isinf(job.max_extinction) else job.max_extinction,
-        "enough_db": None if np.isinf(job.enough_db) else job.enough_db,
-        **{name: plain(getattr(job, name)) for name in _PLAIN},
+        "recipe": job.recipe.plain(),
+        "units": job.units,
+        "provenance": plain(job.provenance),
     }
     at = child(folder, _JOB)
     with system_errors(at, "writing"), written(at) as file:

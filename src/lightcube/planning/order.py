@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import scipy
@@ -10,10 +9,12 @@ from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array, eye_array, kron
 
 from lightcube.backward import solving
+from lightcube.backward.recipe import Recipe
 from lightcube.forward.casting import cast
 from lightcube.kernels import ordering
 from lightcube.optics.absorption import absorbance
 from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.material import Material
 from lightcube.optics.views import Views
 from lightcube.pictures.frames import Frames, check_turntable
 from lightcube.pictures.resampling import shares
@@ -56,15 +57,15 @@ class Order:
         )
 
 
-def best_order(frames: Frames, grid: Grid, **lamp: Any) -> Order:
+def best_order(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Order:
     """Find which picture should stand at which stop, so that they fight each other least.
 
     Parameters
     ----------
     frames
         Pictures in any order, in the views where they or others of them shall stand.
-    lamp
-        ``lamp``, ``lamp_power``, ``lamp_max``, ``max_extinction``, ``black`` as `lightcube.solve` takes them.
+    recipe
+        As `lightcube.solve` takes it; pictures of the draft are not held.
 
     Returns
     -------
@@ -82,6 +83,9 @@ def best_order(frames: Frames, grid: Grid, **lamp: Any) -> Order:
     tour is all there is beside the given order.
     """
     check_turntable(frames)
+    recipe = recipe or Recipe()
+    bound = Material(recipe.material.most(grid))
+    drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0)
     draft, small = _draft(frames, grid)
     seen = _features(draft, _tiles(1, draft.views.picture_shape)).reshape(len(frames), -1)
     canonical = np.lexsort(seen.T[::-1])
@@ -93,7 +97,7 @@ def best_order(frames: Frames, grid: Grid, **lamp: Any) -> Order:
     if len(frames) > 1 and max(tiles) > 1:
         parts = _parts(draft.views, small, _features(draft, tiles)[canonical], tiles)
         candidates += [canonical[order] for order in _walks(parts, tour)]
-    scores = [_draft_db(draft, small, candidate, **lamp) for candidate in candidates]
+    scores = [_draft_db(draft, small, candidate, drafted) for candidate in candidates]
     best = int(np.argmax(scores))
     return Order(candidates[best].astype(np.intp), scores[0], scores[best])
 
@@ -174,8 +178,8 @@ def _walks(parts: NDArray[np.float32], start: NDArray[np.int64]) -> list[NDArray
     return found
 
 
-def _draft_db(draft: Frames, grid: Grid, order: NDArray[np.integer], **lamp: Any) -> float:
+def _draft_db(draft: Frames, grid: Grid, order: NDArray[np.integer], recipe: Recipe) -> float:
     """Mean PSNR in dB of the draft cube with the pictures in this order."""
     frames = Order(order.astype(np.intp), 0.0, 0.0)(draft)
-    cube = solving.solve(frames, grid, iterations=_PASSES, **lamp).cube
+    cube = solving.solve(frames, grid, recipe).cube
     return mean_psnr(np.stack(list(cast(cube, cube.views, cube.powers))), frames)

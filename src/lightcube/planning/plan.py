@@ -3,16 +3,19 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Literal
 
 from numpy.typing import ArrayLike
 
+from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, dense_step
 from lightcube.optics.views import widest_hold
-from lightcube.pictures.fitting import RAISED, Fit, fit
+from lightcube.pictures.arranging import shifted, spread_over_screen
+from lightcube.pictures.fitting import RAISED, Fit
+from lightcube.pictures.fitting import fit as fitted
 from lightcube.pictures.frames import Frames, Pictures
-from lightcube.planning.order import Order
+from lightcube.planning.order import Order, best_order
 from lightcube.planning.prediction import Prediction, predict
 from lightcube.scoring.metrics import GOOD_DB
 
@@ -24,43 +27,47 @@ WIDTHS = (0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.55, 0.6, 0.66, 0.72, 0.8, 0.
 _HOLDS = (0.5, 1.0, 2.0, 4.0, 8.0)
 
 
+Arrangement = Literal["given", "best"]
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What `lightcube.solve` shall be given.
+    """What `lightcube.solve` shall be given, and what comes of it.
 
     Parameters
     ----------
-    frames, grid
-        The pictures, fitted, and the cube.
-    hold
-        Degrees on either side of its stop over which each picture shall stand.
+    pictures
+        As they were read.
+    frames, grid, recipe
+        The pictures, fitted and where they shall stand, the cube, and how it is solved.
+    fit
+        What happened to pictures of another aspect.
     prediction
         What to expect.
+    shift
+        By how many pixels at most pictures stand higher, lower or aside.
+    order
+        Which picture stands at which stop; None = as given.
     """
 
+    pictures: Pictures
     frames: Frames
     grid: Grid
-    hold: float
+    recipe: Recipe
+    fit: Fit
     prediction: Prediction
+    shift: int = 0
+    order: Order | None = None
 
-
-@dataclass(frozen=True, eq=False)
-class Prepared:
-    """Pictures, what is planned for them, and in which order they shall stand."""
-
-    pictures: Pictures
-    plan: Plan
-    order: Order | None
-
-    @property
-    def frames(self) -> Frames:
-        """As they are to be solved."""
-        return self.plan.frames
+    def to_solve(self, frames: Frames) -> "Plan":
+        """The same plan for frames that stand, or follow each other, in another way: predicted anew."""
+        return replace(self, frames=frames, prediction=predict(frames, self.grid, self.recipe))
 
 
 def plan(
     pictures: Pictures,
     n: int = 128,
+    recipe: Recipe | None = None,
     *,
     size_mm: float = 100.0,
     shape: tuple[int, int, int] | None = None,
@@ -68,9 +75,10 @@ def plan(
     angles: ArrayLike | None = None,
     span: float | None = None,
     elevation: float | None = None,
-    fit_mode: Fit = "crop",
-    hold: float | None = 0.0,
-    **lamp: Any,
+    fit: Fit = "crop",
+    longest_hold: bool = False,
+    shift: int = 0,
+    order: Arrangement = "given",
 ) -> Plan:
     """Choose the width of the pictures, the shape of the cube and the hold by predicting how good the pictures become.
 
@@ -78,6 +86,8 @@ def plan(
     ----------
     n
         Voxels along the longest side of the cube.
+    recipe
+        How it will be solved; None = ``Recipe()``.
     size_mm
         Length of that side.
     shape
@@ -86,13 +96,15 @@ def plan(
     frame_width
         Width of the pictures as a fraction of the cube's; default the largest in `WIDTHS` with a predicted mean PSNR
         of at least 40 dB, or the smallest.
-    angles, span, elevation, fit_mode
+    angles, span, elevation, fit
         As `lightcube.fit` takes them.
-    hold
-        Degrees; None = as much as is predicted to cost less than 1 dB (of what lies below 45 dB), at most half the way
-        to the next stop; none where less than 40 dB are predicted without.
-    lamp
-        ``lamp``, ``lamp_power``, ``lamp_max``, ``max_extinction`` as `lightcube.solve` takes them.
+    longest_hold
+        Hold pictures as long as is predicted to cost less than 1 dB (of what lies below 45 dB), at most half the way
+        to the next stop, instead of as long as the recipe says; not at all where less than 40 dB are predicted.
+    shift
+        Let pictures stand up to so many pixels higher, lower or aside, in turn.
+    order
+        ``"best"``: pictures change places so that they fight each other least (`lightcube.best_order`).
 
     Raises
     ------
@@ -106,6 +118,7 @@ def plan(
             f"a cube of {n} voxels with pictures {frame_width} of its width: give at least 1 voxel, and a width above "
             "0 and at most 1.41"
         )
+    asked = recipe or Recipe()
     rows, columns = pictures.images[0].shape[:2]
     height = pictures.elevation if elevation is None else elevation
     level = (RAISED if height is None else height) == 0
@@ -114,7 +127,7 @@ def plan(
         voxels = shape or proportions(n, columns / rows, width, level=level)
         while True:
             grid = Grid(voxels, size_mm / max(voxels))
-            frames = fit(pictures, grid, angles=angles, span=span, elevation=elevation, frame_width=width, fit=fit_mode)
+            frames = fitted(pictures, grid, angles=angles, span=span, elevation=elevation, frame_width=width, fit=fit)
             high = frames.views.picture_shape[0]
             if shape is not None or not level or high == voxels[0] or max(voxels[1:]) < n:
                 return frames, grid
@@ -122,10 +135,21 @@ def plan(
 
     def predicted(width: float) -> Plan:
         frames, grid = at(width)
-        return Plan(frames, grid, hold or 0.0, predict(frames, grid, hold=hold or 0.0, **lamp))
+        return Plan(pictures, frames, grid, asked, fit, predict(frames, grid, asked))
 
     best = _widest(predicted) if frame_width is None else predicted(frame_width)
-    return best if hold is not None else longest_hold(best, **lamp)
+    best = held_longest(best) if longest_hold else best
+    if shift:
+        best = replace(best, shift=shift).to_solve(spread(best, best.frames, shift))
+    if order == "best":
+        found = best_order(best.frames, best.grid, best.recipe)
+        best = replace(best, order=found).to_solve(found(best.frames))
+    return best
+
+
+def spread(planned: Plan, frames: Frames, shift: int) -> Frames:
+    """Frames in the plan's cube, standing up to so many pixels higher, lower or aside in turn."""
+    return shifted(frames, spread_over_screen(frames, planned.grid, shift))
 
 
 def _widest(predicted: Callable[[float], Plan]) -> Plan:
@@ -152,7 +176,7 @@ def proportions(n: int, aspect: float, frame_width: float, *, level: bool) -> tu
     return max(1, round(high)), max(1, round(wide)), max(1, round(wide))
 
 
-def longest_hold(without: Plan, **lamp: Any) -> Plan:
+def held_longest(without: Plan) -> Plan:
     """Find the longest hold that costs less than 1 dB of what is predicted for the plan `without`."""
     if without.prediction.psnr_mean < GOOD_DB:  # where pictures drown in each other hold costs nothing, and is worth it
         return without
@@ -163,8 +187,21 @@ def longest_hold(without: Plan, **lamp: Any) -> Plan:
         hold = steps * step
         if hold > most:
             break
-        prediction = predict(without.frames, without.grid, hold=hold, **lamp)
+        recipe = replace(without.recipe, hold_deg=hold)
+        prediction = predict(without.frames, without.grid, recipe)
         if prediction.psnr_mean < enough:
             break
-        best = replace(without, hold=hold, prediction=prediction)
+        best = replace(without, recipe=recipe, prediction=prediction)
     return best
+
+
+def narrower(planned: Plan, width: float) -> Frames:
+    """The frames of a plan as they would be at another width, at the same stops."""
+    views = planned.frames.views
+    elevation = float(views.elevations[0])
+    frames = fitted(
+        planned.pictures, planned.grid, angles=views.angles, elevation=elevation, frame_width=width, fit=planned.fit
+    )
+    if planned.shift:
+        frames = spread(planned, frames, planned.shift)
+    return frames if planned.order is None else planned.order(frames)

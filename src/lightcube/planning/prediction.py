@@ -25,17 +25,18 @@ gave means within 3 dB in 90 % (median 1.2, 90 % below 2.1, largest 5.6; 0.8 too
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.backward import solving
-from lightcube.backward.recipe import Powers
+from lightcube.backward.recipe import Recipe
 from lightcube.forward.casting import cast
 from lightcube.optics.grid import Grid, nearest, raster_shape
-from lightcube.optics.transfer import BLACK, encode
+from lightcube.optics.material import Material
+from lightcube.optics.transfer import encode
 from lightcube.optics.views import Views, held, widest_hold
 from lightcube.pictures.frames import Frames, check_turntable
 from lightcube.pictures.resampling import shares
@@ -79,22 +80,12 @@ class Prediction:
         return min(float(np.min(self.psnr)), MOST_DB)
 
 
-def predict(
-    frames: Frames,
-    grid: Grid,
-    *,
-    lamp: Powers | None = None,
-    lamp_power: float | None = None,
-    lamp_max: float | None = None,
-    hold: float = 0.0,
-    max_extinction: float = np.inf,
-    black: float = BLACK,
-) -> Prediction:
+def predict(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Prediction:
     """Predict the PSNR of each picture that `lightcube.solve` reaches in 150 passes of method ``display``.
 
     Parameters
     ----------
-    frames, grid, lamp, lamp_power, lamp_max, hold, max_extinction, black
+    frames, grid, recipe
         As `lightcube.solve` takes them.
 
     Raises
@@ -103,9 +94,7 @@ def predict(
         Where `solve` would refuse them.
     """
     check_turntable(frames)
-    options: dict[str, Any] = {"lamp": lamp, "lamp_power": lamp_power, "lamp_max": lamp_max}
-    options |= {"max_extinction": max_extinction, "black": black}
-    reached, width = rehearse(frames, grid, hold, **options)
+    reached, width = rehearse(frames, grid, recipe or Recipe())
     return Prediction(law(reached, max(grid.shape[1:]) / width), width)
 
 
@@ -114,14 +103,16 @@ def law(reached: Array, ratio: float) -> Array:
     return np.clip(reached + (1 - 1 / ratio) * (BIAS + GROWTH * (reached - 30)), 0.0, BEST_DB)
 
 
-def rehearse(frames: Frames, grid: Grid, hold: float, **options: Any) -> tuple[Array, int]:
-    """PSNR of each picture in a small cube, dB, and the width of that in voxels; `options` as `predict` takes them."""
+def rehearse(frames: Frames, grid: Grid, recipe: Recipe) -> tuple[Array, int]:
+    """PSNR of each picture in a small cube, dB, and the width of that in voxels; takes what `predict` does."""
     solving.check_frames(frames, grid)
+    hold = recipe.hold_deg
     held(frames.views, hold, grid)
     small, small_grid = reduced(frames, grid, _width(frames, grid, hold))
     width = max(small_grid.shape[1:])
-    hold = _small_hold(frames, grid, hold, width)
-    cube = solving.solve(small, small_grid, hold=hold, iterations=PASSES, **options).cube
+    bound = Material(recipe.material.most(grid))
+    rehearsed = replace(recipe.by_display(PASSES), material=bound, hold_deg=_small_hold(frames, grid, hold, width))
+    cube = solving.solve(small, small_grid, rehearsed).cube
     shown = encode(np.stack(list(cast(cube, small.views, cube.powers))), small.transfer)
     wanted = encode(small.pictures, small.transfer)
     reached = [psnr(*each) for each in zip(shown, wanted, small.weight, strict=True)]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.backward.recipe import recipe_of
 from lightcube.drawing.sheet import triple
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
@@ -93,19 +94,11 @@ def measure(
     shown = cast(cube, cube.views, cube.powers, cube.lighting)
     scores = score_pictures(_kept(shown, frames, pictures), frames)
     tell(of, of)
-    facts = check(frames, cube.grid, most_power(cube)) if turned else None
+    facts = check(frames, cube.grid, recipe_of(cube).lamp_bounds[1]) if turned else None
     said = sentences(frames) if facts is None else advice(facts)
     if stage is not None:
         said = [*doubtful(stage), *said]
     return Findings(cube, frames, stage, scores, pictures, between, left, facts, said, _apart(cube, frames))
-
-
-def most_power(cube: Cube) -> float:
-    """The largest power that a turntable's lamp was allowed, linear light."""
-    for name in ("lamp_max", "lamp_power"):
-        if name in cube.provenance:
-            return float(cube.provenance[name])
-    return float(cube.powers.max())
 
 
 def chosen(frames: Frames, most: int = MOST) -> list[int]:

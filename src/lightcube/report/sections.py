@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.backward.recipe import recipe_of
 from lightcube.drawing import charts
 from lightcube.drawing.stage import drawing
 from lightcube.optics.cube import Cube
@@ -14,7 +15,7 @@ from lightcube.optics.disturbance import DISTURBANCES
 from lightcube.planning.placement import facts
 from lightcube.planning.prediction import MOST_DB
 from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
-from lightcube.report.measuring import EXACT, Findings, most_power
+from lightcube.report.measuring import EXACT, Findings
 from lightcube.scoring.between import LOBE_DB
 
 #: Pictures in the strip at the top.
@@ -86,10 +87,12 @@ def settings(found: Findings) -> str:
     """What cube, lamp and solver were set to."""
     cube, made = found.cube, found.cube.provenance
     where = _turntable(cube) if cube.lighting is None else _stage(cube)
-    kinds = {"per-view": "one per picture and colour", "coarse": "one per picture and colour, found at half the size"}
-    kinds |= {"global": "one per colour", "fixed": "fixed"}
-    kind = kinds.get(str(made.get("lamp")), "–")
-    most = "" if cube.lighting is not None or made.get("lamp") == "fixed" else f", at most {most_power(cube):g}"
+    kinds = {"per-picture": "one per picture and colour", "shared": "one per colour"}
+    kinds |= {"coarse": "one per picture and colour, found at half the size"}
+    recipe = recipe_of(cube)
+    fixed = recipe.is_lamp_fixed and "powers" in made
+    kind = "fixed" if fixed else kinds.get(str(made.get("powers")), "–")
+    most = "" if cube.lighting is not None or fixed else f", at most {recipe.lamp_bounds[1]:g}"
     reasons = {
         "enough": "the pictures were good enough",
         "converged": "nothing was left to gain",
@@ -230,7 +233,7 @@ def _powers(cube: Cube) -> str:
     """The lamp's powers over the pictures."""
     lighting = cube.lighting
     places = np.arange(1.0, len(cube.powers) + 1) if lighting is None else (lighting.pairs[:, 0] + 1).astype(np.float64)
-    most = most_power(cube) if lighting is None else float(lighting.most.max())
+    most = recipe_of(cube).lamp_bounds[1] if lighting is None else float(lighting.most.max())
     return charts.lamp_powers(
         places, cube.powers, most, f"Lamp powers from {_range(cube.powers, '.4g')}, at most {most:g}"
     )

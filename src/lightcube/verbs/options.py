@@ -1,18 +1,17 @@
 """What may be said of a cube before it is solved."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 
-from lightcube.backward import recipe
-from lightcube.backward.recipe import Powers
+from lightcube.backward.recipe import Powers, Quality, Recipe
 from lightcube.errors import InputError
-from lightcube.optics.transfer import BLACK, Transfer
+from lightcube.optics.material import Material
+from lightcube.optics.transfer import Transfer
 from lightcube.pictures.fitting import Fit
+from lightcube.planning.plan import Arrangement
 from lightcube.solvers import METHODS
-
-Arrangement = Literal["given", "best"]
 
 #: Voxels along the longest side of a cube, unless something else is said.
 DEFAULT_N = 128
@@ -47,12 +46,12 @@ class Options:
         Arrangement, Option("Whether pictures stand as given, or in the order that gives the best ones.")
     ] = "given"
     shift: Annotated[int, Option("Let pictures stand up to so many pixels higher, lower or aside, in turn.", 0)] = 0
-    quality: Annotated[recipe.Quality | None, Option("At most 30, 200 or 1000 passes.  [default: normal]")] = None
+    quality: Annotated[Quality | None, Option("At most 30, 200 or 1000 passes.  [default: normal]")] = None
     method: Annotated[str, Option(f"One of {', '.join(METHODS)}.")] = "display"
     iterations: Annotated[int | None, Option("At most so many passes, instead of --quality.")] = None
-    lamp: Annotated[
+    powers: Annotated[
         Powers | None,
-        Option("One power per picture and colour (coarse: found at half size), or one per colour, or fixed."),
+        Option("One lamp power per picture and colour (coarse: found at half size), or one per colour for all."),
     ] = None
     lamp_power: Annotated[float | None, Option("Power of a fixed lamp, linear light; 1 is white.")] = None
     lamp_max: Annotated[float | None, Option("Largest power of the lamp, at least 1.  [default: 16]")] = None
@@ -81,18 +80,23 @@ class Options:
         return nz, ny, nx
 
     @property
-    def power(self) -> float:
-        """Largest power of the lamp, linear light."""
-        return self.lamp_power or self.lamp_max or (1.0 if self.lamp == "fixed" else recipe.LAMP_MAX)
-
-    @property
-    def lamps(self) -> dict[str, Any]:
-        """As `lightcube.solve` and `lightcube.plan` take them."""
-        most = np.inf if self.max_extinction is None else self.max_extinction
-        return {
-            "lamp": self.lamp,
+    def recipe(self) -> Recipe:
+        """How the cube is solved, held where that is said; `InputError` where options contradict each other."""
+        if self.quality is not None and self.iterations is not None:
+            raise InputError("--quality and --iterations both say how many passes: leave one of them out")
+        if self.quality is not None and self.method != "display":
+            raise InputError(f"--quality is for method display: use --iterations with method {self.method}")
+        said: dict[str, Any] = {
+            "method": self.method,
+            "powers": self.powers,
             "lamp_power": self.lamp_power,
             "lamp_max": self.lamp_max,
-            "max_extinction": most,
-            "black": BLACK if self.black is None else self.black,
+            "hold_deg": self.hold,
+            "black": self.black,
+            "material": None if self.max_extinction is None else Material(self.max_extinction),
+            "passes": self.iterations,
         }
+        said = {name: value for name, value in said.items() if value is not None}
+        if self.iterations is None and self.method == "display":
+            return Recipe.of_quality(self.quality or "normal", **said)
+        return Recipe(**said)

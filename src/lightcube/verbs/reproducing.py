@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube import io
-from lightcube.backward import recipe
 from lightcube.backward.job import Job
 from lightcube.backward.needs import MEMORY, fewest_units
+from lightcube.backward.recipe import QUALITIES, Recipe, recipe_of
 from lightcube.optics.cube import Cube
-from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import spread_angles, turntable
 from lightcube.pictures.frames import Frames
 from lightcube.report.page import Command, Origin
@@ -92,32 +91,27 @@ def _stage_options(cube: Cube) -> Iterator[str]:
 
 def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
     """Method, lamp, bounds and passes."""
-    made = cube.provenance
-    method = made.get("method", "display")
-    if method != "display":
-        yield from ("--method", str(method))
-    yield from _lamp(made, method)
-    for name, usual in (("black", BLACK), ("max_extinction", None)):
-        if made.get(name, usual) != usual:
-            yield from (f"--{name.replace('_', '-')}", _number(made[name]))
-    yield from _passes(made, method, command)
-
-
-def _lamp(made: Mapping[str, Any], method: str) -> Iterator[str]:
-    kind, power = made.get("lamp", "per-view"), made.get("lamp_power", 1.0)
-    if kind == "fixed" and (method == "display" or power != 1):
-        yield from ("--lamp-power", _number(power)) if "lamp_power" in made else ()
-    elif kind in ("global", "coarse"):
-        yield from ("--lamp", str(kind))
-    if made.get("lamp_max", recipe.LAMP_MAX) != recipe.LAMP_MAX:
-        yield from ("--lamp-max", _number(made["lamp_max"]))
+    made, usual = recipe_of(cube), Recipe()
+    if made.method != usual.method:
+        yield from ("--method", made.method)
+    if made.powers != usual.powers:
+        yield from ("--powers", made.powers)
+    if made.lamp_power is not None:
+        yield from ("--lamp-power", _number(made.lamp_power))
+    if made.lamp_max is not None and "powers" in cube.provenance:
+        yield from ("--lamp-max", _number(made.lamp_max))
+    if made.black != usual.black:
+        yield from ("--black", _number(made.black))
+    if made.material != usual.material:
+        yield from ("--max-extinction", _number(made.material.most(cube.grid)))
+    yield from _passes(cube.provenance, made.method, command)
 
 
 def _passes(made: Mapping[str, Any], method: str, command: Command) -> Iterator[str]:
     """How many passes at most, and which PSNR is enough; the number of passes itself where no more is known."""
     if "passes" in made:
         passes, enough = made["passes"], made.get("enough_db") or math.inf
-        for quality, meant in recipe.QUALITIES.items():
+        for quality, meant in QUALITIES.items():
             if method == "display" and meant == (passes, enough):
                 yield from () if quality == "normal" else ("--quality", quality)
                 return
@@ -156,15 +150,7 @@ def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
 
 def _usual_units(cube: Cube, frames: Frames) -> int:
     """In how many units the cube would be solved if nothing is said of them."""
-    made = cube.provenance
-    job = Job(
-        frames,
-        cube.grid,
-        method=made.get("method", "display"),
-        lamp=made.get("lamp", "per-view"),
-        hold=cube.hold_deg,
-        iterations=made.get("passes"),
-    )
+    job = Job(frames, cube.grid, recipe_of(cube))
     return fewest_units(job, MEMORY)
 
 

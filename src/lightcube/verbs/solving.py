@@ -4,17 +4,16 @@ from dataclasses import replace
 from typing import Any
 
 from lightcube import io
-from lightcube.backward import recipe, solving
 from lightcube.backward.job import Job
 from lightcube.backward.needs import expected_passes, job_memory, memory_needed, seconds_a_pass
+from lightcube.backward.solving import make_job
 from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.jobs.partial import begun_units
 from lightcube.optics.grid import Grid
-from lightcube.pictures.arranging import shifted, spread_over_screen
-from lightcube.planning.order import best_order
-from lightcube.planning.plan import Prepared, plan
-from lightcube.planning.prediction import as_json, predict
+from lightcube.planning.order import Order, best_order
+from lightcube.planning.plan import Plan, plan
+from lightcube.planning.prediction import as_json
 from lightcube.verbs.options import Options
 
 #: Orders of more pictures than this are looked for only when asked for: it takes too long.
@@ -22,22 +21,13 @@ _QUICK = 40
 
 
 def settled(options: Options) -> Options:
-    """Fill in the lamp's kind and the paper's own set-up; `InputError` where others contradict them."""
-    check_passes(options)
+    """Fill in the paper's own set-up; `InputError` where options contradict it or each other."""
     if options.paper:
         options = _as_in_the_paper(options)
     if max(options.lamp_samples, options.pixel_samples) > 1:
         raise InputError("--lamp-samples and --pixel-samples are for a stage: describe lamp and screen in a stage file")
-    kind = recipe.check_options(options.method, **options.lamps, iterations=options.iterations)
-    return replace(options, lamp=kind)
-
-
-def check_passes(options: Options) -> None:
-    """Raise `InputError` where options contradict each other about the number of passes."""
-    if options.quality is not None and options.iterations is not None:
-        raise InputError("--quality and --iterations both say how many passes: leave one of them out")
-    if options.quality is not None and options.method != "display":
-        raise InputError(f"--quality is for method display: use --iterations with method {options.method}")
+    _ = options.recipe  # refuses what cannot be
+    return options
 
 
 def _as_in_the_paper(options: Options) -> Options:
@@ -46,7 +36,7 @@ def _as_in_the_paper(options: Options) -> Options:
         "--angles": options.angles,
         "--span": options.span,
         "--elevation": options.elevation,
-        "--lamp": options.lamp,
+        "--powers": options.powers,
         "--lamp-power": options.lamp_power,
         "--lamp-max": options.lamp_max,
         "--hold": options.hold,
@@ -62,60 +52,43 @@ def _as_in_the_paper(options: Options) -> Options:
     return replace(options, **white, shape=options.voxels, n=None)
 
 
-def prepare(path: str, options: Options) -> Prepared:
+def prepare(path: str, options: Options) -> Plan:
     """Read the pictures and plan the cube, for options that are settled; `InputError` for all that cannot be."""
     shape = options.voxels
     check_memory(memory_needed(options.method, Grid(shape), (1, 1), 1, units=3))
-    pictures = io.read_pictures(path, transfer=options.transfer)
-    lamps = options.lamps
-    planned = plan(
-        pictures,
+    recipe = options.recipe
+    return plan(
+        io.read_pictures(path, transfer=options.transfer),
         max(shape),
+        recipe,
         size_mm=options.size_mm,
         shape=None if options.shape is None else shape,
         frame_width=options.frame_width,
         angles=options.angles,
         span=options.span,
         elevation=options.elevation,
-        fit_mode=options.fit,
-        hold=options.hold if options.method == "display" else options.hold or 0.0,
-        **lamps,
+        fit=options.fit,
+        longest_hold=options.hold is None and recipe.chooses_powers,
+        shift=options.shift,
+        order=options.order,
     )
-    if options.shift:
-        frames = shifted(planned.frames, spread_over_screen(planned.frames, planned.grid, options.shift))
-        planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
-    order = None
-    if options.order == "best" or len(pictures) <= _QUICK:
-        order = best_order(planned.frames, planned.grid, **lamps)
-    if options.order == "best" and order is not None:
-        frames = order(planned.frames)
-        planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
-    return Prepared(pictures, planned, order)
 
 
-def job(prepared: Prepared, options: Options, *, memory: int | None = None, units: int | None = None) -> Job:
+def another_order(planned: Plan) -> Order | None:
+    """The best order of a plan: its own, or one that is looked for where that does not take long."""
+    if planned.order is not None or len(planned.pictures) > _QUICK:
+        return planned.order
+    return best_order(planned.frames, planned.grid, planned.recipe)
+
+
+def job(planned: Plan, *, memory: int | None = None, units: int | None = None) -> Job:
     """Settle all that decides the cube; `InputError` where it does not fit into `memory` bytes."""
-    planned = prepared.plan
-    provenance: dict[str, Any] = {"fit": options.fit, "predicted": as_json(planned.prediction)}
-    if options.shift:
-        provenance["shift"] = options.shift
-    if options.order == "best" and prepared.order is not None:
-        provenance["order"] = [int(picture) for picture in prepared.order.pictures]
-    passes: dict[str, Any] = {"iterations": options.iterations}
-    if options.iterations is None and options.method == "display":
-        most, enough = recipe.QUALITIES[options.quality or "normal"]
-        passes = {"iterations": most, "enough_db": enough}
-    made = solving.make_job(
-        planned.frames,
-        planned.grid,
-        method=options.method,
-        hold=planned.hold,
-        units=units,
-        memory=memory,
-        provenance=provenance,
-        **passes,
-        **options.lamps,
-    )
+    provenance: dict[str, Any] = {"fit": planned.fit, "predicted": as_json(planned.prediction)}
+    if planned.shift:
+        provenance["shift"] = planned.shift
+    if planned.order is not None:
+        provenance["order"] = [int(picture) for picture in planned.order.pictures]
+    made = make_job(planned.frames, planned.grid, planned.recipe, units=units, memory=memory, provenance=provenance)
     needed = job_memory(made)
     if memory is not None and needed > memory:
         raise too_much(needed, memory)

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from lightcube import io
-from lightcube.backward import recipe, solving
 from lightcube.backward.job import Job
 from lightcube.backward.needs import job_memory
+from lightcube.backward.solving import make_job
 from lightcube.errors import InputError
 from lightcube.optics.rig import Lighting
 from lightcube.optics.stage import Stage
@@ -15,7 +15,7 @@ from lightcube.pictures.frames import Frames
 from lightcube.planning.placement import doubtful, facts, impossible
 from lightcube.planning.reachable import sentences
 from lightcube.verbs.options import Options
-from lightcube.verbs.solving import check_memory, check_passes, too_much
+from lightcube.verbs.solving import check_memory, too_much
 
 #: Options that a stage file leaves no room for.
 _SAID = (
@@ -26,13 +26,11 @@ _SAID = (
 
 def read(path: str, options: Options) -> tuple[Stage, Frames]:
     """Read a stage and fit its pictures, or raise `InputError` where it cannot be, or an option contradicts it."""
-    check_passes(options)
+    _ = options.recipe  # refuses what cannot be
     for name in _SAID:
         if getattr(options, name) != getattr(Options(), name):
             option = name.replace("_", "-")
             raise InputError(f"--{option} is not for a stage, and {path} is one that says all there is: leave it out")
-    if options.lamp == "fixed":
-        raise InputError(f"--lamp fixed: the stage {path} says which lamps are fixed, by their power: leave it out")
     samples = {"lamp_samples": options.lamp_samples, "pixel_samples": options.pixel_samples}
     stage, frames = io.read_stage_frames(path, transfer=options.transfer, **samples)
     found = impossible(stage)
@@ -43,24 +41,8 @@ def read(path: str, options: Options) -> tuple[Stage, Frames]:
 
 def job(stage: Stage, frames: Frames, options: Options, *, memory: int | None = None, units: int | None = None) -> Job:
     """Settle all that decides the cube of a stage; `InputError` where it does not fit into `memory` bytes."""
-    passes: dict[str, Any] = {"iterations": options.iterations}
-    if options.iterations is None and options.method == "display":
-        most, enough = recipe.QUALITIES[options.quality or "normal"]
-        passes = {"iterations": most, "enough_db": enough}
     samples = {name: getattr(options, name) for name in ("lamp_samples", "pixel_samples") if getattr(options, name) > 1}
-    made = solving.make_job(
-        frames,
-        stage.grid,
-        method=options.method,
-        lamp=options.lamp if options.method == "display" else None,
-        max_extinction=options.lamps["max_extinction"],
-        black=options.lamps["black"],
-        hold=options.hold or 0.0,
-        units=units,
-        memory=memory,
-        provenance=samples,
-        **passes,
-    )
+    made = make_job(frames, stage.grid, options.recipe, units=units, memory=memory, provenance=samples)
     if memory is not None and job_memory(made) > memory:
         raise too_much(job_memory(made), memory)
     check_memory(job_memory(made))

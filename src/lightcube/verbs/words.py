@@ -1,18 +1,18 @@
 """What is said of plans, stages and jobs, in sentences and tables."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from lightcube.backward import recipe
+from lightcube.backward.recipe import LAMP_MOST, Recipe
 from lightcube.optics.views import held
-from lightcube.pictures.arranging import shifted, spread_over_screen
-from lightcube.pictures.fitting import fit, fit_report
+from lightcube.pictures.fitting import fit_report
 from lightcube.pictures.frames import Frames
 from lightcube.planning.consistency import advice, check
-from lightcube.planning.plan import Plan, Prepared
-from lightcube.planning.prediction import Prediction, as_json, predict
-from lightcube.verbs.options import Options
+from lightcube.planning.order import Order
+from lightcube.planning.plan import Plan, narrower
+from lightcube.planning.prediction import as_json, predict
 
 #: A picture below this PSNR, dB, is hardly recognised.
 POOR_DB = 25.0
@@ -35,42 +35,37 @@ def table(facts: dict[str, Any]) -> list[str]:
     return [f"{name:<16}{value}" for name, value in rows.items()]
 
 
-def facts(prepared: Prepared, options: Options) -> dict[str, Any]:
-    """What can be known before solving, for JSON."""
-    planned = prepared.plan
-    found = check(planned.frames, planned.grid, options.power)
+def facts(planned: Plan, order: Order | None) -> dict[str, Any]:
+    """What can be known before solving, for JSON; `order` is the best one, if it was looked for."""
+    found = check(planned.frames, planned.grid, planned.recipe.lamp_bounds[1])
     return {
         "names": list(planned.frames.names),
         "angles": [float(angle) for angle in planned.frames.views.angles],
         "voxels": list(planned.grid.shape),
         "frame_width": planned.frames.views.picture_shape[1] / planned.grid.shape[1],
-        "hold": planned.hold,
+        "hold": planned.recipe.hold_deg,
         **found,
         "predicted": as_json(planned.prediction),
-        "shift": options.shift,
+        "shift": planned.shift,
         "order": None
-        if prepared.order is None
-        else {
-            "best": [int(picture) for picture in prepared.order.pictures],
-            "gain_db": prepared.order.best_db - prepared.order.given_db,
-        },
+        if order is None
+        else {"best": [int(picture) for picture in order.pictures], "gain_db": order.best_db - order.given_db},
     }
 
 
-def in_short(prepared: Prepared, options: Options) -> list[str]:
-    """Lines that `solve` says before it starts."""
-    planned = prepared.plan
+def in_short(planned: Plan, order: Order | None) -> list[str]:
+    """Lines that `solve` says before it starts; `order` is the best one, if it was looked for."""
     nz, ny, nx = planned.grid.shape
+    hold = planned.recipe.hold_deg
     lines = [
-        fit_report(prepared.pictures, planned.frames, options.fit),
+        fit_report(planned.pictures, planned.frames, planned.fit),
         f"cube of {nx} x {ny} x {nz} voxels, {expected(planned)}"
-        + " by method display" * (options.method != "display"),
+        + " by method display" * (planned.recipe.method != "display"),
     ]
-    if planned.hold:
-        angles = len(held(planned.frames.views, planned.hold, planned.grid)) // len(planned.frames)
-        lines.append(f"held {planned.hold:g} degrees either way: {angles} angles a picture, and as many times the work")
-    lines += gain(prepared, options)
-    return lines
+    if hold:
+        angles = len(held(planned.frames.views, hold, planned.grid)) // len(planned.frames)
+        lines.append(f"held {hold:g} degrees either way: {angles} angles a picture, and as many times the work")
+    return lines + gain(planned, order)
 
 
 def expected(planned: Plan) -> str:
@@ -80,65 +75,41 @@ def expected(planned: Plan) -> str:
     return f"PSNR of {prediction.psnr_mean:.0f} dB{more} expected (worst {prediction.psnr_min:.0f})"
 
 
-def gain(prepared: Prepared, options: Options) -> list[str]:
+def gain(planned: Plan, order: Order | None) -> list[str]:
     """What another order would gain, or which one is used."""
-    order = prepared.order
     if order is None:
         return []
     better = order.best_db - order.given_db
-    if options.order == "best":
-        return [f"order (worth {better:.1f} dB in a draft): {', '.join(prepared.frames.names)}"]
+    if planned.order is not None:
+        return [f"order (worth {better:.1f} dB in a draft): {', '.join(planned.frames.names)}"]
     return [f"another order would gain about {better:.1f} dB: --order best"] if better >= 1 else []
 
 
-def what_to_change(prepared: Prepared, options: Options) -> list[str]:
+def what_to_change(planned: Plan) -> list[str]:
     """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much."""
-    planned = prepared.plan
-    if options.paper:  # all that would help contradicts it
-        return []
-    found = advice(check(planned.frames, planned.grid, options.power))
+    found = advice(check(planned.frames, planned.grid, planned.recipe.lamp_bounds[1]))
     if planned.prediction.psnr_mean >= POOR_DB:
         return [sentence for sentence in found if not sentence.startswith("The load")]
-    return [*found, *_remedies(prepared, options)]
+    return [*found, *_remedies(planned)]
 
 
-def _remedies(prepared: Prepared, options: Options) -> list[str]:
+def _remedies(planned: Plan) -> list[str]:
     """What three changes would bring, predicted."""
-    planned, lamps = prepared.plan, options.lamps
+    recipe, power = planned.recipe, planned.recipe.lamp_bounds[1]
     now = planned.frames.views.picture_shape[1] / planned.grid.shape[1]
     tried: list[str] = []
 
-    def tell(change: str, prediction: Prediction) -> None:
-        tried.append(f"{change}: {prediction.psnr_mean:.0f} dB")
+    def tell(change: str, frames: Frames, recipe: Recipe) -> None:
+        tried.append(f"{change}: {predict(frames, planned.grid, recipe).psnr_mean:.0f} dB")
 
     every_second = np.arange(0, len(planned.frames), 2)
     if len(every_second) > 1:
-        fewer = planned.frames.take(every_second)
-        tell(f"{len(fewer)} of the pictures", predict(fewer, planned.grid, hold=planned.hold, **lamps))
-    smaller = narrower(prepared, options, 0.7 * now)
-    tell(f"--frame-width {0.7 * now:.2g}", predict(smaller, planned.grid, hold=planned.hold, **lamps))
-    most = min(16 * options.power, recipe.LAMP_MOST)
-    if options.lamp != "fixed" and most > options.power:
-        stronger = predict(planned.frames, planned.grid, hold=planned.hold, **(lamps | {"lamp_max": most}))
-        tell(f"--lamp-max {most:g}", stronger)
+        tell(f"{len(every_second)} of the pictures", planned.frames.take(every_second), recipe)
+    tell(f"--frame-width {0.7 * now:.2g}", narrower(planned, 0.7 * now), recipe)
+    most = min(16 * power, LAMP_MOST)
+    if not recipe.is_lamp_fixed and most > power:
+        tell(f"--lamp-max {most:g}", planned.frames, replace(recipe, lamp_max=most))
     return [f"Hardly recognisable pictures are expected; what would come of {'; of '.join(tried)}."] if tried else []
-
-
-def narrower(prepared: Prepared, options: Options, width: float) -> Frames:
-    """The frames as they would be at another width, at the same stops."""
-    views = prepared.frames.views
-    elevation = float(views.elevations[0])
-    frames = fit(
-        prepared.pictures,
-        prepared.plan.grid,
-        angles=views.angles,
-        elevation=elevation,
-        frame_width=width,
-        fit=options.fit,
-    )
-    if options.shift:
-        frames = shifted(frames, spread_over_screen(frames, prepared.plan.grid, options.shift))
-    return prepared.order(frames) if options.order == "best" and prepared.order is not None else frames
 
 
 def needed(needs: dict[str, Any]) -> str:

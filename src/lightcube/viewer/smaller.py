@@ -1,16 +1,16 @@
 """A smaller cube for a page, solved for the same pictures: a mean over larger voxels would blur them away."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward import solving
 from lightcube.backward.pieces import Watching
+from lightcube.backward.recipe import recipe_of
+from lightcube.backward.solving import solve
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
-from lightcube.optics.transfer import BLACK
+from lightcube.optics.material import Material
 from lightcube.pictures.fitting import frames_from_targets
 from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import coarser
@@ -40,28 +40,10 @@ def smaller(cube: Cube, callback: Watching | None = None) -> Cube:
         return cube
     wanted = _cast(cube) if cube.targets is None else frames_from_targets(cube)
     frames, grid = coarser(wanted, cube.grid, ratio)
-    solution = solving.solve(
-        frames,
-        grid,
-        hold=cube.hold_deg,
-        iterations=_PASSES,
-        callback=callback,
-        **_bounds(cube),
-    )
+    recipe = recipe_of(cube)
+    bound = Material(recipe.material.most(cube.grid))
+    solution = solve(frames, grid, replace(recipe.by_display(_PASSES), material=bound), callback=callback)
     return replace(solution.cube, scores=metrics.score(solution.cube, frames), status=cube.status)
-
-
-def _bounds(cube: Cube) -> dict[str, Any]:
-    """What bounded a cube, as `lightcube.solve` takes it; a stage's lamps are bounded by its lighting."""
-    made = cube.provenance
-    most = made.get("max_extinction")
-    bounds = {"max_extinction": np.inf if most is None else most, "black": made.get("black", BLACK)}
-    if cube.lighting is not None:
-        return bounds | {"lamp": "global" if made.get("lamp") == "global" else None}
-    if "lamp" not in made:
-        return bounds | {"lamp_max": max(1.0, float(cube.powers.max()))}
-    power = "lamp_power" if made["lamp"] == "fixed" else "lamp_max"
-    return bounds | {"lamp": made["lamp"], power: made[power]}
 
 
 def shown_coarsely(cube: Cube, small: Cube) -> NDArray[np.float32]:

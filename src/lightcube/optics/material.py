@@ -1,0 +1,42 @@
+"""What the voxels of a cube can be."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from lightcube.errors import InputError
+from lightcube.optics.grid import Grid
+
+#: What a largest extinction is counted along: a mm, or the side of a voxel.
+Per = Literal["mm", "voxel"]
+
+
+@dataclass(frozen=True)
+class Material:
+    """What bounds the extinction of voxels.
+
+    Parameters
+    ----------
+    max_extinction
+        The largest, above 0; infinity = any.
+    per
+        ``"mm"``, or ``"voxel"``: then it is the absorbance along a voxel's side.
+
+    Raises
+    ------
+    InputError
+        Where the bound is not positive, or it is counted along anything else.
+    """
+
+    max_extinction: float = math.inf
+    per: Per = "mm"
+
+    def __post_init__(self) -> None:
+        if not self.max_extinction > 0:
+            raise InputError(f"the largest extinction must be a positive number, not {self.max_extinction}")
+        if self.per not in get_args(Per):
+            raise InputError(f"an extinction is per {' or '.join(get_args(Per))}, not per {self.per!r}")
+
+    def most(self, grid: Grid) -> float:
+        """The largest extinction of the grid's voxels, 1/mm."""
+        return self.max_extinction / (grid.voxel_mm if self.per == "voxel" else 1.0)
