@@ -15,7 +15,7 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 STOREYS = [
     ["errors", "kernels"],
     ["transfer", "absorption", "geometry", "layout", "lighting", "stage", "svg"],
-    ["frames", "cube", "rays", "stacked", "projector", "solvers"],
+    ["frames", "cube", "rays", "stacked", "projector", "linear_operator", "solvers"],
     ["fitting", "coarse", "units", "problem", "store", "job", "pieces", "solution", "needs"],
     ["backward", "forward", "scene"],
     [
