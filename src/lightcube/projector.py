@@ -71,6 +71,29 @@ class Projector:
     each other and a quicker way to be multiplied (`lightcube.stacked`); all else goes ray by ray
     (`lightcube.rays`). Lengths are traced anew in every product (Siddon, see `lightcube.kernels.beam`). Beams along
     voxel faces follow the tie rule of docs/conventions.md.
+
+    Examples
+    --------
+    A layer of extinction at the bottom of a clear block of 1 x 1.5 x 2 mm. Turned by 30 degrees, the beam through the
+    middle is longer in it, and those beside it cut its corners:
+
+    >>> import numpy as np
+    >>> import lightcube as lc
+    >>> grid = lc.Grid((2, 3, 4), voxel_mm=0.5)
+    >>> A = lc.Projector(grid, lc.turntable(grid, [0, 30], picture_shape=(2, 3)))
+    >>> volume = np.zeros(A.domain_shape)
+    >>> volume[0] = 1.0
+    >>> A(volume)[:, 1]  # the pictures' lower row
+    array([[2.    , 2.    , 2.    ],
+           [1.5   , 2.3094, 1.5   ]])
+    >>> A.T(A(volume)).shape, A.T.T is A
+    ((2, 3, 4), True)
+
+    The same by columns, of which level light has one for each slice here:
+
+    >>> x = lc.layout.columns_from_volume(volume[None]).reshape(A.shape[1], -1)
+    >>> A.shape, x.shape, (A @ x).shape
+    ((6, 12), (12, 2), (6, 2))
     """
 
     def __init__(self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None) -> None:
@@ -265,6 +288,14 @@ def dot_test(operator: Any, columns: int = 3, dtype: type[np.floating[Any]] = np
 
     `operator` has ``shape``, ``forward`` and ``adjoint``: a `Projector`, its transpose, or one of your own. An exact
     transpose gives rounding only: below 1e-5 for float32 and 1e-12 for float64.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> grid = lc.Grid((3, 5, 7))
+    >>> A = lc.Projector(grid, lc.turntable(grid, [13, 77], elevation=20))
+    >>> lc.dot_test(A) < 1e-12
+    True
     """
     random = np.random.default_rng(seed)
     x = random.random((operator.shape[1], columns)).astype(dtype)
