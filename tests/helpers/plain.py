@@ -90,6 +90,15 @@ def absorbance_pictures(grid: Grid, views: Views, extinction: Array) -> Array:
     return pictures
 
 
+def back_projection(grid: Grid, views: Views, pictures: Array) -> Array:
+    """``(channel, z, y, x)``: the lengths of each beam times its pixel of ``(view, row, column, channel)``, summed."""
+    volume = np.zeros((pictures.shape[3], *grid.shape))
+    for view, row, column in np.ndindex(*pictures.shape[:3]):
+        lengths = lengths_of_beam(grid, *beam_of_pixel(views, view, row, column))
+        volume += pictures[view, row, column][:, None, None, None] * lengths
+    return volume
+
+
 def srgb_decode(value: float) -> float:
     """IEC 61966-2-1, one number at a time."""
     return value / 12.92 if value <= 0.04045 else math.pow((value + 0.055) / 1.055, 2.4)

@@ -19,6 +19,18 @@ class Grid:
         Number of voxels ``(nz, ny, nx)``, each at least 1.
     voxel_mm
         Side of a voxel in mm.
+
+    Raises
+    ------
+    InputError
+        Where a number of voxels is not whole or below 1, or a side lies outside 1e-6 to 1e6 mm.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> grid = lc.Grid((3, 5, 7), voxel_mm=0.5)
+    >>> grid.size_mm
+    (1.5, 2.5, 3.5)
     """
 
     shape: tuple[int, int, int]

@@ -33,6 +33,28 @@ class Views:
         ``(views, 3)``, from one pixel to the next one to its right, and to the next one below it.
     picture_shape
         ``(rows, columns)`` of every picture.
+
+    Raises
+    ------
+    InputError
+        Where vectors are not finite or not as many as lamps, or a picture has no pixel.
+
+    Examples
+    --------
+    A point lamp 300 mm before the cube, and a picture of 2 x 4 pixels of 10 mm on a screen 100 mm behind it:
+
+    >>> import numpy as np
+    >>> import lightcube as lc
+    >>> lamp, middle = np.array([[-300, 0, 0, 1]]), np.array([[100, 0, 0]])
+    >>> views = lc.Views(lamp, middle, np.array([[0, -10, 0]]), np.array([[0, 0, -10]]), picture_shape=(2, 4))
+    >>> len(views), views.picture_shape
+    (1, (2, 4))
+
+    On a turntable, where the lamp is parallel, its angles can be asked for, and some of the views be taken:
+
+    >>> views = lc.turntable(lc.Grid((3, 5, 7)), [0, 45, 90], elevation=30)
+    >>> views.take([2, 0]).angles
+    array([90.,  0.])
     """
 
     lamps: NDArray[np.float64]
@@ -101,6 +123,21 @@ def spread_angles(count: int, span: float | None = None, *, elevation: float = 0
 
     They start half a step from 0, or a third of a step where half a step would put one on a multiple
     of 90 degrees: there a picture as wide as the cube has no margin.
+
+    Raises
+    ------
+    InputError
+        Where `count` is below 1, or `span` not above 0 or beyond 360.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> lc.spread_angles(4)
+    array([ 22.5,  67.5, 112.5, 157.5])
+    >>> lc.spread_angles(4, elevation=35)
+    array([ 45., 135., 225., 315.])
+    >>> lc.spread_angles(1)  # half a step would be 90
+    array([60.])
     """
     if span is None:
         span = 360.0 if elevation else 180.0
@@ -162,10 +199,25 @@ def turntable(
     picture_shape
         ``(rows, columns)`` of a window in the middle of the screen; default the whole `raster_shape`.
 
+    Raises
+    ------
+    InputError
+        Where an angle is not finite, the elevation is 90 degrees or more, or the window is larger than the screen.
+
     Notes
     -----
     Parallel light casts the same picture on every parallel screen, so the screen's plane is put through the
     cube's centre. The picture's middle is where the beam through that centre lands.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> views = lc.turntable(lc.Grid((3, 5, 7)), [0, 90], elevation=30, picture_shape=(3, 5))
+    >>> views
+    <2 views of 3 x 5 pixels>
+    >>> views.lamps  # turned by 90 degrees the cube sees the lamp from its other side
+    array([[ 0.866,  0.   , -0.5  ,  0.   ],
+           [ 0.   , -0.866, -0.5  ,  0.   ]])
     """
     turned = check_angles(angles)
     elevation = check_elevation(elevation)

@@ -9,6 +9,7 @@ from scipy.sparse import csr_array
 from lightcube.kernels import rays
 from lightcube.kernels.layout import empty
 from lightcube.kernels.ray import most_pieces
+from lightcube.kernels.ray_matrix import trace_all
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views
 
@@ -70,10 +71,12 @@ class Rays:
 
     def to_sparse(self) -> csr_array:
         """Return the same matrix, float64."""
-        pieces = [self.row(index) for index in range(self.shape[0])]
-        ends = np.cumsum([0, *(len(unknowns) for unknowns, _ in pieces)])
-        unknowns, lengths = (np.concatenate([piece[i] for piece in pieces]) for i in (0, 1))
-        matrix = csr_array((lengths, unknowns, ends), shape=self.shape)
+        data = self._lamps, self._screens, self._picture, self._heard, self.grid.shape, self.grid.voxel_mm
+        offsets = np.zeros(self.shape[0] + 1, np.int64)
+        trace_all(*data, offsets, np.empty(0, np.int64), np.empty(0))
+        unknowns, lengths = np.empty(offsets[-1], np.int64), np.empty(offsets[-1])
+        trace_all(*data, offsets, unknowns, lengths)
+        matrix = csr_array((lengths, unknowns, offsets), shape=self.shape)
         matrix.sum_duplicates()
         return matrix
 
