@@ -13,7 +13,8 @@ import time
 import numpy as np
 
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.views import spread_angles
 from lightcube.projection.projector import Projector
 
 SIZES = [64, 96, 128, 192, 256, 300]

@@ -26,9 +26,10 @@ from lightcube.backward.recipe import Recipe, from_plain
 from lightcube.backward.solving import solve
 from lightcube.forward.casting import cast
 from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import decode, encode
-from lightcube.optics.views import spread_angles, turntable
-from lightcube.pictures.fitting import fit_to_views
+from lightcube.optics.views import spread_angles
+from lightcube.pictures.fitting import fit
 from lightcube.pictures.frames import Frames, Pictures
 from lightcube.planning.prediction import BIAS, GROWTH, MOST_DB, law, rehearse
 from lightcube.scene.tracer import scene_frames
@@ -88,9 +89,12 @@ class Case(NamedTuple):
     @property
     def recipe(self) -> Recipe:
         """How it is solved."""
-        if self.powers == "fixed":
-            return Recipe(lamp_power=1.0, hold_deg=self.hold)
-        return from_plain({"powers": self.powers, "lamp_max": self.lamp_max, "hold_deg": self.hold})
+        return from_plain({"powers": None if self.powers == "fixed" else self.powers, "hold_deg": self.hold})
+
+    @property
+    def lamp(self) -> dict[str, float]:
+        """Its power, or the largest one."""
+        return {"power": 1.0} if self.powers == "fixed" else {"power_max": self.lamp_max}
 
 
 def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
@@ -133,18 +137,18 @@ def frames_of(problem: Case) -> tuple[Frames, Grid]:
     grid = Grid(problem.shape)
     rows, columns = problem.picture
     angles = spread_angles(problem.views, elevation=problem.elevation)
-    views = turntable(grid, angles, elevation=problem.elevation, picture_shape=problem.picture)
+    rig = turntable(grid, angles, elevation=problem.elevation, picture_shape=problem.picture, **problem.lamp)
     if problem.style in SCENES:
-        pictures = scene_frames(io.read_scene(problem.style), views, grid).pictures
+        pictures = scene_frames(io.read_scene(problem.style), rig, grid).pictures
     else:
         crops = photographs(problem, np.random.default_rng([problem.seed, 78]))
         names = tuple(str(index) for index in range(len(crops)))
-        pictures = fit_to_views(Pictures(tuple(tour(crops) if problem.tour else crops), names), views).pictures
+        pictures = fit(Pictures(tuple(tour(crops) if problem.tour else crops), names), rig).pictures
     weights = np.ones(pictures.shape[:3], np.float32)
     if problem.disc:
         y, x = (np.linspace(-1 + 1 / count, 1 - 1 / count, count) for count in (rows, columns))
         weights[:, y[:, None] ** 2 + x**2 > 1] = 0
-    return Frames(pictures, views, weights), grid
+    return Frames(pictures, rig, weights), grid
 
 
 def photographs(problem: Case, rng: Rng) -> list[NDArray[np.float32]]:
@@ -180,9 +184,9 @@ def styled(picture: NDArray[Any], style: str, rng: Rng) -> NDArray[np.float32]:
 
 def tour(pictures: list[NDArray[np.float32]]) -> list[NDArray[np.float32]]:
     """The pictures one after the other, each followed by the most similar of those that are left, at 4 x 4 pixels."""
-    views = turntable(Grid((4, 4, 4)), np.arange(len(pictures)), picture_shape=(4, 4))
+    rig = turntable(Grid((4, 4, 4)), np.arange(len(pictures)), picture_shape=(4, 4))
     names = tuple("" for _ in pictures)
-    small = encode(fit_to_views(Pictures(tuple(pictures), names), views, "stretch").pictures)
+    small = encode(fit(Pictures(tuple(pictures), names), rig, "stretch").pictures)
     path, left = [0], set(range(1, len(pictures)))
     while left:
         path.append(min(left, key=lambda other: float(np.sum((small[other] - small[path[-1]]) ** 2))))
@@ -212,7 +216,7 @@ def measured(problem: Case) -> list[float]:
     """PSNR of each picture of a case that is solved for real."""
     frames, grid = frames_of(problem)
     cube = solve(frames, grid, problem.recipe).cube
-    shown = cast(cube, cube.views, cube.powers)
+    shown = cast(cube)
     pairs = zip(shown, frames.pictures, frames.weight, strict=True)
     return [round(psnr(encode(picture), encode(wanted), weight), 3) for picture, wanted, weight in pairs]
 

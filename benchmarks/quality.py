@@ -36,7 +36,7 @@ from lightcube.backward.recipe import Recipe
 from lightcube.drawing import plots
 from lightcube.optics.transfer import encode, to_uint8
 from lightcube.pictures import samples
-from lightcube.pictures.fitting import fit_to_views
+from lightcube.pictures.fitting import fit
 from lightcube.planning.order import best_order
 from lightcube.scoring.metrics import psnr
 
@@ -185,10 +185,11 @@ def frames_of(problem: Problem) -> tuple[lc.Frames, lc.Grid]:
     grid = lc.Grid((problem.n,) * 3, voxel_mm=100 / problem.n)
     angles = lc.spread_angles(problem.count, elevation=problem.elevation)
     shape = (problem.rows, problem.columns)
-    views = lc.turntable(grid, angles, elevation=problem.elevation, picture_shape=shape)
+    lamp = {"power": 1.0} if problem.lamp_max is None else {"power_max": float(problem.lamp_max)}
+    rig = lc.turntable(grid, angles, elevation=problem.elevation, picture_shape=shape, **lamp)
     if problem.pictures == "photographs":
-        return fit_to_views(samples.photographs(problem.count, problem.columns / problem.rows), views), grid
-    return lc.scene_frames(lc.read_scene(problem.pictures), views, grid), grid
+        return fit(samples.photographs(problem.count, problem.columns / problem.rows), rig), grid
+    return lc.scene_frames(lc.read_scene(problem.pictures), rig, grid), grid
 
 
 def measure(problem: Problem) -> Row:
@@ -197,10 +198,9 @@ def measure(problem: Problem) -> Row:
     row: Row = {}
     if problem.order == "best":
         began = time.perf_counter()
-        frames = best_order(frames, grid, Recipe(lamp_max=problem.lamp_max or 1.0))(frames)
+        frames = best_order(frames, grid)(frames)
         row["order_seconds"] = time.perf_counter() - began
-    lamp: dict[str, Any] = {"lamp_power": 1.0} if problem.lamp_max is None else {"lamp_max": float(problem.lamp_max)}
-    recipe = Recipe(method=problem.method, hold_deg=problem.hold or 0.0, passes=problem.passes, **lamp)
+    recipe = Recipe(method=problem.method, hold_deg=problem.hold or 0.0, passes=problem.passes)
     began = time.perf_counter()
     solution = lc.solve(frames, grid, recipe)
     row["seconds"] = time.perf_counter() - began
@@ -220,7 +220,7 @@ def over_the_hold(cube: lc.Cube, frames: lc.Frames, degrees: float) -> Row:
         [
             [
                 psnr(encode(shown, frames.transfer), *pair)
-                for shown, *pair in zip(lc.play(cube, cube.views.angles + offset), wanted, frames.weight, strict=True)
+                for shown, *pair in zip(lc.play(cube, cube.angles + offset), wanted, frames.weight, strict=True)
             ]
             for offset in np.append(np.arange(-degrees, degrees - 1e-9, 0.1), degrees)
         ]
@@ -241,12 +241,12 @@ def by_command_line(problem: Problem, folder: Path) -> Row:
     said = subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603 - our own words
     result = json.loads(said.stdout.splitlines()[-1])
     cube = lc.load(made)
-    rows, columns = cube.views.picture_shape
+    rows, columns = cube.rig.picture_shape
     return {
         **{name: result[name] for name in ("psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "seconds")},
         "done": result["iterations"],
         **result["optimality"],
-        "elevation": float(cube.views.elevations[0]),
+        "elevation": float(cube.rig.views.elevations[0]),
         "columns": columns,
         "rows": rows,
         "lamp_max": cube.provenance.get("lamp_max"),

@@ -29,10 +29,9 @@ import lightcube as lc
 from lightcube.backward.problem import pose
 from lightcube.backward.recipe import Recipe
 from lightcube.io import read_stage, read_stage_frames
-from lightcube.optics.rig import sampled
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures import samples
-from lightcube.pictures.fitting import fit_to_stage
+from lightcube.pictures.fitting import fit
 from lightcube.scoring.metrics import score_pictures
 from lightcube.solvers import METHODS
 
@@ -90,8 +89,8 @@ def around(n: int, count: int, columns: int, distance: float, span: float, power
 
 def frames_of(stage: Stage, pictures: lc.Pictures, lamp_samples: int = 1) -> lc.Frames:
     """Photographs on a stage, one for each shot."""
-    views, lighting = sampled(*exposures(stage), lamp_samples=lamp_samples)
-    return fit_to_stage(pictures, views, lighting, ["crop"] * len(stage.shots))
+    rig = stage.rig().sampled(lamp=lamp_samples)
+    return fit(pictures, rig)
 
 
 def measured(name: str, grid: lc.Grid, frames: lc.Frames, passes: int, **more: Any) -> tuple[Row, lc.Cube]:
@@ -153,8 +152,7 @@ def soft(n: int, passes: int) -> Iterator[Row]:
         for name, points in (("not minded", 1), ("minded", 8)):
             frames = frames_of(stage, pictures, points)
             row, cube = measured(f"{size:g} degrees, {name}", stage.grid, frames, passes)
-            assert true.lighting is not None  # noqa: S101 - a stage's frames have one
-            shown = score_pictures(lc.cast(cube, true.views, cube.powers, true.lighting), true)
+            shown = score_pictures(lc.cast(cube, true.rig), true)
             yield row | {"psnr_mean": shown["psnr_mean"], "psnr_min": shown["psnr_min"]}
 
 

@@ -16,7 +16,8 @@ from lightcube.bench.products import columns_of, projector
 from lightcube.forward.casting import player
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import Views, spread_angles, turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.views import Views, spread_angles, turntable_views
 from lightcube.projection.projector import Projector
 
 N, VIEWS, ANY_VIEWS = 96, 96, 24
@@ -37,7 +38,7 @@ def test_product(benchmark: Callable[..., Any], direction: str, elevation: float
 def test_product_of_any_rays(benchmark: Callable[..., Any], direction: str, point: bool) -> None:
     """Screens behind the cube that lean, in parallel light or before lamps three cubes away."""
     grid = Grid((N, N, N))
-    table = turntable(grid, spread_angles(ANY_VIEWS, elevation=35.0), elevation=35.0, picture_shape=(N, N))
+    table = turntable_views(grid, spread_angles(ANY_VIEWS, elevation=35.0), elevation=35.0, picture_shape=(N, N))
     light = table.lamps[:, :3]
     lamps = np.column_stack([-3 * N * light, np.ones(len(table))]) if point else table.lamps
     matrix = Projector(grid, Views(lamps, N * light, table.column_steps, table.row_steps - 0.3 * light, (N, N)))

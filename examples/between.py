@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 import lightcube as lc
-from lightcube.backward.recipe import Recipe
 from lightcube.drawing import plots
 from lightcube.optics.disturbance import DISTURBANCES
 from lightcube.optics.transfer import to_uint8
@@ -28,17 +27,18 @@ def block(n: int) -> lc.Grid:
 
 
 def photographs(grid: lc.Grid) -> lc.Frames:
-    return lc.fit(samples.photographs(), grid, elevation=35.0, frame_width=0.5)
+    pictures = samples.photographs()
+    return lc.fit(pictures, lc.turntable_for(pictures, grid, elevation=35.0, frame_width=0.5))
 
 
 def juggler(grid: lc.Grid, count: int) -> lc.Frames:
-    views = lc.turntable(grid, lc.spread_angles(count, elevation=35.0), elevation=35.0, picture_shape=(32, 32))
-    return lc.scene_frames(lc.read_scene("juggler"), views, grid)
+    table = lc.turntable(grid, lc.spread_angles(count, elevation=35.0), elevation=35.0, picture_shape=(32, 32))
+    return lc.scene_frames(lc.read_scene("juggler"), table, grid)
 
 
 def gems(grid: lc.Grid, count: int) -> lc.Frames:
-    views = lc.turntable(grid, lc.spread_angles(count), picture_shape=(64, 64))
-    return lc.scene_frames(lc.read_scene("gems"), views, grid)
+    table = lc.turntable(grid, lc.spread_angles(count), picture_shape=(64, 64))
+    return lc.scene_frames(lc.read_scene("gems"), table, grid)
 
 
 #: Name, voxels a side, frames, hold in degrees, and whether to draw it.
@@ -70,7 +70,7 @@ def over_the_turn(found: Curve) -> str:
 
 def strip(cube: lc.Cube, spacing: float) -> np.ndarray:
     """What is seen from the first stop to the next, side by side, 8-bit, each picture 32 pixels wide."""
-    shown = lc.play(cube, cube.views.angles[0] + spacing * np.array(PARTS))
+    shown = lc.play(cube, cube.angles[0] + spacing * np.array(PARTS))
     every = shown.shape[2] // 32
     padded = np.pad(shown[:, ::every, ::every], [(0, 0), (0, 2), (0, 2), (0, 0)], constant_values=1)
     return to_uint8(np.concatenate(list(padded), axis=1))
@@ -90,7 +90,7 @@ def main(folder: Path) -> None:
     for name, n, make, hold, drawn in CASES:
         grid = block(n)
         frames = make(grid)
-        cube = lc.solve(frames, grid, Recipe(hold_deg=hold)).cube
+        cube = lc.solve(frames, grid, lc.Recipe(hold_deg=hold)).cube
         found = curve(cube, frames)
         print(f"| {name} | {over_the_turn(found)} |", flush=True)
         if drawn:

@@ -3,9 +3,18 @@
 python examples/methods.py
 """
 
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
 import lightcube as lc
-from lightcube.backward.recipe import Recipe
 from lightcube.pictures import samples
+
+
+def photographs(grid: lc.Grid, **table: Any) -> lc.Frames:
+    pictures = samples.photographs()
+    return lc.fit(pictures, lc.turntable_for(pictures, grid, **table))
 
 
 def main() -> None:
@@ -13,15 +22,21 @@ def main() -> None:
     raised = lc.turntable(grid, lc.spread_angles(32, elevation=35), elevation=35, picture_shape=(48, 48))
     level = lc.turntable(grid, lc.spread_angles(64), picture_shape=(64, 64))
     pictures = {
-        "photographs 32 x 32, 35 degrees": lc.fit(samples.photographs(), grid, elevation=35, frame_width=0.5),
-        "photographs 64 x 64, 0 degrees": lc.fit(samples.photographs(), grid, elevation=0),
+        "photographs 32 x 32, 35 degrees": photographs(grid, elevation=35, frame_width=0.5),
+        "photographs 64 x 64, 0 degrees": photographs(grid, elevation=0),
         "juggler 48 x 48, 35 degrees": lc.scene_frames(lc.read_scene("juggler"), raised, grid),
         "gems 64 x 64, 0 degrees": lc.scene_frames(lc.read_scene("gems"), level, grid),
     }
     for name, frames in pictures.items():
         for method, power in (("display", None), *((m, 1.0) for m in ("display", "sirt", "cgls", "gauss-seidel"))):
             sweeps = 100 if method == "gauss-seidel" else 200
-            solution = lc.solve(frames, grid, Recipe(method=method, lamp_power=power, passes=sweeps))
+            lamps = (
+                frames.rig.lamps
+                if power is None
+                else replace(frames.rig.lamps, least=np.array([power]), most=np.array([power]))
+            )
+            wanted = replace(frames, rig=replace(frames.rig, lamps=lamps))
+            solution = lc.solve(wanted, grid, lc.Recipe(method=method, passes=sweeps))
             scores = lc.score(solution.cube, frames)
             figures = f"{scores['psnr_mean']:.1f} / {scores['psnr_min']:.1f} dB"
             thrown = len(solution.rejected) / frames.pictures.size

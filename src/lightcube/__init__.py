@@ -5,16 +5,15 @@ from lightcube.backward.solution import Solution
 from lightcube.backward.solving import solve
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
-from lightcube.forward.turning import exposures_at, lamp_at, views_at
 from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save, write_page, write_pictures
 from lightcube.jobs.cubes import load, publish
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
-from lightcube.optics.rig import Lighting, sampled
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
-from lightcube.optics.views import Views, spread_angles, turntable
-from lightcube.pictures.fitting import fit, fit_to_stage
+from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
+from lightcube.optics.views import Views, spread_angles
+from lightcube.pictures.fitting import fit, turntable_for
 from lightcube.pictures.frames import Frames, Pictures
 from lightcube.planning.consistency import check
 from lightcube.planning.order import best_order
@@ -22,7 +21,7 @@ from lightcube.planning.plan import Plan, plan
 from lightcube.planning.prediction import Prediction, predict
 from lightcube.projection.projector import Projector, dot_test
 from lightcube.scene.scene import Scene
-from lightcube.scene.tracer import scene_frames, scene_views
+from lightcube.scene.tracer import scene_frames, scene_rig
 from lightcube.scoring.metrics import score
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
@@ -36,7 +35,6 @@ __all__ = [
     "Grid",
     "InputError",
     "Lamp",
-    "Lighting",
     "Material",
     "Pictures",
     "Plan",
@@ -44,6 +42,7 @@ __all__ = [
     "Projector",
     "Recipe",
     "Result",
+    "Rig",
     "Scene",
     "Screen",
     "Shot",
@@ -54,11 +53,7 @@ __all__ = [
     "cast",
     "check",
     "dot_test",
-    "exposures",
-    "exposures_at",
     "fit",
-    "fit_to_stage",
-    "lamp_at",
     "load",
     "page",
     "plan",
@@ -70,16 +65,15 @@ __all__ = [
     "read_scene",
     "read_stage",
     "read_stage_frames",
-    "sampled",
     "save",
     "scene_frames",
-    "scene_views",
+    "scene_rig",
     "score",
     "show",
     "solve",
     "spread_angles",
     "turntable",
-    "views_at",
+    "turntable_for",
     "write_page",
     "write_pictures",
 ]

@@ -24,11 +24,12 @@ from lightcube.errors import InputError
 from lightcube.jobs.partial import open_partial
 from lightcube.kernels.layout import columns_from_volume
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.views import spread_angles
 from lightcube.pictures.frames import Frames
 from lightcube.solvers import METHODS
 from tests.conftest import INTERPRETED
-from tests.helpers.recipes import asked
+from tests.helpers.recipes import asked, lit
 
 SHAPE = (4, 7, 6)
 
@@ -37,14 +38,14 @@ def some_frames(
     shape: tuple[int, int, int] = SHAPE, size: tuple[int, int] = (3, 5), elevation: float = 35.0, count: int = 3
 ) -> Frames:
     angles = spread_angles(count, elevation=elevation)
-    views = turntable(Grid(shape, 0.7), angles, elevation=elevation, picture_shape=size)
+    rig = turntable(Grid(shape, 0.7), angles, elevation=elevation, picture_shape=size)
     random = np.random.default_rng(2)
     weight = random.choice([0.5, 1.0], (count, *size))
-    return Frames(random.uniform(0.1, 1, (count, *size, 3)).astype(np.float32), views, weight.astype(np.float32))
+    return Frames(random.uniform(0.1, 1, (count, *size, 3)).astype(np.float32), rig, weight.astype(np.float32))
 
 
 def job(elevation: float = 35.0, size: tuple[int, int] = (3, 5), **options: Any) -> Job:
-    return make_job(some_frames(size=size, elevation=elevation), Grid(SHAPE, 0.7), **asked(**{"passes": 12, **options}))
+    return make_job(**asked(some_frames(size=size, elevation=elevation), Grid(SHAPE, 0.7), **{"passes": 12, **options}))
 
 
 LEVEL: dict[str, Any] = {"elevation": 0.0, "size": (4, 5), "units": 3}
@@ -97,7 +98,7 @@ def test_the_parts_of_a_problem_are_the_problem(elevation: float, size: tuple[in
     columns = np.arange(whole.light.shape[1]).reshape(-1, 3)
     rejected = np.argwhere(random.random(whole.light.shape) < 0.2)
     pixels: list[list[int]] = []
-    level = is_level(grid, frames.views)
+    level = is_level(grid, frames.rig.views)
     assert level == (size[0] == 4)
     for part in split(SHAPE, 3, 2, level=level):
         own = pose(frames, grid, Recipe(hold_deg=2.0), part)
@@ -138,11 +139,11 @@ def test_fingerprints_name_what_changed() -> None:
     frames = one.frames
     darker = replace(frames, pictures=frames.pictures * np.float32(0.5))
     lighter = replace(frames, weights=frames.weight * np.float32(0.5))
-    turned = replace(frames, views=turntable(one.grid, [1.0, 2.0, 4.0], elevation=35, picture_shape=(3, 5)))
+    turned = replace(frames, rig=turntable(one.grid, [1.0, 2.0, 4.0], elevation=35, picture_shape=(3, 5)))
     changes: list[tuple[Job, str]] = [
         (replace(one, frames=darker), "the pictures differ"),
         (replace(one, frames=lighter), "the weights differ"),
-        (replace(one, frames=turned), "the angles and screens differ"),
+        (replace(one, frames=turned), "the lamps and screens differ"),
         (replace(one, grid=Grid((4, 7, 7), 0.7)), "voxels was 4 x 7 x 6 and is 4 x 7 x 7"),
         (job(hold_deg=1.5), "hold was 0 and is 1.5"),
         (replace(one, units=3), "units was 1 and is 3"),
@@ -280,13 +281,13 @@ def test_progress_runs_over_all_units_and_shows_each_ones_own() -> None:
 
 def test_few_units_where_memory_is_ample_and_more_where_it_is_not() -> None:
     frames, grid = some_frames((64, 64, 64), (64, 4), elevation=0.0), Grid((64, 64, 64), 0.7)
-    one = make_job(frames, grid, Recipe(lamp_power=1.0), units=1)
-    assert make_job(frames, grid, Recipe(lamp_power=1.0)).units == 1
+    one = make_job(lit(frames, lamp_power=1.0), grid, units=1)
+    assert make_job(lit(frames, lamp_power=1.0), grid).units == 1
     all_at_once = needs.job_memory(one)
-    halved = make_job(frames, grid, Recipe(lamp_power=1.0), memory=all_at_once - 1)
+    halved = make_job(lit(frames, lamp_power=1.0), grid, memory=all_at_once - 1)
     assert halved.units > 1
     assert needs.job_memory(halved) < all_at_once
-    least = make_job(frames, grid, Recipe(lamp_power=1.0), memory=1)
+    least = make_job(lit(frames, lamp_power=1.0), grid, memory=1)
     assert needs.job_memory(least) == min(needs.job_memory(replace(one, units=units)) for units in range(1, 65))
 
 
@@ -331,9 +332,10 @@ def test_memory_is_as_much_as_is_said(
     count: int,
     options: dict[str, Any],
 ) -> None:
-    made = make_job(some_frames(shape, size, elevation, count), Grid(shape, 0.7), **asked(**options, passes=2))
+    made = make_job(**asked(some_frames(shape, size, elevation, count), Grid(shape, 0.7), **options, passes=2))
     rows = SHAPE[0] if size[0] == shape[0] and not elevation else 2
-    small = replace(made, frames=some_frames(SHAPE, (rows, 2), elevation), grid=Grid(SHAPE, 0.7))
+    grid = Grid(SHAPE, 0.7)
+    small = replace(made, frames=asked(some_frames(SHAPE, (rows, 2), elevation), grid, **options)["frames"], grid=grid)
     run(small, open_partial(tmp_path / "small.zarr", small))  # numba compiles
     store = open_partial(tmp_path / "a.zarr", made)
     tracemalloc.start()
@@ -378,7 +380,10 @@ def test_units_of_every_method_with_a_fixed_lamp(method: str) -> None:
     """Slabs are solved by themselves and together: with the same pictures they come to nearly the same."""
     frames, grid = some_frames(size=(4, 5), elevation=0.0), Grid(SHAPE, 0.7)
     passes: dict[str, Any] = {} if method == "row-reduction" else {"passes": 400}
-    one, two = (solve(frames, grid, Recipe(method=method, dtype="float64", **passes), units=units) for units in (1, 2))
+    one, two = (
+        solve(lit(frames, lamp_power=1.0), grid, Recipe(method=method, dtype="float64", **passes), units=units)
+        for units in (1, 2)
+    )
     assert np.allclose(one.cube.extinction, two.cube.extinction, atol=2e-3)
     assert two.residuals[-1] == pytest.approx(one.residuals[-1], rel=1e-2)
     assert one.undetermined == two.undetermined

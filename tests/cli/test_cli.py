@@ -17,7 +17,7 @@ from lightcube.forward.casting import play
 from lightcube.io import save
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import turntable
+from lightcube.optics.rig import turntable
 
 SCENE = """
 camera = {type = "shadow", cube_width = 4.0}

@@ -11,7 +11,6 @@ from lightcube import load, score
 from lightcube.backward.recipe import QUALITIES
 from lightcube.errors import InputError
 from lightcube.forward.casting import play
-from lightcube.forward.turning import views_at
 from lightcube.verbs import solving
 from lightcube.verbs.options import Options
 from tests.cli.test_cli import frames, run
@@ -60,10 +59,10 @@ def test_check_and_solve_agree(run, frames: Path, tmp_path: Path) -> None:  # ty
 def test_paper_is_the_papers_set_up(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     assert run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 2, "--paper").code == 0
     cube = load(tmp_path / "a.npz")
-    assert np.all(cube.views.elevations == 0)
+    assert np.all(cube.rig.views.elevations == 0)
     assert np.all(cube.powers == 1)
-    assert cube.views.picture_shape == (6, 6)
-    assert np.allclose(cube.views.angles, [22.5, 67.5, 112.5, 157.5])
+    assert cube.rig.picture_shape == (6, 6)
+    assert np.allclose(cube.rig.views.angles, [22.5, 67.5, 112.5, 157.5])
     assert cube.hold_deg == 0
 
 
@@ -118,7 +117,7 @@ def test_the_best_order_is_kept_by_name(run, unlike: Path, tmp_path: Path) -> No
     cube = load(tmp_path / "a.npz")
     order = cube.provenance["order"]
     assert cube.names == tuple(f"p{index}" for index in order)
-    assert np.all(np.diff(cube.views.angles) > 0)
+    assert np.all(np.diff(cube.rig.views.angles) > 0)
     again = json.loads(run("score", tmp_path / "a.npz", unlike, "--json").out)
     assert again["psnr_mean"] == pytest.approx(cube.scores["psnr_mean"], abs=0.01)
     for own, float_target in zip(score(cube)["views"], cube.scores["views"], strict=True):  # 8 bits tell to 59 dB
@@ -130,9 +129,9 @@ def test_shifted_pictures_are_where_they_were_put(run, unlike: Path, tmp_path: P
     assert done.code == 0
     cube = load(tmp_path / "a.zarr")
     assert cube.provenance["shift"] == 2
-    assert len(np.unique(np.round(cube.views.origins[:, 2], 6))) > 1
-    assert np.allclose(views_at(cube, cube.views.angles).origins, cube.views.origins, atol=1e-6)
-    assert np.allclose(play(cube), play(cube, cube.views.angles), rtol=1e-4, atol=1e-5)
+    assert len(np.unique(np.round(cube.rig.views.origins[:, 2], 6))) > 1
+    assert np.allclose(cube.rig.at(cube.angles)[0].views.origins, cube.rig.views.origins, atol=1e-6)
+    assert np.allclose(play(cube), play(cube, cube.rig.views.angles), rtol=1e-4, atol=1e-5)
 
 
 def test_poor_pictures_come_with_what_would_help(run, unlike: Path) -> None:  # type: ignore[no-untyped-def]
@@ -154,9 +153,9 @@ def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, qual
 def test_options_are_settled_before_anything_is_read() -> None:
     with pytest.raises(InputError, match="--paper"):
         solving.settled(Options(paper=True, hold=1.0))
-    assert solving.settled(Options(method="cgls")).recipe.lamp_bounds == (1, 1)
-    assert solving.settled(Options()).recipe.lamp_bounds[1] == 16
-    assert solving.settled(Options(paper=True)).recipe.lamp_bounds == (1, 1)
+    assert solving.settled(Options(method="cgls")).lamp == {"power": 1}
+    assert solving.settled(Options()).lamp == {}
+    assert solving.settled(Options(paper=True)).lamp == {"power": 1}
 
 
 @pytest.mark.parametrize(

@@ -73,8 +73,7 @@ def solved(run, stage: Path, *more: str) -> Path:  # type: ignore[no-untyped-def
 def test_a_stage_goes_through_all_commands(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     cube = solved(run, stage)
     made = load(cube)
-    assert made.lighting is not None
-    assert (made.lighting.screen_names, len(made.names), made.extinction.shape) == (("wall", "side"), 3, (3, 4, 6, 5))
+    assert (made.rig.screens.names, len(made.names), made.extinction.shape) == (("wall", "side"), 3, (3, 4, 6, 5))
     assert made.names == ("a on wall", "b", "a on side")
     own, given = (json.loads(run("score", cube, *more, "--json").out) for more in ((), (stage,)))
     assert own["psnr_mean"] == pytest.approx(given["psnr_mean"], abs=0.2)
@@ -122,7 +121,7 @@ def test_a_drawing_is_an_svg_that_is_not_overwritten(run, stage: Path) -> None: 
 
 def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     cube = solved(run, stage, "--pixel-samples", "2")
-    assert len(load(cube).views) == 4 * 3
+    assert len(load(cube).rig.views) == 4 * 3
     done = run("play", cube, "-o", stage.parent / "x.npy", "--pixel-samples", "2")
     assert done.code == 2
     assert "played so" in done.err
@@ -174,19 +173,19 @@ def test_what_cannot_be_is_said_by_check_and_solve(run, stage: Path, old: str, n
     assert not (stage.parent / "cube.zarr").exists()
 
 
-def test_a_turntables_cube_is_no_stages(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+def test_a_turntables_cube_is_played_as_a_stages(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     folder = stage.parent / "pictures"
     cube = stage.parent / "turntable.zarr"
     done = run("solve", folder, "-o", cube, "--shape", "4,6,5", "--iterations", "2", "--frame-width", "0.5")
     assert done.code == 0, done.err
-    for options, said in (
-        (["--screens"], "not made on a stage"),
-        (["--lamp-samples", "2"], "not made on a stage"),
-        (["--room", "--target"], "--room shows all"),
-    ):
-        done = run("play", cube, "-o", stage.parent / "x.npy", *options)
-        assert done.code == 2
-        assert said in done.err
+    shown = {}
+    for name, options in {"stops": ["--stops"], "screens": ["--screens", "--stops"]}.items():
+        assert run("play", cube, "-o", stage.parent / f"{name}.npy", *options).code == 0
+        shown[name] = np.load(stage.parent / f"{name}.npy")
+    np.testing.assert_allclose(shown["screens"], shown["stops"], rtol=1e-5)
+    done = run("play", cube, "-o", stage.parent / "x.npy", "--room", "--target")
+    assert done.code == 2
+    assert "--room shows all" in done.err
     assert run("play", cube, "-o", stage.parent / "room.npy", "--room", "--angles", "5").code == 0
     done = run("score", cube, stage)
     assert done.code == 2

@@ -11,9 +11,10 @@ from lightcube.errors import InputError
 from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.rig import turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import to_uint8
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import targets
 from lightcube.pictures.frames import Frames
 from lightcube.scoring.metrics import score
@@ -29,15 +30,15 @@ Reals = NDArray[np.float64]
 
 def turning(count: int = 3, elevation: float = 35.0) -> Cube:
     angles = spread_angles(count, elevation=elevation)
-    views = turntable(GRID, angles, elevation=elevation, picture_shape=(3, 5))
+    rig = turntable(GRID, angles, elevation=elevation, picture_shape=(3, 5))
     extinction = np.random.default_rng(3).uniform(0, 0.2, (3, *SHAPE)).astype(np.float32)
-    return Cube(extinction, GRID, views, lamp_powers=np.random.default_rng(4).uniform(0.5, 2, (count, 3)))
+    return Cube(extinction, GRID, rig, lamp_powers=np.random.default_rng(4).uniform(0.5, 2, (count, 3)))
 
 
 def wanted(cube: Cube, seed: int = 5) -> Frames:
     shown = play(cube)
     off = np.random.default_rng(seed).uniform(0.6, 1.0, shown.shape)
-    return Frames((shown * off).astype(np.float32), cube.views, lighting=cube.lighting)
+    return Frames((shown * off).astype(np.float32), cube.rig)
 
 
 def staged() -> Cube:
@@ -52,9 +53,9 @@ def staged() -> Cube:
         (Shot("a", "wall", ("bulb",), 0), Shot("b", "floor", ("above",), 1)),
         stops=(10.0, 130.0),
     )
-    views, lighting = exposures(stage)
+    rig = stage.rig()
     extinction = np.random.default_rng(3).uniform(0, 0.2, (3, *SHAPE)).astype(np.float32)
-    return Cube(extinction, GRID, views, lighting=lighting)
+    return Cube(extinction, GRID, rig)
 
 
 def segments(axes: Any) -> Reals:
@@ -140,7 +141,7 @@ def test_a_sheet_shows_what_was_wanted_above_what_is_shown(cube: Cube) -> None:
     figure = sheet_plot(cube, frames)
     scores, panels = score(cube, frames)["views"], [axes for axes in figure.axes if axes.images]
     assert len(panels) == len(frames)
-    rows = frames.views.picture_shape[0]
+    rows = frames.rig.picture_shape[0]
     for view, axes in enumerate(panels):
         drawn = np.asarray(axes.images[0].get_array())
         counted = weights[view] > 0

@@ -14,8 +14,8 @@ from lightcube.errors import InputError
 from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
-from lightcube.optics.views import turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 
 Array = NDArray[np.floating[Any]]
 GRID = Grid((3, 5, 4), 4.0)
@@ -24,9 +24,9 @@ STAGES: tuple[dict[str, Any], ...] = ({"cube_turns": True}, {"cube_turns": False
 
 
 def cube_on(stage: Stage, extinction: Array | None = None) -> Cube:
-    views, lighting = exposures(stage)
+    rig = stage.rig()
     given = np.random.default_rng(5).uniform(0, 0.08, (3, *stage.grid.shape)) if extinction is None else extinction
-    return Cube(given.astype(np.float32), stage.grid, views, lighting=lighting)
+    return Cube(given.astype(np.float32), stage.grid, rig)
 
 
 def one(screen: Screen, lamp: Lamp, **table: Any) -> Stage:
@@ -107,9 +107,9 @@ def test_the_back_of_a_screen_is_one_grey() -> None:
 
 @pytest.mark.parametrize("channels", [1, 3])
 def test_a_whole_turn_changes_nothing(channels: int) -> None:
-    views = turntable(GRID, [20.0, 100.0], elevation=20.0, picture_shape=(3, 5))
+    rig = turntable(GRID, [20.0, 100.0], elevation=20.0, picture_shape=(3, 5))
     extinction = np.random.default_rng(1).uniform(0, 0.1, (channels, *GRID.shape)).astype(np.float32)
-    cube = Cube(extinction, GRID, views)
+    cube = Cube(extinction, GRID, rig)
     show = room_player(cube, camera_for(cube, (27, 40)))
     first, after, other = (show(angle) for angle in (33.0, 393.0, 70.0))
     np.testing.assert_allclose(first, after, atol=1e-3)

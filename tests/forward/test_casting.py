@@ -1,20 +1,19 @@
 """Program 3 and the scores: what is cast, at the stops and between them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 from skimage.color import deltaE_ciede2000, rgb2lab
 
 from lightcube.drawing.sheet import beside_targets, contact_sheet
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
-from lightcube.forward.turning import lamp_at, turn, views_at
+from lightcube.forward.turning import moment, turn
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import Views, turntable
 from lightcube.pictures.fitting import targets
 from lightcube.pictures.frames import Frames
 from lightcube.planning.consistency import mirror_conflicts
@@ -28,15 +27,20 @@ SHAPE = (3, 5, 7)
 def make_cube(angles: list[float], elevation: float = 0.0, powers: np.ndarray | None = None, **more: object) -> Cube:
     grid = Grid(SHAPE, 0.5)
     extinction = np.random.default_rng(0).random((3, *SHAPE)).astype(np.float32)
-    views = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
-    return Cube(extinction, grid, views, lamp_powers=powers, **more)  # type: ignore[arg-type]
+    rig = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
+    return Cube(extinction, grid, rig, lamp_powers=powers, **more)  # type: ignore[arg-type]
+
+
+def powers_at(cube: Cube, angles: ArrayLike) -> np.ndarray:
+    """Of the one lamp at any angles."""
+    return moment(cube, angles)[1]
 
 
 @pytest.mark.parametrize("elevation", [0.0, 35.0, -20.0])
 def test_what_is_played_is_the_plain_forward_computation(elevation: float) -> None:
     powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
     cube = make_cube([10.0, 100.0], elevation, powers)
-    expected = np.exp(-plain.absorbance_pictures(cube.grid, cube.views, cube.extinction)) * powers[:, None, None, :]
+    expected = np.exp(-plain.absorbance_pictures(cube.grid, cube.rig.views, cube.extinction)) * powers[:, None, None, :]
     assert np.allclose(play(cube), expected, rtol=1e-5)
     assert np.allclose(play(cube, [10.0, 100.0]), expected, rtol=1e-5)
 
@@ -75,12 +79,12 @@ def test_strips_of_beams_and_batches_leave_no_seam(elevation: float, window: tup
     grid = Grid((1, 30, 36), 0.5)
     angles = np.linspace(1, 170, 2) if window else np.linspace(1, 170, 17)
     extinction = np.random.default_rng(6).random((2, 1, 30, 36)).astype(np.float32)
-    views = turntable(grid, angles, elevation=elevation, picture_shape=window)
-    cube = Cube(extinction, grid, views, lamp_powers=np.random.default_rng(7).random((len(angles), 2)) + 0.5)
-    matrix = Projector(grid, views)
+    rig = turntable(grid, angles, elevation=elevation, picture_shape=window)
+    cube = Cube(extinction, grid, rig, lamp_powers=np.random.default_rng(7).random((len(angles), 2)) + 0.5)
+    matrix = Projector(grid, rig)
     absorbance = matrix.forward(columns_from_volume(extinction).reshape(matrix.shape[1], -1))
-    block = absorbance.reshape(-1, views.picture_shape[0] * 2)
-    expected = np.exp(-pictures_from_columns(block, views.picture_shape, 2)) * cube.powers[:, None, None, :]
+    block = absorbance.reshape(-1, rig.picture_shape[0] * 2)
+    expected = np.exp(-pictures_from_columns(block, rig.picture_shape, 2)) * cube.powers[:, None, None, :]
     assert np.allclose(play(cube), expected, rtol=1e-5)
 
 
@@ -103,24 +107,21 @@ def test_the_whole_screen_at_the_stops_has_the_pictures_in_its_middle() -> None:
 def test_the_lamp_is_linear_in_its_logarithm_and_periodic() -> None:
     powers = np.array([[1.0] * 3, [4.0] * 3])
     level = make_cube([0.0, 90.0], powers=powers)
-    assert lamp_at(level, [0, 90, 180, 270])[:, 0] == pytest.approx([1, 4, 1, 4])
-    assert lamp_at(level, [45, 135])[:, 0] == pytest.approx([2, 2])
-    assert lamp_at(level, [-315])[:, 0] == pytest.approx([2])
+    assert powers_at(level, [0, 90, 180, 270])[:, 0] == pytest.approx([1, 4, 1, 4])
+    assert powers_at(level, [45, 135])[:, 0] == pytest.approx([2, 2])
+    assert powers_at(level, [-315])[:, 0] == pytest.approx([2])
     raised = make_cube([0.0, 90.0], 35.0, powers)
-    assert lamp_at(raised, [0, 90, 225])[:, 0] == pytest.approx([1, 4, 2])
+    assert powers_at(raised, [0, 90, 225])[:, 0] == pytest.approx([1, 4, 2])
     opposite = make_cube([0.0, 180.0], 0.0, powers)
-    assert lamp_at(opposite, [180])[:, 0] == pytest.approx([4])
+    assert powers_at(opposite, [180])[:, 0] == pytest.approx([4])
 
 
-def test_views_at_several_elevations_cannot_be_turned() -> None:
+def test_lamps_at_several_elevations_stand_as_at_the_nearest_stop() -> None:
     grid = Grid(SHAPE)
-    parts = [turntable(grid, [10], elevation=e, picture_shape=(3, 5)) for e in (0.0, 20.0)]
-    names = ("lamps", "origins", "column_steps", "row_steps")
-    views = Views(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names}, picture_shape=(3, 5))
-    cube = Cube(np.zeros((3, *SHAPE), np.float32), grid, views)
-    with pytest.raises(InputError, match="several elevations"):
-        views_at(cube, [0.0])
+    one, other = (turntable(grid, [a], elevation=e, picture_shape=(3, 5)).views for a, e in ((10, 0.0), (100, 20.0)))
+    cube = Cube(np.zeros((3, *SHAPE), np.float32), grid, Rig.of(one.joined(other)))
     assert np.allclose(play(cube), 1)
+    assert moment(cube, [20.0, 90.0])[0].views.elevations.tolist() == [0, 20]
 
 
 def test_psnr_is_its_definition_weighted_and_capped() -> None:
@@ -165,14 +166,14 @@ def test_a_turn_meets_every_stop_and_stays_even_elsewhere(elevation: float, coun
     even = np.arange(count) * 360 / count
     assert np.all(np.diff(angles) > 0)
     assert np.max(np.abs(angles - even)) <= 180 / count + 1e-9
-    for stop in cube.views.angles:
+    for stop in cube.rig.views.angles:
         assert np.min(np.abs(angles - stop)) < 1e-9
         assert (np.min(np.abs(angles - stop - 180)) < 1e-9) == (elevation == 0)
     assert np.sum(np.abs(angles - even) > 1e-9) <= (6 if elevation == 0 else 3)
     laps = turn(cube, 2 * count, 0.0, 720.0)
     assert np.allclose(laps[count:], angles + 360)
     back = turn(cube, count, 360.0, 0.0)
-    assert all(np.min(np.abs(np.remainder(back - stop + 180, 360) - 180)) < 1e-9 for stop in cube.views.angles)
+    assert all(np.min(np.abs(np.remainder(back - stop + 180, 360) - 180)) < 1e-9 for stop in cube.rig.views.angles)
     part = turn(cube, 10, 0.0, 50.0)
     assert part.min() >= -2.5
     assert part.max() <= 50.0
@@ -185,7 +186,7 @@ def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
     random = np.random.default_rng(3)
     frames = Frames(
         np.clip(shown * random.uniform(0.8, 1.1, shown.shape), 0, None).astype(np.float32),
-        cube.views,
+        cube.rig,
         random.integers(0, 2, shown.shape[:3]).astype(np.float32),
         ("a", "b"),
     )
@@ -200,13 +201,13 @@ def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
     assert scores["psnr_mean"] == pytest.approx(np.mean([view["psnr"] for view in scores["views"]]))
     assert scores["psnr_min"] == min(view["psnr"] for view in scores["views"])
     assert mean_psnr(shown, frames) == pytest.approx(scores["psnr_mean"], rel=1e-4)
-    assert score(cube, Frames(shown, cube.views))["psnr_mean"] == 100
+    assert score(cube, Frames(shown, cube.rig))["psnr_mean"] == 100
 
 
 def test_the_score_without_frames_is_against_the_8_bit_targets() -> None:
     cube = make_cube([10.0, 100.0])
-    frames = Frames(np.clip(play(cube), 0, 1), cube.views)
-    with_targets = Cube(cube.extinction, cube.grid, cube.views, targets=targets(frames))
+    frames = Frames(np.clip(play(cube), 0, 1), cube.rig)
+    with_targets = Cube(cube.extinction, cube.grid, cube.rig, targets=targets(frames))
     assert 55 < score(with_targets)["psnr_mean"] < 65
     with pytest.raises(InputError, match="no targets"):
         score(cube)
@@ -218,18 +219,18 @@ def test_mirror_conflicts_are_found_only_where_there_are_any() -> None:
     grid = Grid(SHAPE)
     random = np.random.default_rng(4)
     for elevation, expected in ((0.0, [(0, 2)]), (35.0, [])):
-        views = turntable(grid, [10, 50, 190], elevation=elevation, picture_shape=(3, 5))
+        rig = turntable(grid, [10, 50, 190], elevation=elevation, picture_shape=(3, 5))
         pictures = random.random((3, 3, 5, 3)).astype(np.float32)
-        assert mirror_conflicts(Frames(pictures, views)) == expected
+        assert mirror_conflicts(Frames(pictures, rig)) == expected
         pictures[2] = pictures[0][:, ::-1]
-        assert mirror_conflicts(Frames(pictures, views)) == []
+        assert mirror_conflicts(Frames(pictures, rig)) == []
 
 
 def test_contact_sheets_show_wanted_above_shown_above_difference() -> None:
     cube = make_cube([10.0, 100.0])
     shown = play(cube)
     pictures = np.ones_like(shown)
-    sheet = contact_sheet(shown, Frames(pictures, cube.views), [1.0, 2.0])
+    sheet = contact_sheet(shown, Frames(pictures, cube.rig), [1.0, 2.0])
     assert sheet.ndim == 3
     assert sheet.dtype == np.uint8
     tile = 43 * 3  # 3 rows enlarged 43-fold
@@ -242,9 +243,9 @@ def test_contact_sheets_show_wanted_above_shown_above_difference() -> None:
 
 
 def test_the_nearest_stop_stands_beside() -> None:
-    views = turntable(Grid(SHAPE), [10.0, 350.0], picture_shape=(3, 5))
+    rig = turntable(Grid(SHAPE), [10.0, 350.0], picture_shape=(3, 5))
     pictures = np.stack([np.full((3, 5, 3), 0.25), np.full((3, 5, 3), 0.75)]).astype(np.float32)
-    frames = Frames(pictures, views)
+    frames = Frames(pictures, rig)
     shown = np.zeros((3, 3, 5, 3), np.float32)
     beside = np.stack(list(beside_targets(shown, frames, np.array([1.0, 359.0, 181.0]))))
     assert beside.shape == (3, 3, 12, 3)
@@ -253,7 +254,7 @@ def test_the_nearest_stop_stands_beside() -> None:
 
 def test_cast_is_lazy() -> None:
     cube = make_cube([10.0, 100.0])
-    pictures = cast(cube, cube.views, cube.powers)
+    pictures = cast(cube)
     assert np.array_equal(next(pictures), play(cube)[0])
 
 
@@ -261,11 +262,9 @@ def test_cast_is_lazy() -> None:
 def test_a_picture_that_stands_aside_is_shown_there(elevation: float) -> None:
     """At and around each stop the window is where the stop's picture stands; level, half a turn on, mirrored."""
     grid = Grid((5, 8, 6))
-    views = turntable(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 2))
+    rig = turntable(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 2))
     offsets = np.array([[1, -1], [-1, 0]])
-    moved = replace(
-        views, origins=views.origins + offsets[:, :1] * views.column_steps + offsets[:, 1:] * views.row_steps
-    )
+    moved = rig.shifted(offsets)
     extinction = np.random.default_rng(5).random((3, 5, 8, 6)).astype(np.float32)
     cube = Cube(extinction, grid, moved)
     assert np.allclose(play(cube), play(cube, [20.0, 110.0]), atol=1e-6)

@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import sampled
+from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
-from lightcube.optics.stage import exposures as exposures_of
-from lightcube.optics.views import Views, turntable
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.packing import Packed, pack
 
@@ -34,29 +32,28 @@ GIVEN = """(async () => {
 PLAIN = "JSON.parse(JSON.stringify(%s, (_, v) => ArrayBuffer.isView(v) ? [...v] : v === Infinity ? 'Infinity' : v))"
 
 
-def on_table(views: Views, channels: int = 3, **more: Any) -> Cube:
+def on_table(rig: Rig, channels: int = 3, **more: Any) -> Cube:
     """A random cube for views of a turntable, under random powers."""
     extinction = np.random.default_rng(3).gamma(0.5, 0.2, (channels, *GRID.shape))
-    powers = np.random.default_rng(4).uniform(0.5, 3, (len(views), channels))
-    return Cube(extinction.astype(np.float32), GRID, views, powers, **more)
+    powers = np.random.default_rng(4).uniform(0.5, 3, (len(rig), channels))
+    return Cube(extinction.astype(np.float32), GRID, rig, powers, **more)
 
 
 def on_stage(stage: Stage, *, lamp_samples: int = 1, pixel_samples: int = 1, **more: Any) -> Cube:
     """A random cube on a stage, under random powers."""
-    views, lighting = sampled(*exposures_of(stage), lamp_samples=lamp_samples, pixel_samples=pixel_samples)
+    rig = stage.rig().sampled(lamp=lamp_samples, pixel=pixel_samples)
     extinction = np.random.default_rng(3).gamma(0.5, 0.2, (3, *GRID.shape))
-    powers = np.random.default_rng(4).uniform(0.5, 3, (len(lighting.pairs), 3))
-    return Cube(extinction.astype(np.float32), GRID, views, powers, lighting=lighting, **more)
+    powers = np.random.default_rng(4).uniform(0.5, 3, (len(rig.pairs), 3))
+    return Cube(extinction.astype(np.float32), GRID, rig, powers, **more)
 
 
-def table(*angles: float, elevation: float = 0.0) -> Views:
+def table(*angles: float, elevation: float = 0.0) -> Rig:
     return turntable(GRID, angles, elevation=elevation, picture_shape=(3, 5))
 
 
-def shifted(views: Views) -> Views:
+def shifted(rig: Rig) -> Rig:
     """Each picture standing somewhere else on its screen."""
-    right, down = np.random.default_rng(5).integers(-2, 3, (2, len(views), 1))
-    return replace(views, origins=views.origins + right * views.column_steps + down * views.row_steps)
+    return rig.shifted(np.random.default_rng(5).integers(-2, 3, (2, len(rig))).T)
 
 
 LAMPS = (

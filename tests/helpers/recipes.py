@@ -1,18 +1,47 @@
-"""What `solve` and `make_job` are asked for, from options in one row."""
+"""What `solve` and `make_job` are asked for, from options in one row; frames under other lamps."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
+import numpy as np
+
 from lightcube.backward.recipe import Recipe
+from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
+from lightcube.optics.rig import power_bounds
+from lightcube.pictures.fitting import Fit, fit, turntable_for
+from lightcube.pictures.frames import Frames, Pictures
 
 _OWN = {each.name for each in fields(Recipe)}
+_LIGHT = ("lamp_power", "lamp_max", "black")
 
 
-def asked(**options: Any) -> dict[str, Any]:
-    """The recipe of those options that are its fields (`max_extinction` is its material's), and the others."""
+def asked(frames: Frames, grid: Grid, **options: Any) -> dict[str, Any]:
+    """What `solve` takes: options of the recipe (`max_extinction` its material's), of lamp and screen, and others."""
     own = {name: value for name, value in options.items() if name in _OWN}
-    others = {name: value for name, value in options.items() if name not in _OWN}
+    light = {name: value for name, value in options.items() if name in _LIGHT}
+    others = {name: value for name, value in options.items() if name not in (*_OWN, *_LIGHT)}
+    if options.get("method", "display") != "display" and not light:
+        light["lamp_power"] = 1.0  # they cannot choose it
     if "max_extinction" in others:
         own["material"] = Material(others.pop("max_extinction"))
-    return {"recipe": Recipe(**own), **others}
+    return {"frames": lit(frames, **light), "grid": grid, "recipe": Recipe(**own), **others}
+
+
+def lit(
+    frames: Frames, *, lamp_power: float | None = None, lamp_max: float | None = None, black: float | None = None
+) -> Frames:
+    """The same frames under lamps of one given power, or of another largest one, on screens of another black."""
+    rig = frames.rig
+    lamps, screens = rig.lamps, rig.screens
+    if lamp_power is not None or lamp_max is not None:
+        least, most = power_bounds(lamp_power, lamp_max)
+        lamps = replace(lamps, least=np.full(len(lamps.names), least), most=np.full(len(lamps.names), most))
+    if black is not None:
+        screens = replace(screens, black=np.full(len(screens.names), black))
+    return replace(frames, rig=replace(rig, lamps=lamps, screens=screens))
+
+
+def fitted(pictures: Pictures, grid: Grid, *, fit_mode: Fit = "crop", **more: Any) -> Frames:
+    """Pictures fitted to a turntable that is made for them."""
+    return fit(pictures, turntable_for(pictures, grid, **more), fit_mode)

@@ -10,9 +10,9 @@ import pytest
 from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.rig import turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import turntable
 from lightcube.viewer.packing import pack
 from lightcube.viewer.page import page
 from tests.helpers.browser import opened
@@ -30,18 +30,18 @@ PHONE = {"width": 390, "height": 844, "has_touch": True, "is_mobile": True}
 def turning() -> Cube:
     """A random cube on a turntable with a raised lamp, and random pictures wanted of it."""
     random = np.random.default_rng(3)
-    views = turntable(GRID, STOPS, elevation=35.0, picture_shape=(ROWS, COLUMNS))
+    rig = turntable(GRID, STOPS, elevation=35.0, picture_shape=(ROWS, COLUMNS))
     targets = random.integers(0, 256, (len(STOPS), ROWS, COLUMNS, 4), dtype=np.uint8)
     powers = random.uniform(0.5, 2.0, (len(STOPS), 3))
-    return Cube(glass(GRID.shape), GRID, views, powers, targets=targets, names=NAMES)
+    return Cube(glass(GRID.shape), GRID, rig, powers, targets=targets, names=NAMES)
 
 
 def standing_still() -> Cube:
     """One picture, on a stage where nothing turns."""
     room = Grid((3, 5, 7), 1.4)
     screen, lamp = Screen("wall", (9.0, 0.0, -2.0), (5.6, 8.4), 1.4), Lamp("red", (1.0, 0.0, -0.3))
-    views, lighting = exposures(Stage(room, (lamp,), (screen,), (Shot("one", "wall", ("red",)),), cube_turns=False))
-    return Cube(glass(room.shape), room, views, lighting=lighting)
+    rig = Stage(room, (lamp,), (screen,), (Shot("one", "wall", ("red",)),), cube_turns=False).rig()
+    return Cube(glass(room.shape), room, rig)
 
 
 CUBES: dict[str, Callable[[], Cube]] = {

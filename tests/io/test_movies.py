@@ -22,7 +22,7 @@ from lightcube.errors import InputError
 from lightcube.io import ClippedPictures, check_pictures_target, read_pictures, write_pictures
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer, from_uint8, to_uint8
-from lightcube.optics.views import Views, turntable
+from lightcube.optics.views import Views, turntable_views
 
 RANDOM = np.random.default_rng(21)
 EXACT = (".webm", ".webp", ".apng", "")
@@ -45,7 +45,7 @@ def smooth(count: int = 12, rows: int = 65, columns: int = 97) -> Levels:
 
 
 def views(count: int, elevation: float = 20.0) -> Views:
-    return turntable(Grid((5, 7, 7)), np.arange(count) * 31.7 + 350, elevation=elevation)
+    return turntable_views(Grid((5, 7, 7)), np.arange(count) * 31.7 + 350, elevation=elevation)
 
 
 def files_in(folder: Path) -> list[str]:

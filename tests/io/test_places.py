@@ -29,14 +29,14 @@ from lightcube.io import (
 from lightcube.jobs.cubes import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.transfer import from_uint8, to_uint8
-from lightcube.optics.views import turntable
 
 fsspec = pytest.importorskip("fsspec", reason="URLs need the extra remote")
 
 RANDOM = np.random.default_rng(23)
 LEVELS = RANDOM.integers(0, 256, (4, 5, 7, 3), dtype=np.uint8)
-VIEWS = turntable(Grid((5, 7, 7)), np.arange(4) * 31.7 + 350, elevation=20)
+VIEWS = turntable(Grid((5, 7, 7)), np.arange(4) * 31.7 + 350, elevation=20).views
 SUFFIXES = (".zarr", ".zarr.zip", ".npz")
 
 
@@ -44,7 +44,7 @@ def make(shape: tuple[int, int, int] = (3, 5, 7)) -> Cube:
     random = np.random.default_rng(22)
     extinction = random.random((3, *shape), dtype=np.float32)
     targets = random.integers(0, 256, (4, *VIEWS.picture_shape, 4), dtype=np.uint8)
-    return Cube(extinction, Grid(shape, 0.3), VIEWS, random.random((4, 3)) + 0.1, targets)
+    return Cube(extinction, Grid(shape, 0.3), Rig.of(VIEWS), random.random((4, 3)) + 0.1, targets)
 
 
 def assert_same(one: Cube, other: Cube) -> None:

@@ -15,10 +15,10 @@ from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io import TransparentPictures, is_stage, read_stage, read_stage_frames
-from lightcube.optics.stage import Lamp, Screen, exposures
+from lightcube.optics.stage import Lamp, Screen
 from lightcube.optics.transfer import from_uint8
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.fitting import fit_to_stage
+from lightcube.pictures.fitting import fit
 from lightcube.pictures.frames import Pictures
 
 SUN = {"name": "sun", "direction": [1, 0.25, -0.5]}
@@ -204,11 +204,10 @@ def test_frames_lie_at_the_upper_left_of_the_raster(folder: Path) -> None:
     tables = MINIMAL | {"lamp": [SUN | {"size_deg": 2}, BULB], "screen": [WALL, FLOOR], "picture": pictures}
     stage, frames = read_stage_frames(stage_file(folder, tables), lamp_samples=3, pixel_samples=2, transfer="linear")
     assert frames.pictures.shape == (3, 11, 7, 3)
-    assert frames.lighting is not None
-    assert len(frames.views) == (3 + 3 + 1 + 1) * 4
+    assert len(frames.rig.views) == (3 + 3 + 1 + 1) * 4
     assert frames.names == tuple(shot.name for shot in stage.shots) == ("b", "one on floor", "one on wall")
     np.testing.assert_array_equal(frames.pictures[0, :5, :7], from_uint8(levels_of(5, 7), "linear"))
-    windows = frames.lighting.inside((11, 7))
+    windows = frames.rig.inside
     assert np.all(frames.weight <= windows)
     np.testing.assert_array_equal(frames.weight[[0, 2]], windows[[0, 2]])
     # 9 x 11 pixels padded to the 11 x 3 of the floor: a band across it, in the middle.
@@ -219,14 +218,14 @@ def test_frames_lie_at_the_upper_left_of_the_raster(folder: Path) -> None:
 
 def test_a_stage_wants_as_many_pictures_as_it_has(folder: Path) -> None:
     stage, pictures, fits = read_stage(stage_file(folder, MINIMAL))
-    views, lighting = exposures(stage)
+    rig = stage.rig()
     twice = Pictures(pictures.images * 2, pictures.names * 2)
     for given_pictures, given_fits in ((twice, (*fits, *fits)), (pictures, (*fits, *fits)), (pictures, ())):
         with pytest.raises(InputError, match="give one of each"):
-            fit_to_stage(given_pictures, views, lighting, given_fits)
+            fit(given_pictures, rig, given_fits)
     wrong: tuple[Any, ...] = ("zoom",)
     with pytest.raises(InputError, match="unknown fit 'zoom'"):
-        fit_to_stage(pictures, views, lighting, wrong)
+        fit(pictures, rig, wrong)
 
 
 def many(kind: dict[str, Any], count: int) -> list[dict[str, Any]]:

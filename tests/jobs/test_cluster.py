@@ -24,7 +24,8 @@ from lightcube.events import Progress, Said
 from lightcube.jobs import cluster
 from lightcube.jobs.partial import DiskStore, open_partial
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.views import spread_angles
 from lightcube.pictures.frames import Frames
 from tests.backward.test_job import same
 from tests.cli.test_cli import frames, run
@@ -64,9 +65,9 @@ DiskStore.keep = slow
 
 
 def some_job(**options: Any) -> Job:
-    views = turntable(GRID, spread_angles(3, elevation=0.0), picture_shape=(12, 4))
+    rig = turntable(GRID, spread_angles(3, elevation=0.0), picture_shape=(12, 4))
     pictures = np.random.default_rng(5).uniform(0.1, 1, (3, 12, 4, 3)).astype(np.float32)
-    return make_job(Frames(pictures, views), GRID, **asked(**{"passes": 9, "units": 4, **options}))
+    return make_job(**asked(Frames(pictures, rig), GRID, **{"passes": 9, "units": 4, **options}))
 
 
 @pytest.fixture(autouse=True)

@@ -14,7 +14,7 @@ from numba import njit
 from lightcube.kernels import exponential, layout, rows, threads
 from lightcube.kernels.stacked import GROUP, TILE
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import turntable
+from lightcube.optics.views import turntable_views
 from lightcube.projection.projector import Projector, dot_test
 from tests.helpers import plain
 
@@ -82,12 +82,12 @@ def test_exponential_ends_in_0_and_in_numbers() -> None:
 @pytest.mark.parametrize("shape", SHAPES)
 def test_tiles_that_do_not_divide_agree_with_plain_boxes(shape: tuple[int, int, int], elevation: float) -> None:
     grid = Grid(shape, voxel_mm=0.7)
-    views = turntable(grid, [0.0, 33.0, 90.0], elevation=elevation, picture_shape=(shape[0], 2 + shape[2] % 2))
+    rig = turntable_views(grid, [0.0, 33.0, 90.0], elevation=elevation, picture_shape=(shape[0], 2 + shape[2] % 2))
     volume = np.random.default_rng(1).random((1, *shape))
-    matrix = Projector(grid, views)
+    matrix = Projector(grid, rig)
     x = volume[0].transpose(1, 2, 0).reshape(matrix.shape[1], -1)
-    shown = matrix.forward(np.ascontiguousarray(x)).reshape(len(views), views.picture_shape[1], -1)
-    wanted = plain.absorbance_pictures(grid, views, volume)[..., 0]
+    shown = matrix.forward(np.ascontiguousarray(x)).reshape(len(rig), rig.picture_shape[1], -1)
+    wanted = plain.absorbance_pictures(grid, rig, volume)[..., 0]
     assert np.allclose(shown[:, :, ::-1].transpose(0, 2, 1), wanted, rtol=1e-9, atol=1e-9)
 
 
@@ -101,7 +101,9 @@ def test_many_groups_of_views_and_all_tiles_are_one_matrix(
     """`to_sparse` traces each beam through the whole grid at once."""
     grid = Grid(shape)
     angles = np.linspace(0, 180, GROUP + 3, endpoint=False) + 1
-    matrix = Projector(grid, turntable(grid, angles, elevation=elevation, picture_shape=(shape[0], 4 + shape[2] % 2)))
+    matrix = Projector(
+        grid, turntable_views(grid, angles, elevation=elevation, picture_shape=(shape[0], 4 + shape[2] % 2))
+    )
     sparse = matrix.to_sparse()
     columns = channels * (shape[0] if matrix.shape[1] == shape[1] * shape[2] else 1)
     random = np.random.default_rng(5)
@@ -114,7 +116,7 @@ def test_many_groups_of_views_and_all_tiles_are_one_matrix(
 
 
 def test_products_begin_at_whole_cache_lines() -> None:
-    matrix = Projector(Grid((3, 5, 7)), turntable(Grid((3, 5, 7)), [0.0, 33.0]))
+    matrix = Projector(Grid((3, 5, 7)), turntable_views(Grid((3, 5, 7)), [0.0, 33.0]))
     b = matrix.forward(np.ones((matrix.shape[1], 9), np.float32))
     for array in (b, matrix.adjoint(b), layout.copied(b[1:], np.float64)):
         assert array.ctypes.data % 64 == 0
@@ -123,18 +125,18 @@ def test_products_begin_at_whole_cache_lines() -> None:
 
 _HASHES = """
 import hashlib, numba, numpy as np
-from lightcube.optics.views import Grid, turntable
+from lightcube.optics.views import Grid, turntable_views
 from lightcube.projection.projector import Projector
 from lightcube.solvers import METHODS
 grid = Grid((2, 19, 18))
 total = hashlib.sha256()
-for elevation, views in ((0.0, 1), (0.0, 9), (35.0, 4)):
-    matrix = Projector(grid, turntable(grid, np.arange(views) * 17.0 + 3, elevation=elevation))
+for elevation, rig in ((0.0, 1), (0.0, 9), (35.0, 4)):
+    matrix = Projector(grid, turntable_views(grid, np.arange(rig) * 17.0 + 3, elevation=elevation))
     columns = 6 if elevation == 0 else 3
     x = np.random.default_rng(0).random((matrix.shape[1], columns), dtype=np.float32)
     b = matrix.forward(x)
     light = np.exp(-b).clip(1e-3)
-    bounds = (np.full((views, 3), 1e-3), np.full((views, 3), 4.0))
+    bounds = (np.full((rig, 3), 1e-3), np.full((rig, 3), 4.0))
     result = METHODS["display"](matrix, light, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=4)
     for array in (b, matrix.adjoint(b), result.x, result.lamp_powers, result.residuals):
         total.update(np.ascontiguousarray(array).tobytes())
@@ -155,16 +157,16 @@ def test_results_are_the_same_for_any_number_of_threads() -> None:
 
 _AT_ONCE = """
 import concurrent.futures, numpy as np
-from lightcube import solve
+from lightcube import Recipe, solve
 from lightcube.pictures.frames import Frames
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import turntable
+from lightcube.optics.rig import turntable
 
 def cube(number):
     grid = Grid((2, 6, 7))
-    views = turntable(grid, [10.0, 70.0, 200.0], elevation=35.0, picture_shape=(2, 3))
+    rig = turntable(grid, [10.0, 70.0, 200.0], elevation=35.0, picture_shape=(2, 3))
     pictures = np.random.default_rng(number).random((3, 2, 3, 3), dtype=np.float32)
-    return solve(Frames(pictures, views), grid, iterations=20).cube.extinction
+    return solve(Frames(pictures, rig), grid, Recipe(passes=20)).cube.extinction
 
 alone = [cube(number) for number in range(4)]
 with concurrent.futures.ThreadPoolExecutor(4) as pool:

@@ -9,18 +9,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lightcube.backward.problem import held_views, pose
+from lightcube.backward.problem import held, pose
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import split
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
-from lightcube.forward.turning import exposures_at
+from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.law import fading, falling_light
-from lightcube.optics.rig import Lighting, held_lighting, sampled
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
-from lightcube.optics.views import Views
+from lightcube.optics.law import fade, falling_light
+from lightcube.optics.rig import Lamps, Rig, Screens, turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
+from lightcube.optics.views import spread_angles
 from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import halved
 from tests.helpers import plain
@@ -53,76 +53,77 @@ def extinction(shape: tuple[int, int, int] = GRID.shape, seed: int = 4) -> np.nd
     return np.random.default_rng(seed).gamma(0.5, 0.4, (3, *shape)).astype(np.float32)
 
 
-def powers_of(lighting: Lighting) -> np.ndarray:
-    return np.random.default_rng(5).uniform(0.5, 3.0, (len(lighting.pairs), 3))
+def powers_of(rig: Rig) -> np.ndarray:
+    return np.random.default_rng(5).uniform(0.5, 3.0, (len(rig.pairs), 3))
 
 
 def made(stage: Stage, **more: Any) -> Cube:
     """A random cube on a stage, under random powers."""
-    views, lighting = exposures(stage)
-    return Cube(extinction(stage.grid.shape), stage.grid, views, powers_of(lighting), lighting=lighting, **more)
+    rig = stage.rig()
+    return Cube(extinction(stage.grid.shape), stage.grid, rig, powers_of(rig), **more)
 
 
-def pictures(cube: Cube, views: Views, lighting: Lighting, powers: np.ndarray | None = None) -> np.ndarray:
-    return np.stack(list(cast(cube, views, cube.powers if powers is None else powers, lighting)))
+def pictures(cube: Cube, rig: Rig, powers: np.ndarray | None = None) -> np.ndarray:
+    return np.stack(list(cast(cube, rig, cube.powers if powers is None else powers)))
 
 
-def light_by_hand(views: Views, lighting: Lighting, view: int, row: int, column: int) -> tuple[float, float]:
-    """Light g and strength a of one pixel, from the words of `falling_light` and of `Lighting`."""
+def light_by_hand(rig: Rig, view: int, row: int, column: int) -> tuple[float, float]:
+    """Light g and strength a of one pixel, from the words of `falling_light` and of `Rig`."""
+    views = rig.views
     pixel, way, first, _ = plain.beam_of_pixel(views, view, row, column)
     light, shadow = 1.0, 1.0
-    if lighting.cosine[view]:
+    if rig.fading.cosine[view]:
         normal = np.cross(views.column_steps[view], views.row_steps[view])
         light *= abs(float(way @ normal)) / math.sqrt(float(normal @ normal))
-    if views.lamps[view, 3] == 1 and lighting.full_at_mm[view] < math.inf:
-        light *= lighting.full_at_mm[view] ** 2 / first**2
+    if views.lamps[view, 3] == 1 and rig.fading.full_at_mm[view] < math.inf:
+        light *= rig.fading.full_at_mm[view] ** 2 / first**2
     behind = float(way @ pixel)
-    for reach, falloff in zip(lighting.reach_mm[view], lighting.falloff_mm[view], strict=True):
+    for reach, falloff in zip(rig.fading.reach_mm[view], rig.fading.falloff_mm[view], strict=True):
         if behind > reach:
             shadow *= math.exp(-(behind - reach) / falloff) if falloff > 0 else 0.0
     return light, shadow
 
 
-def by_hand(cube: Cube, views: Views, lighting: Lighting, powers: np.ndarray) -> np.ndarray:
+def by_hand(cube: Cube, rig: Rig, powers: np.ndarray) -> np.ndarray:
     """The sum over views of P share g (1 - a (1 - T)), pixel by pixel; black beside the screen."""
-    through = np.exp(-plain.absorbance_pictures(cube.grid, views, cube.extinction))
-    shown = np.zeros((lighting.pictures, *views.picture_shape, 3))
-    pairs = [tuple(pair) for pair in lighting.pairs]
+    through = np.exp(-plain.absorbance_pictures(cube.grid, rig.views, cube.extinction))
+    shown = np.zeros((len(rig), *rig.picture_shape, 3))
+    pairs = [tuple(pair) for pair in rig.pairs]
     for view, row, column in np.ndindex(through.shape[:3]):
-        picture = lighting.picture[view]
-        if row < lighting.window[picture, 0] and column < lighting.window[picture, 1]:
-            g, a = light_by_hand(views, lighting, view, row, column)
-            power = powers[pairs.index((picture, lighting.lamp[view]))] * lighting.share[view]
+        picture = rig.sums.picture[view]
+        if row < rig.stops.window[picture, 0] and column < rig.stops.window[picture, 1]:
+            g, a = light_by_hand(rig, view, row, column)
+            power = powers[pairs.index((picture, rig.sums.lamp[view]))] * rig.sums.share[view]
             shown[picture, row, column] += power * g * (1 - a * (1 - through[view, row, column]))
     return shown
 
 
 def test_the_light_of_every_pixel_is_what_the_words_say() -> None:
-    views, lighting = exposures(ROOM)
-    light, shadow = falling_light(views, lighting)
+    rig = ROOM.rig()
+    light, shadow = falling_light(rig)
     assert len(np.unique(np.round(light, 5))) > 30
     assert np.any(shadow == 0)
     assert np.any((shadow > 0.05) & (shadow < 0.95))
     assert np.any(shadow == 1)
     for pixel in np.ndindex(light.shape):
-        assert (light[pixel], shadow[pixel]) == pytest.approx(light_by_hand(views, lighting, *pixel), rel=1e-6)
+        assert (light[pixel], shadow[pixel]) == pytest.approx(light_by_hand(rig, *pixel), rel=1e-6)
 
 
 def test_a_lamp_that_stands_on_a_pixel_shines_on_it() -> None:
     lamp = Lamp("lamp", position=(9.0, 0.0, -5.4), full_at_mm=10.0, reach_mm=1.0)
-    views, lighting = exposures(replace(ROOM, lamps=(lamp,), shots=(Shot("1", "floor", ("lamp",)),)))
-    on_it = replace(views, origins=views.lamps[:, :3])
-    for numbers in (*falling_light(on_it, lighting), *falling_light(views, lighting)):
+    rig = replace(ROOM, lamps=(lamp,), shots=(Shot("1", "floor", ("lamp",)),)).rig()
+    on_it = replace(rig, views=replace(rig.views, origins=rig.views.lamps[:, :3]))
+    for numbers in (*falling_light(on_it), *falling_light(rig)):
         assert np.all(np.isfinite(numbers))
 
 
-@pytest.mark.parametrize("samples", [{}, {"lamp_samples": 2, "pixel_samples": 2}])
+@pytest.mark.parametrize("samples", [{}, {"lamp": 2, "pixel": 2}])
 def test_what_is_cast_is_the_plain_sum(samples: dict[str, Any]) -> None:
     lamps = tuple(replace(lamp, size_deg=4.0) for lamp in ROOM.lamps)
-    views, lighting = sampled(*exposures(replace(ROOM, lamps=lamps)), **samples)
-    cube = Cube(extinction(), GRID, views, powers_of(lighting), lighting=lighting)
-    expected = by_hand(cube, views, lighting, cube.powers)
-    np.testing.assert_allclose(pictures(cube, views, lighting), expected, rtol=1e-4, atol=1e-6)
+    rig = replace(ROOM, lamps=lamps).rig().sampled(**samples)
+    cube = Cube(extinction(), GRID, rig, powers_of(rig))
+    expected = by_hand(cube, rig, cube.powers)
+    np.testing.assert_allclose(pictures(cube, rig), expected, rtol=1e-4, atol=1e-6)
     np.testing.assert_allclose(play(cube), expected, rtol=1e-4, atol=1e-6)
 
 
@@ -131,17 +132,16 @@ def test_what_is_cast_is_the_plain_sum(samples: dict[str, Any]) -> None:
 def test_solvers_see_the_plain_sum(powers_of_lamps: Any, hold: float) -> None:
     """And so does whoever asks a problem for what is shown; at the stops themselves where pictures are held."""
     cube = made(ROOM)
-    assert cube.lighting is not None
     wanted = np.full((4, 5, 5, 3), 0.5, np.float32)
     recipe = Recipe(powers=powers_of_lamps, hold_deg=hold, dtype="float64")
-    problem = pose(Frames(wanted, cube.views, lighting=cube.lighting), GRID, recipe)
+    problem = pose(Frames(wanted, cube.rig), GRID, recipe)
     assert problem.mixture is not None
-    powers = cube.powers if powers_of_lamps == "per-picture" else powers_of(cube.lighting)[:3]
-    each = powers if powers_of_lamps == "per-picture" else powers[cube.lighting.pairs[:, 1]]
+    powers = cube.powers if powers_of_lamps == "per-picture" else powers_of(cube.rig)[:3]
+    each = powers if powers_of_lamps == "per-picture" else powers[cube.rig.pairs[:, 1]]
     absorbed = problem.matrix.forward(problem.unknowns(cube.extinction.astype(np.float64)))
-    inside = cube.lighting.inside((5, 5))[..., None]
+    inside = cube.rig.inside[..., None]
     shown = problem.shown(absorbed, powers) * inside
-    np.testing.assert_allclose(shown, pictures(cube, cube.views, cube.lighting, each), rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(shown, pictures(cube, cube.rig, each), rtol=1e-4, atol=1e-6)
 
 
 @pytest.mark.parametrize("count", [2, 3])
@@ -153,7 +153,7 @@ def test_the_parts_of_a_problem_are_the_problem(level: bool, count: int) -> None
     shots = (Shot("1", "wall", ("a", "b")), Shot("2", "wall", ("b",), 1))
     cube = made(Stage(GRID, lamps, (wall,), shots, (10.0, 50.0)))
     wanted = np.random.default_rng(3).random((2, 4, 5, 3)).astype(np.float32)
-    frames = Frames(wanted, cube.views, lighting=cube.lighting)
+    frames = Frames(wanted, cube.rig)
     whole = pose(frames, GRID, Recipe())
     assert whole.matrix.level == level
     shown = whole.shown(whole.matrix.forward(whole.unknowns(cube.extinction)), cube.powers)
@@ -168,15 +168,13 @@ def test_the_parts_of_a_problem_are_the_problem(level: bool, count: int) -> None
 def test_a_shadow_is_whole_up_to_its_reach_and_then_fades(
     distance: float, reach: float, falloff: float, lengths: float
 ) -> None:
-    whole, faded, near = fading(
-        np.array([min(distance, reach), reach + lengths * falloff, reach + 1e-9]), reach, falloff
-    )
+    whole, faded, near = fade(np.array([min(distance, reach), reach + lengths * falloff, reach + 1e-9]), reach, falloff)
     assert whole == 1
     assert faded == pytest.approx(math.exp(-lengths))
     assert near == pytest.approx(1, abs=1e-6)
-    assert fading(np.array([reach, reach + lengths]), reach, 0.0).tolist() == [1, 0]
-    assert fading(np.array([reach + lengths]), reach, math.inf) == 1
-    assert fading(np.array([distance]), math.inf, falloff) == 1
+    assert fade(np.array([reach, reach + lengths]), reach, 0.0).tolist() == [1, 0]
+    assert fade(np.array([reach + lengths]), reach, math.inf) == 1
+    assert fade(np.array([distance]), math.inf, falloff) == 1
 
 
 def lit_by(size_deg: float, distance: float, *, point: bool = False) -> Stage:
@@ -190,8 +188,8 @@ def edge(stage: Stage, samples: int) -> np.ndarray:
     """Light along the wall behind a cube whose one half is opaque."""
     half = np.zeros((3, 2, 6, 1), np.float32)
     half[:, :, :3] = 50.0
-    views, lighting = sampled(*exposures(stage), lamp_samples=samples)
-    return pictures(Cube(half, stage.grid, views, lighting=lighting), views, lighting)[0, 0, :, 0]
+    rig = stage.rig().sampled(lamp=samples)
+    return pictures(Cube(half, stage.grid, rig), rig)[0, 0, :, 0]
 
 
 @pytest.mark.parametrize("point", [False, True])
@@ -215,26 +213,26 @@ def test_samples_of_a_disc_lie_in_it_and_their_mean_is_the_lamp(place: Any, samp
     lamp = Lamp("lamp", colour=(1.0, 0.5, 0.1), size_deg=8.0, **place)
     screen = Screen("wall", (5.0, -10.0, -9.0), (2.0, 2.0), 1.0)
     shots = (Shot("1", "wall", ("lamp", "sun")), Shot("2", "wall", ("lamp",), 1))
-    views, lighting = exposures(Stage(GRID, (lamp, ROOM.lamps[0]), (screen,), shots, (0.0, 50.0)))
-    several, mixed = sampled(views, lighting, lamp_samples=samples)
-    assert mixed.lamp.tolist() == [0] * samples + [1] + [0] * samples
-    assert mixed.picture.tolist() == [0] * (samples + 1) + [1] * samples
-    assert np.all(mixed.disc_deg == 0)
+    rig = Stage(GRID, (lamp, ROOM.lamps[0]), (screen,), shots, (0.0, 50.0)).rig()
+    several = rig.sampled(lamp=samples)
+    assert several.sums.lamp.tolist() == [0] * samples + [1] + [0] * samples
+    assert several.sums.picture.tolist() == [0] * (samples + 1) + [1] * samples
+    assert np.all(several.sums.disc_deg == 0)
     for view, first in ((0, 0), (2, samples + 1)):
-        points, middle = several.lamps[first : first + samples], views.lamps[view]
+        points, middle = several.views.lamps[first : first + samples], rig.views.lamps[view]
         np.testing.assert_allclose(points.mean(axis=0), middle, atol=1e-9)
         aside = (points - middle)[:, :3]
         radius = math.tan(math.radians(4.0)) * np.linalg.norm(middle[:3])
         assert np.all(np.linalg.norm(aside, axis=1) <= radius)
         assert len(np.unique(np.round(aside, 6), axis=0)) == samples
         np.testing.assert_allclose(aside @ middle[:3], 0, atol=1e-9)  # it faces the cube's middle
-        np.testing.assert_allclose(mixed.share[first : first + samples].sum(axis=0), lighting.share[view])
+        np.testing.assert_allclose(several.sums.share[first : first + samples].sum(axis=0), rig.sums.share[view])
 
 
 def test_many_samples_fill_the_disc_evenly() -> None:
     """As many in the inner disc of half the area as outside it, and in each half."""
-    views, lighting = exposures(lit_by(10.0, 5.0))
-    points = sampled(views, lighting, lamp_samples=400)[0].lamps[:, 1:3]
+    rig = lit_by(10.0, 5.0).rig()
+    points = rig.sampled(lamp=400).views.lamps[:, 1:3]
     radius = math.tan(math.radians(5.0))
     assert np.mean(np.hypot(*points.T) < radius / math.sqrt(2)) == pytest.approx(0.5, abs=0.02)
     for axis in (0, 1):
@@ -243,87 +241,148 @@ def test_many_samples_fill_the_disc_evenly() -> None:
 
 def test_samples_of_a_pixel_tend_to_its_mean_and_change_no_sum() -> None:
     cube = made(replace(ROOM, shots=ROOM.shots[:1]))
-    assert cube.lighting is not None
-    assert cube.lighting.window.tolist() == [[4, 5]]
+    assert cube.rig.stops.window.tolist() == [[4, 5]]
     fine = replace(ROOM, shots=ROOM.shots[:1], screens=(replace(ROOM.screens[0], pitch_mm=0.7 / 8),))
-    fine_views, fine_lighting = exposures(fine)
-    rows, columns = cube.views.picture_shape
-    area = pictures(cube, fine_views, fine_lighting).reshape(rows, 8, columns, 8, 3).mean(axis=(1, 3))
+    rows, columns = cube.rig.picture_shape
+    area = pictures(cube, fine.rig()).reshape(rows, 8, columns, 8, 3).mean(axis=(1, 3))
     off = []
     for samples in (1, 2, 4):
-        views, lighting = sampled(cube.views, cube.lighting, pixel_samples=samples)
-        assert len(views) == 2 * samples**2
-        np.testing.assert_allclose(np.add.reduceat(lighting.share, [0, samples**2]), cube.lighting.share, rtol=1e-12)
-        off.append(float(np.sqrt(np.mean((pictures(cube, views, lighting)[0] - area) ** 2))))
+        rig = cube.rig.sampled(pixel=samples)
+        assert len(rig.views) == 2 * samples**2
+        np.testing.assert_allclose(np.add.reduceat(rig.sums.share, [0, samples**2]), cube.rig.sums.share, rtol=1e-12)
+        off.append(float(np.sqrt(np.mean((pictures(cube, rig)[0] - area) ** 2))))
     assert off[0] > 1.5 * off[1] > 3 * off[2]
     assert off[2] < 0.02
 
 
-@pytest.mark.parametrize("samples", [{"lamp_samples": 0}, {"lamp_samples": 1025}, {"pixel_samples": 0}])
+@pytest.mark.parametrize("samples", [{"lamp": 0}, {"lamp": 1025}, {"pixel": 0}])
 def test_samples_that_cannot_be_are_refused(samples: dict[str, Any]) -> None:
     with pytest.raises(InputError, match="1 to 1024 samples"):
-        sampled(*exposures(ROOM), **samples)
+        ROOM.rig().sampled(**samples)
 
 
 def test_some_pictures_of_many_keep_their_views() -> None:
     cube = made(ROOM)
-    lighting = cube.lighting
-    assert lighting is not None
-    frames = Frames(np.random.default_rng(2).random((4, 5, 5, 3), np.float32), cube.views, lighting=lighting)
+    frames = Frames(np.random.default_rng(2).random((4, 5, 5, 3), np.float32), cube.rig)
     some = frames.take([2, 0, 2])
-    assert some.lighting is not None
-    assert some.lighting.picture.tolist() == [0, 0, 0, 1, 1, 2, 2, 2]
-    assert some.lighting.starts.tolist() == [0, 3, 5, 8]
+    assert some.rig.sums.picture.tolist() == [0, 0, 0, 1, 1, 2, 2, 2]
+    assert some.rig.starts.tolist() == [0, 3, 5, 8]
     assert some.angles.tolist() == [130, 10, 130]
     np.testing.assert_array_equal(some.pictures, frames.pictures[[2, 0, 2]])
-    np.testing.assert_array_equal(some.views.lamps, cube.views.lamps[[3, 4, 5, 0, 1, 3, 4, 5]])
-    everything = pictures(cube, cube.views, lighting)
+    np.testing.assert_array_equal(some.rig.views.lamps, cube.rig.views.lamps[[3, 4, 5, 0, 1, 3, 4, 5]])
+    everything = pictures(cube, cube.rig)
     for picture, (row, pair) in enumerate(zip((2, 0, 2), (3, 0, 3), strict=True)):
-        own = some.take([picture])
-        assert own.lighting is not None
-        count = len(own.lighting.pairs)
-        one = pictures(cube, own.views, own.lighting, cube.powers[pair : pair + count])
+        own = some.take([picture]).rig
+        one = pictures(cube, own, cube.powers[pair : pair + len(own.pairs)])
         np.testing.assert_array_equal(one[0], everything[row])
 
 
 @pytest.mark.parametrize(
-    ("changes", "message"),
+    ("part", "changes", "message"),
     [
-        ({"share": np.ones(8)}, "share of a lighting has shape"),
-        ({"lamp": np.zeros(7)}, "lamp of a lighting has shape"),
-        ({"reach_mm": np.ones(8)}, "reach_mm of a lighting has shape"),
-        ({"window": np.ones((4, 3))}, "window of a lighting has shape"),
-        ({"axis": np.ones(2)}, "axis of a lighting has shape"),
-        ({"least": np.ones(2)}, "least of a lighting has shape"),
-        ({"picture": [0, 0, 1, 1, 2, 3, 3, 2]}, "in the order of their pictures"),
-        ({"picture": [0, 0, 1, 1, 1, 3, 3, 3]}, "none of which is left out"),
-        ({"picture": [0, 0, 1, 1, 1, 2, 2, 2]}, "none of which is left out"),
-        ({"picture": [1, 1, 1, 1, 1, 2, 2, 3]}, "none of which is left out"),
-        ({"share": -np.ones((8, 3))}, "shares must be at least 0"),
-        ({"least": np.zeros(3)}, "powers above 0"),
-        ({"most": np.full(3, 1e-9)}, "least before most"),
-        ({"lamp": np.full(8, 3)}, "numbers of the names"),
-        ({"screen": np.full(4, -1)}, "numbers of the names"),
+        ("sums", {"share": np.ones(8)}, "share of a rig has shape"),
+        ("sums", {"lamp": np.zeros(7)}, "lamp of a rig has shape"),
+        ("fading", {"reach_mm": np.ones(8)}, "reach_mm of a rig has shape"),
+        ("stops", {"window": np.ones((4, 3))}, "window of a rig has shape"),
+        ("turning", {"axis": np.ones(2)}, "axis of a rig has shape"),
+        ("lamps", {"least": np.ones(2)}, "least of a rig has shape"),
+        ("sums", {"picture": [0, 0, 1, 1, 2, 3, 3, 2]}, "in the order of their pictures"),
+        ("sums", {"picture": [0, 0, 1, 1, 1, 3, 3, 3]}, "none of which is left out"),
+        ("sums", {"picture": [0, 0, 1, 1, 1, 2, 2, 2]}, "4 stops do not fit 3 pictures"),
+        ("sums", {"picture": [1, 1, 1, 1, 1, 2, 2, 3]}, "none of which is left out"),
+        ("sums", {"share": -np.ones((8, 3))}, "shares must be at least 0"),
+        ("lamps", {"least": np.zeros(3)}, "above 0"),
+        ("lamps", {"most": np.full(3, 1e-9)}, "least before the largest"),
+        ("screens", {"black": np.ones(2)}, "black must be a display value"),
+        ("sums", {"lamp": np.full(8, 3)}, "numbers of the names"),
+        ("stops", {"screen": np.full(4, -1)}, "numbers of the names"),
     ],
 )
-def test_a_lighting_that_does_not_fit_itself_is_refused(changes: dict[str, Any], message: str) -> None:
-    lighting = exposures(ROOM)[1]
+def test_a_rig_that_does_not_fit_itself_is_refused(part: str, changes: dict[str, Any], message: str) -> None:
+    rig = ROOM.rig()
     with pytest.raises(InputError, match=message):
-        replace(lighting, **changes)
+        replace(rig, **{part: replace(getattr(rig, part), **changes)})
 
 
-def test_a_lighting_that_does_not_fit_its_pictures_is_refused() -> None:
-    views, lighting = exposures(ROOM)
-    with pytest.raises(InputError, match="a lighting of 8 views does not fit 7"):
-        Frames(np.ones((4, 5, 5, 3), np.float32), views.take(slice(7)), lighting=lighting)
+def test_what_does_not_fit_a_rig_is_refused() -> None:
+    rig = ROOM.rig()
+    with pytest.raises(InputError, match="not all of 7 views"):
+        replace(rig, views=rig.views.take(slice(7)))
     with pytest.raises(InputError, match="pictures of shape"):
-        Frames(np.ones((8, 5, 5, 3), np.float32), views, lighting=lighting)
-    with pytest.raises(InputError, match="a lighting of 3 colours does not fit 1"):
-        Frames(np.ones((4, 5, 5, 1), np.float32), views, lighting=lighting)
+        Frames(np.ones((8, 5, 5, 3), np.float32), rig)
+    with pytest.raises(InputError, match="a rig of 3 colours does not fit 1"):
+        Frames(np.ones((4, 5, 5, 1), np.float32), rig)
     with pytest.raises(InputError, match="does not fit"):
-        Cube(extinction()[:1], GRID, views, lighting=lighting)
+        Cube(extinction()[:1], GRID, rig)
     with pytest.raises(InputError, match="lamp powers must be"):
-        Cube(extinction(), GRID, views, np.ones((4, 3)), lighting=lighting)
+        Cube(extinction(), GRID, rig, np.ones((4, 3)))
+
+
+@pytest.mark.parametrize("elevation", [0.0, 30.0])
+@pytest.mark.parametrize("angles", [[20.0, 75.0, 130.0], [10.0, 190.0, 250.0]])
+def test_a_turntable_is_a_stage_with_one_lamp_and_a_screen_behind(elevation: float, angles: list[float]) -> None:
+    """The same room said in two ways casts the same at its stops and between, half a turn on, and off."""
+    tilt = math.radians(elevation)
+    light = math.cos(tilt), 0.0, -math.sin(tilt)
+    high, wide = GRID.shape[0] * 0.7, 5 * 0.7
+    wall = Screen("screen", (9 * light[0], 0.0, 9 * light[2]), (wide, high), 0.7, normal=(-1.0, 0.0, 0.0))
+    shots = tuple(Shot(str(stop + 1), "screen", ("lamp",), stop) for stop in range(len(angles)))
+    stage = Stage(GRID, (Lamp("lamp", light),), (wall,), shots, tuple(angles))
+    one = turntable(GRID, angles, elevation=elevation, picture_shape=(4, 5))
+    powers = powers_of(one)
+    turned, staged = (Cube(extinction(), GRID, rig, powers, hold_deg=2.0) for rig in (one, stage.rig()))
+    assert turned.rig.period == staged.rig.period == (180 if elevation == 0 and angles[1] != 190 else 360)
+    assert turned.rig.widest_hold == pytest.approx(staged.rig.widest_hold)
+    np.testing.assert_allclose(play(turned), play(staged), rtol=1e-4, atol=1e-6)
+    between = [angle + off for angle in angles for off in (0.0, 1.0, 7.5, 180.0, 200.0, -90.0)]
+    np.testing.assert_allclose(play(turned, between), play(staged, between), rtol=1e-4, atol=1e-6)
+    frames = [Frames(play(turned), rig, transfer="linear") for rig in (one, stage.rig())]
+    problems = [pose(each, GRID, Recipe(hold_deg=2.0)) for each in frames]
+    for name in ("light", "weights", "lamp_of_view"):
+        np.testing.assert_allclose(getattr(problems[0], name), getattr(problems[1], name), rtol=1e-6)
+    x = problems[0].unknowns(extinction())
+    across = [each.matrix.forward(each.unknowns(extinction())) for each in problems]
+    assert x.shape == problems[1].unknowns(extinction()).shape
+    np.testing.assert_allclose(across[0], across[1], rtol=1e-4, atol=1e-6)
+
+
+def test_half_a_turn_mirrors_where_light_is_level_and_screens_go_along() -> None:
+    rig = turntable(GRID, [20.0, 75.0], picture_shape=(4, 5)).shifted(np.array([[1, 0], [-1, 0]]))
+    assert rig.mirrors
+    assert not turntable(GRID, [20.0, 75.0], elevation=10.0).mirrors
+    assert not ROOM.rig().mirrors
+    cube = Cube(extinction(), GRID, rig, powers_of(rig))
+    np.testing.assert_allclose(play(cube, [200.0, 255.0])[:, :, ::-1], play(cube), rtol=1e-4, atol=1e-6)
+    both = rig.both_sides
+    assert both.stops.angle.tolist() == [20, 75, 200, 255]
+    assert both.both_sides is both
+
+
+def test_the_whole_shadow_is_shown_where_the_screen_has_no_edges() -> None:
+    rig = turntable(GRID, [20.0, 75.0], elevation=30.0, picture_shape=(4, 5)).shifted(np.array([[1, 2], [-1, 0]]))
+    whole = rig.whole(GRID)
+    np.testing.assert_allclose(whole.views.origins, 0, atol=1e-12)
+    assert whole.picture_shape == turntable(GRID, [0.0], elevation=30.0).picture_shape
+    assert ROOM.rig().whole(GRID).picture_shape == ROOM.rig().picture_shape
+
+
+def test_lamps_and_screens_say_their_bounds() -> None:
+    rig = turntable(GRID, [0.0], power=2.0, black=0.1)
+    assert rig.lamps.are_fixed
+    assert (rig.lamps.most[0], rig.screens.black[0]) == (2, 0.1)
+    assert not Lamps(("a", "b"), np.array([1.0, 1e-4]), np.array([1.0, 16.0])).are_fixed
+    cannot_be: list[dict[str, Any]] = [
+        {"power": 0.0},
+        {"power": math.nan},
+        {"power": 1e9},
+        {"power_max": 0.5},
+        {"black": 1.0},
+    ]
+    for wrong in cannot_be:
+        with pytest.raises(InputError):
+            turntable(GRID, [0.0], **wrong)
+    with pytest.raises(InputError, match="black"):
+        Screens(("wall",), np.array([0.0]), np.array([False]))
 
 
 TURNED = replace(
@@ -348,28 +407,25 @@ def test_at_the_stops_a_stage_shows_the_pictures_of_the_cube() -> None:
 
 def test_between_two_stops_each_lamp_goes_by_equal_factors() -> None:
     cube = made(TURNED)
-    views, lighting, powers = exposures_at(cube, [60.0, 40.0, 315.0])
-    assert lighting.screen.tolist() == [0, 1, 0, 1, 0, 1]
-    assert lighting.angle.tolist() == [60, 60, 40, 40, 315, 315]
+    rig, powers = moment(cube, [60.0, 40.0, 315.0])
+    assert rig.stops.screen.tolist() == [0, 1, 0, 1, 0, 1]
+    assert rig.stops.angle.tolist() == [60, 60, 40, 40, 315, 315]
     # pairs of the cube by stop: floor with moon, wall with sun and bulb (with sun alone at the second)
     moon, sun, bulb = cube.powers[[0, 3, 5]], cube.powers[[1, 4, 6]], cube.powers[[2, 7]]
-    found = {(int(picture), int(lamp)): power for (picture, lamp), power in zip(lighting.pairs, powers, strict=True)}
+    found = {(int(picture), int(lamp)): power for (picture, lamp), power in zip(rig.pairs, powers, strict=True)}
     np.testing.assert_allclose(found[1, 2], np.sqrt(moon[0] * moon[1]))
     np.testing.assert_allclose(found[3, 2], moon[0] ** 0.75 * moon[1] ** 0.25)
     np.testing.assert_allclose(found[5, 2], np.sqrt(moon[2] * moon[0]))
     np.testing.assert_allclose(found[2, 0], sun[0] ** 0.75 * sun[1] ** 0.25)
     np.testing.assert_allclose(found[4, 1], np.sqrt(bulb[0] * bulb[1]))
     np.testing.assert_allclose(found[2, 1], bulb[0] ** (210 / 230) * bulb[1] ** (20 / 230))  # it is out at 100
-    assert len(views) == len(lighting.picture)
 
 
 def test_a_screen_without_a_picture_at_the_nearest_stop_is_dark() -> None:
-    lighting = made(TURNED).lighting
-    assert lighting is not None
-    kept, views = lighting.take([1, 2])  # the wall at 20 degrees, the floor at 100
     whole = made(TURNED)
-    powers = whole.powers[np.isin(lighting.pairs[:, 0], [1, 2])]
-    cube = replace(whole, views=whole.views.take(views), lighting=kept, lamp_powers=powers, names=())
+    kept = whole.rig.take([1, 2])  # the wall at 20 degrees, the floor at 100
+    powers = whole.powers[np.isin(whole.rig.pairs[:, 0], [1, 2])]
+    cube = replace(whole, rig=kept, lamp_powers=powers, names=())
     own = play(cube)
     for angle, lit in ((20.0, own[0]), (100.0, own[1])):
         shown = play(cube, [angle])
@@ -382,47 +438,77 @@ def test_over_a_hold_the_lamps_stay_as_they_are() -> None:
     cube = made(TURNED, hold_deg=8.0)
     for stop, at in ((20.0, 0), (100.0, 3), (250.0, 5)):
         for off in (-8.0, -3.0, 0.0, 8.0):
-            _, lighting, powers = exposures_at(cube, [stop + off])
-            pair = lighting.pairs.tolist().index([1, 2])
+            rig, powers = moment(cube, [stop + off])
+            pair = rig.pairs.tolist().index([1, 2])
             np.testing.assert_allclose(powers[pair], cube.powers[at])
-    _, lighting, powers = exposures_at(cube, [60.0])
-    np.testing.assert_allclose(powers[lighting.pairs.tolist().index([1, 2])], np.sqrt(cube.powers[0] * cube.powers[3]))
+    rig, powers = moment(cube, [60.0])
+    np.testing.assert_allclose(powers[rig.pairs.tolist().index([1, 2])], np.sqrt(cube.powers[0] * cube.powers[3]))
 
 
 def test_held_pictures_are_asked_for_on_either_side_under_the_same_lamps() -> None:
     """The views at stop and hold are those of the same stage at stops that far aside."""
     cube = made(TURNED)
-    lighting = cube.lighting
-    assert lighting is not None
-    held, several, kept = held_views(Frames(play(cube), cube.views, lighting=lighting), 4.0, GRID)
-    assert several is not None
-    angles = several.pictures // lighting.pictures
+    several = held(cube.rig, Recipe(hold_deg=4.0), GRID)
+    angles = len(several) // len(cube.rig)
     assert angles == 3
+    problem = pose(Frames(play(cube), cube.rig), GRID, Recipe(hold_deg=4.0))
     for index, off in enumerate((-4.0, 0.0, 4.0)):
-        aside, _ = exposures(replace(TURNED, stops=tuple(stop + off for stop in TURNED.stops)))
-        mine = np.isin(several.picture, np.arange(index, several.pictures, angles))
-        np.testing.assert_allclose(held.take(np.flatnonzero(mine)).lamps, aside.lamps, atol=1e-12)
-        np.testing.assert_allclose(held.take(np.flatnonzero(mine)).origins, aside.origins, atol=1e-12)
-        np.testing.assert_array_equal(kept[mine], np.arange(len(cube.views)))
-        np.testing.assert_allclose(several.angle[index::angles], lighting.angle + off)
+        aside = replace(TURNED, stops=tuple(stop + off for stop in TURNED.stops)).rig().views
+        mine = np.flatnonzero(np.isin(several.sums.picture, np.arange(index, len(several), angles)))
+        np.testing.assert_allclose(several.views.take(mine).lamps, aside.lamps, atol=1e-12)
+        np.testing.assert_allclose(several.views.take(mine).origins, aside.origins, atol=1e-12)
+        np.testing.assert_array_equal(problem.lamp_of_view[mine], cube.rig.pair)
+        np.testing.assert_allclose(several.stops.angle[index::angles], cube.rig.stops.angle + off)
 
 
 def test_a_hold_that_reaches_the_next_stop_is_refused() -> None:
     """The nearest stop at which the same screen shows a picture counts: here 80 degrees on."""
-    views, lighting = exposures(TURNED)
-    held_lighting(views, lighting, 40.0, 5.0)
+    rig = TURNED.rig()
+    rig.held(40.0, 5.0)
     with pytest.raises(InputError, match=r"a hold of 41 degrees is wider .* at most 40"):
-        held_lighting(views, lighting, 41.0, 5.0)
+        rig.held(41.0, 5.0)
     with pytest.raises(InputError, match="at least 0"):
-        held_lighting(views, lighting, -1.0, 5.0)
+        rig.held(-1.0, 5.0)
 
 
-def test_halved_pictures_keep_their_lighting() -> None:
+def test_halved_pictures_keep_their_rig() -> None:
     """The same room with pixels twice as large: lamps, middles of pictures, and light that falls on them."""
     wall, shots = replace(ROOM.screens[0], size_mm=(4.2, 2.8)), ROOM.shots[:1]
     cube = made(replace(ROOM, screens=(wall,), shots=shots))
-    frames, grid = halved(Frames(play(cube), cube.views, lighting=cube.lighting), GRID)
-    views, same = exposures(replace(ROOM, grid=grid, screens=(replace(wall, pitch_mm=1.4),), shots=shots))
-    assert frames.lighting is not None
-    for one, other in zip(falling_light(frames.views, frames.lighting), falling_light(views, same), strict=True):
+    frames, grid = halved(Frames(play(cube), cube.rig), GRID)
+    same = replace(ROOM, grid=grid, screens=(replace(wall, pitch_mm=1.4),), shots=shots).rig()
+    for one, other in zip(falling_light(frames.rig), falling_light(same), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
+
+
+@given(st.floats(0.01, 20), st.integers(4, 200), st.sampled_from([0.0, 35.0]))
+def test_held_pictures_are_dense_enough_and_keep_the_stop_in_the_middle(hold: float, n: int, elevation: float) -> None:
+    grid = Grid((4, n, 4))
+    rig = turntable(grid, [20.0, 70.0, 150.0], elevation=elevation, picture_shape=(2, 2))
+    angles = held(rig, Recipe(hold_deg=hold), grid).stops.angle.reshape(3, -1)
+    assert np.allclose(angles[:, angles.shape[1] // 2], rig.stops.angle)
+    assert np.allclose(angles[:, -1] - angles[:, 0], 2 * hold)
+    assert np.max(np.diff(angles, axis=1)) <= 0.5 * 64 / n + 1e-6
+    assert angles.shape[1] == 1 + 2 * np.ceil(hold / (0.5 * 64 / n) - 1e-9)
+
+
+def test_a_turntable_that_has_turned_on_is_one_at_other_angles() -> None:
+    rig = turntable(GRID, [10.0, 80.0], elevation=20.0).turned([20.0, -10.0])
+    expected = turntable(GRID, [30.0, 70.0], elevation=20.0)
+    np.testing.assert_allclose(rig.stops.angle, expected.stops.angle)
+    for name in ("lamps", "origins", "column_steps", "row_steps"):
+        np.testing.assert_allclose(getattr(rig.views, name), getattr(expected.views, name), atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [3, 7, 11])
+def test_the_widest_hold_that_is_named_is_taken(count: int) -> None:
+    rig = turntable(GRID, spread_angles(count))
+    with pytest.raises(InputError, match="use at most") as refused:
+        rig.held(89.0, 1.0)
+    most = float(str(refused.value).rsplit(" ", 1)[1])
+    assert len(rig.held(most, 1.0)) > count
+
+
+def test_a_hold_that_meets_another_stops_mirror_image_is_refused() -> None:
+    with pytest.raises(InputError, match=r"use at most 0\.5"):
+        turntable(GRID, [0.0, 90.0, 180.0, 271.0]).held(40.0, 1.0)

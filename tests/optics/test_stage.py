@@ -13,9 +13,8 @@ from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turned_by
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
-from lightcube.optics.views import turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from tests.helpers import plain
 
 GRID = Grid((4, 5, 6), 0.7)
@@ -37,9 +36,9 @@ def extinction(shape: tuple[int, int, int] = GRID.shape) -> np.ndarray:
 
 def shown(stage: Stage, volume: np.ndarray | None = None) -> np.ndarray:
     """What a cube casts on the stage, every lamp at power 1."""
-    views, lighting = exposures(stage)
-    cube = Cube(extinction(stage.grid.shape) if volume is None else volume, stage.grid, views, lighting=lighting)
-    return np.stack(list(cast(cube, views, cube.powers, lighting)))
+    rig = stage.rig()
+    cube = Cube(extinction(stage.grid.shape) if volume is None else volume, stage.grid, rig)
+    return np.stack(list(cast(cube, rig, cube.powers)))
 
 
 def assert_close(one: np.ndarray, other: np.ndarray) -> None:
@@ -51,18 +50,18 @@ def assert_close(one: np.ndarray, other: np.ndarray) -> None:
 def turntable_pictures(angles: tuple[float, ...]) -> np.ndarray:
     """What a turntable shows of the same cube, lamp and window."""
     elevation = math.degrees(math.atan2(1.2, 2.0))
-    views = turntable(GRID, angles, elevation=elevation, picture_shape=(4, 7))
-    return play(Cube(extinction(), GRID, views))
+    rig = turntable(GRID, angles, elevation=elevation, picture_shape=(4, 7))
+    return play(Cube(extinction(), GRID, rig))
 
 
 def test_a_raised_lamp_and_a_vertical_wall_are_a_turntable() -> None:
-    views, lighting = exposures(on_stage(*STOPS))
+    rig = on_stage(*STOPS).rig()
     table = turntable(GRID, STOPS, elevation=math.degrees(math.atan2(1.2, 2.0)), picture_shape=(4, 7))
-    np.testing.assert_allclose(views.lamps / np.hypot(2.0, 1.2), table.lamps, atol=1e-12)
-    np.testing.assert_allclose(views.column_steps, table.column_steps, atol=1e-12)
-    np.testing.assert_allclose(views.row_steps, table.row_steps, atol=1e-12)
-    np.testing.assert_allclose(lighting.angle, STOPS)
-    assert lighting.is_plain
+    np.testing.assert_allclose(rig.views.lamps / np.hypot(2.0, 1.2), table.views.lamps, atol=1e-12)
+    np.testing.assert_allclose(rig.views.column_steps, table.views.column_steps, atol=1e-12)
+    np.testing.assert_allclose(rig.views.row_steps, table.views.row_steps, atol=1e-12)
+    np.testing.assert_allclose(rig.stops.angle, STOPS)
+    assert rig.is_thin
     assert_close(shown(on_stage(*STOPS)), turntable_pictures(STOPS))
 
 
@@ -180,10 +179,11 @@ def test_smaller_screens_keep_the_upper_left_of_their_pictures() -> None:
     small = Screen("small", (8.0, 2.0, -6.0), (2.1, 3.5), 0.7, up=(0.0, 0.4, 1.0))
     alone = shown(on_stage(30.0, lamp=BULB, screen=small))[0]
     shots = (Shot("1", "wall", ("bulb",)), Shot("2", "small", ("bulb",)))
-    views, lighting = exposures(stage := Stage(GRID, (BULB,), (WALL, small), shots, (30.0,)))
-    assert views.picture_shape == (5, 7)
-    assert lighting.window.tolist() == [[4, 7], [5, 3]]
-    assert lighting.inside((5, 7)).sum(axis=(1, 2)).tolist() == [28, 15]
+    stage = Stage(GRID, (BULB,), (WALL, small), shots, (30.0,))
+    rig = stage.rig()
+    assert rig.picture_shape == (5, 7)
+    assert rig.stops.window.tolist() == [[4, 7], [5, 3]]
+    assert rig.inside.sum(axis=(1, 2)).tolist() == [28, 15]
     both = shown(stage)
     assert_close(both[1, :5, :3], alone)
     assert_close(both[0, :4], shown(on_stage(30.0, lamp=BULB))[0])
@@ -201,28 +201,29 @@ MIXED = replace(
 
 @pytest.mark.parametrize("cube_turns", [True, False])
 def test_turning_on_by_two_angles_is_turning_on_by_their_sum(cube_turns: bool) -> None:
-    views, lighting = exposures(replace(MIXED, cube_turns=cube_turns))
-    every_other = np.array([10.0, 200.0, -3.0, 77.0])
+    rig = replace(MIXED, cube_turns=cube_turns).rig()
+    every_other = np.array([10.0, 200.0, 77.0])
     for parts, whole in (((0.0, 360.0, -720.0), True), ((33.0, -47.0), False), ((every_other, 5.5), False)):
-        each = views
+        each = rig
         for part in parts:
-            each = turned_by(each, lighting, part)
-        at_once = turned_by(views, lighting, np.sum(np.broadcast_arrays(*parts), axis=0))
+            each = each.turned(part)
+        at_once = rig.turned(np.sum(np.broadcast_arrays(*parts), axis=0))
+        np.testing.assert_allclose(each.stops.angle, at_once.stops.angle)
         for name in ("lamps", "origins", "column_steps", "row_steps"):
-            np.testing.assert_allclose(getattr(each, name), getattr(at_once, name), atol=1e-12)
+            np.testing.assert_allclose(getattr(each.views, name), getattr(at_once.views, name), atol=1e-12)
             if whole:
-                np.testing.assert_allclose(getattr(each, name), getattr(views, name), atol=1e-12)
+                np.testing.assert_allclose(getattr(each.views, name), getattr(rig.views, name), atol=1e-12)
 
 
 def test_turning_on_from_a_stop_is_standing_at_another() -> None:
     """What moves keeps its distance from the axis and from the cube, also about a slanted one."""
-    first, second = (exposures(replace(MIXED, stops=(start, 40.0 + start))) for start in (0.0, 71.0))
-    moved = turned_by(*first, 71.0)
+    first, second = (replace(MIXED, stops=(start, 40.0 + start)).rig() for start in (0.0, 71.0))
+    moved, axis = first.turned(71.0), first.turning.axis
     for name in ("lamps", "origins", "column_steps", "row_steps"):
-        np.testing.assert_allclose(getattr(moved, name), getattr(second[0], name), atol=1e-12)
-        before, after = getattr(first[0], name)[:, :3], getattr(moved, name)[:, :3]
+        np.testing.assert_allclose(getattr(moved.views, name), getattr(second.views, name), atol=1e-12)
+        before, after = getattr(first.views, name)[:, :3], getattr(moved.views, name)[:, :3]
         np.testing.assert_allclose(np.linalg.norm(after, axis=1), np.linalg.norm(before, axis=1))
-        np.testing.assert_allclose(after @ first[1].axis, before @ first[1].axis, atol=1e-12)
+        np.testing.assert_allclose(after @ axis, before @ axis, atol=1e-12)
 
 
 def test_what_is_said_of_lamps_and_screens_is_said_of_every_view() -> None:
@@ -232,24 +233,24 @@ def test_what_is_said_of_lamps_and_screens_is_said_of_every_view() -> None:
     )
     screens = (replace(WALL, reach_mm=6, falloff_mm=7), replace(WALL, name="door", cosine=True, turns=True))
     shots = (Shot("a", "door", ("bulb", "sun"), 1), Shot("b", "wall", ("bulb",)), Shot("c", "wall", ("sun",), 1))
-    _, lighting = exposures(Stage(GRID, lamps, screens, shots, (10.0, 50.0)))
-    assert lighting.picture.tolist() == [0, 0, 1, 2]
-    assert lighting.lamp.tolist() == [1, 0, 1, 0]
-    assert lighting.share.tolist() == [[1, 1, 1], [1, 0.5, 0], [1, 1, 1], [1, 0.5, 0]]
+    rig = Stage(GRID, lamps, screens, shots, (10.0, 50.0)).rig()
+    assert rig.sums.picture.tolist() == [0, 0, 1, 2]
+    assert rig.sums.lamp.tolist() == [1, 0, 1, 0]
+    assert rig.sums.share.tolist() == [[1, 1, 1], [1, 0.5, 0], [1, 1, 1], [1, 0.5, 0]]
     inf = math.inf
-    assert lighting.reach_mm.tolist() == [[inf, inf], [4, inf], [inf, 6], [4, 6]]
-    assert lighting.falloff_mm.tolist() == [[0, 0], [5, 0], [0, 7], [5, 7]]
-    assert lighting.full_at_mm.tolist() == [80, inf, 80, inf]
-    assert lighting.disc_deg.tolist() == [0, 0.5, 0, 0.5]
-    assert lighting.cosine.tolist() == [True, True, False, False]
-    assert lighting.turning.tolist() == [[False, False], [True, False], [False, True], [True, True]]
-    assert lighting.angle.tolist() == [50, 10, 50]
-    assert lighting.screen.tolist() == [1, 0, 0]
-    assert lighting.least.tolist() == [3, 1e-4]
-    assert lighting.most.tolist() == [3, 7]
-    assert (lighting.lamp_names, lighting.screen_names) == (("sun", "bulb"), ("wall", "door"))
-    assert not lighting.is_plain
-    assert lighting.pairs.tolist() == [[0, 0], [0, 1], [1, 1], [2, 0]]
+    assert rig.fading.reach_mm.tolist() == [[inf, inf], [4, inf], [inf, 6], [4, 6]]
+    assert rig.fading.falloff_mm.tolist() == [[0, 0], [5, 0], [0, 7], [5, 7]]
+    assert rig.fading.full_at_mm.tolist() == [80, inf, 80, inf]
+    assert rig.sums.disc_deg.tolist() == [0, 0.5, 0, 0.5]
+    assert rig.fading.cosine.tolist() == [True, True, False, False]
+    assert rig.turning.turns.tolist() == [[False, False], [True, False], [False, True], [True, True]]
+    assert rig.stops.angle.tolist() == [50, 10, 50]
+    assert rig.stops.screen.tolist() == [1, 0, 0]
+    assert rig.lamps.least.tolist() == [3, 1e-4]
+    assert rig.lamps.most.tolist() == [3, 7]
+    assert (rig.lamps.names, rig.screens.names) == (("sun", "bulb"), ("wall", "door"))
+    assert not rig.is_thin
+    assert rig.pairs.tolist() == [[0, 0], [0, 1], [1, 1], [2, 0]]
 
 
 @pytest.mark.parametrize(
@@ -348,10 +349,10 @@ def test_any_numbers_make_a_stage_or_one_sentence(data: st.DataObject) -> None:
             numbers[name] = data.draw(value)
     try:
         stage = on_stage(numbers["stop"], lamp=things[0], screen=things[1], axis=numbers["axis"])
-        views, lighting = exposures(stage)
-        turned_by(views, lighting, 33.0)
+        rig = stage.rig()
+        rig.turned(33.0)
     except InputError as error:
         assert "\n" not in str(error)  # noqa: PT017 - any other exception fails the test
     else:
-        assert np.all(np.any(np.cross(views.column_steps, views.row_steps) != 0, axis=1))
-        assert np.all(np.any(views.lamps[:, :3] != 0, axis=1))
+        assert np.all(np.any(np.cross(rig.views.column_steps, rig.views.row_steps) != 0, axis=1))
+        assert np.all(np.any(rig.views.lamps[:, :3] != 0, axis=1))

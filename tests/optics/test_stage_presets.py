@@ -12,8 +12,7 @@ from lightcube.forward.casting import cast, play
 from lightcube.io import read_stage, read_stage_frames
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import sampled
-from lightcube.optics.stage import Stage, exposures
+from lightcube.optics.stage import Stage
 from lightcube.pictures.frames import Frames
 from lightcube.planning.placement import doubtful, impossible
 from lightcube.scoring.metrics import score
@@ -37,13 +36,13 @@ def smaller(stage: Stage, side: int) -> Stage:
 def known(stage: Stage, lamp_samples: int = 1) -> tuple[Cube, Frames]:
     """A random cube on a stage, under lamps of random powers, and its shadows."""
     random = np.random.default_rng(0)
-    views, lighting = sampled(*exposures(stage), lamp_samples=lamp_samples)
+    rig = stage.rig().sampled(lamp=lamp_samples)
     extinction = random.gamma(0.3, 4.0 / (0.3 * stage.grid.size_mm[0]), (3, *stage.grid.shape)).astype(np.float32)
-    powers = random.uniform(0.8, 2.0, (len(lighting.pairs), 3))
-    cube = Cube(extinction, stage.grid, views, powers, lighting=lighting)
-    shadows = np.stack(list(cast(cube, views, powers, lighting)))
-    inside = lighting.inside(views.picture_shape).astype(np.float32)
-    return cube, Frames(shadows, views, inside, lighting=lighting)
+    powers = random.uniform(0.8, 2.0, (len(rig.pairs), 3))
+    cube = Cube(extinction, stage.grid, rig, powers)
+    shadows = np.stack(list(cast(cube, rig, powers)))
+    inside = rig.inside.astype(np.float32)
+    return cube, Frames(shadows, rig, inside)
 
 
 def test_there_is_a_stage_for_each_way_to_light_a_cube() -> None:

@@ -18,7 +18,7 @@ from lightcube.kernels.layout import (
 from lightcube.optics.absorption import absorbance, extinction, transmittance, transparency
 from lightcube.optics.grid import Grid, picture_shape, raster_shape
 from lightcube.optics.transfer import check_transfer, decode, encode, from_uint8, to_uint8
-from lightcube.optics.views import Views, held, spread_angles, turned, turntable
+from lightcube.optics.views import Views, spread_angles, turntable_views
 from tests.helpers import plain
 
 
@@ -43,7 +43,7 @@ def test_the_raster_holds_the_whole_shadow_and_is_no_larger_than_it_must(
 
 def test_light_screen_and_turning_are_as_the_conventions_say() -> None:
     grid = Grid((3, 5, 7), 2.0)
-    views = turntable(grid, [0.0, 90.0], elevation=30.0)
+    views = turntable_views(grid, [0.0, 90.0], elevation=30.0)
     assert np.allclose(views.lamps[0], [math.cos(math.pi / 6), 0, -0.5, 0])
     assert np.allclose(views.column_steps[0], [0, -2, 0])
     assert np.allclose(views.row_steps[0], [0, 0, -2])
@@ -54,7 +54,7 @@ def test_light_screen_and_turning_are_as_the_conventions_say() -> None:
 
 @given(st.floats(0, 359.99), st.floats(-85, 85))
 def test_angles_and_elevations_come_back(angle: float, elevation: float) -> None:
-    views = turntable(Grid((2, 2, 2)), [angle], elevation=elevation)
+    views = turntable_views(Grid((2, 2, 2)), [angle], elevation=elevation)
     assert (views.angles[0] - angle + 180) % 360 - 180 == pytest.approx(0, abs=2e-9)
     assert views.elevations[0] == pytest.approx(elevation, abs=2e-9)
 
@@ -100,12 +100,12 @@ def test_picture_shapes_have_the_rasters_parity_and_fit(
         lambda: Grid((3, 3)),  # type: ignore[arg-type]
         lambda: Grid((3, 3, 3), -1.0),
         lambda: Grid((3, 3, 3), math.nan),
-        lambda: turntable(Grid((3, 3, 3)), []),
-        lambda: turntable(Grid((3, 3, 3)), [math.nan]),
-        lambda: turntable(Grid((3, 3, 3)), [0], elevation=90),
-        lambda: turntable(Grid((3, 3, 3)), [0], elevation=-90),
-        lambda: turntable(Grid((3, 3, 3)), [0], picture_shape=(3, 7)),
-        lambda: turntable(Grid((3, 3, 3)), [0], picture_shape=(0, 3)),
+        lambda: turntable_views(Grid((3, 3, 3)), []),
+        lambda: turntable_views(Grid((3, 3, 3)), [math.nan]),
+        lambda: turntable_views(Grid((3, 3, 3)), [0], elevation=90),
+        lambda: turntable_views(Grid((3, 3, 3)), [0], elevation=-90),
+        lambda: turntable_views(Grid((3, 3, 3)), [0], picture_shape=(3, 7)),
+        lambda: turntable_views(Grid((3, 3, 3)), [0], picture_shape=(0, 3)),
         lambda: picture_shape(Grid((3, 3, 3)), 0.0, 1.0),
         lambda: picture_shape(Grid((3, 3, 3)), 9.0, 1.0),
         lambda: picture_shape(Grid((3, 3, 3)), 1.0, math.inf),
@@ -155,22 +155,3 @@ def test_the_papers_transparency_is_that_of_a_voxels_diagonal(k: float, side: fl
     assert transparency(sigma, side)[0] == pytest.approx(k)
     assert transmittance(sigma * math.sqrt(2) * side)[0] == pytest.approx(k)
     assert absorbance(transmittance(sigma))[0] == pytest.approx(sigma[0], abs=1e-12)
-
-
-@given(st.floats(0.01, 20), st.integers(4, 200), st.sampled_from([0.0, 35.0]))
-def test_held_views_are_dense_enough_and_keep_the_stop_in_the_middle(hold: float, n: int, elevation: float) -> None:
-    grid = Grid((4, n, 4))
-    views = turntable(grid, [20.0, 70.0, 150.0], elevation=elevation, picture_shape=(2, 2))
-    angles = held(views, hold, grid).angles.reshape(3, -1)
-    assert np.allclose(angles[:, angles.shape[1] // 2], views.angles)
-    assert np.allclose(angles[:, -1] - angles[:, 0], 2 * hold)
-    assert np.max(np.diff(angles, axis=1)) <= 0.5 * 64 / n + 1e-6
-    assert angles.shape[1] == 1 + 2 * np.ceil(hold / (0.5 * 64 / n) - 1e-9)
-
-
-def test_turned_views_are_the_views_of_other_angles() -> None:
-    grid = Grid((3, 5, 7), 2.0)
-    views = turntable(grid, [10.0, 80.0], elevation=20.0)
-    for field in ("lamps", "origins", "column_steps", "row_steps"):
-        expected = getattr(turntable(grid, [30.0, 70.0], elevation=20.0), field)
-        assert np.allclose(getattr(turned(views, [20.0, -10.0]), field), expected)

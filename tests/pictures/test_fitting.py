@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, picture_shape
+from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import to_uint8
-from lightcube.optics.views import distinct_angles, spread_angles, turntable
-from lightcube.pictures.fitting import Fit, fit, fit_report, frames_from_targets, targets
+from lightcube.optics.views import distinct_angles, spread_angles
+from lightcube.pictures.fitting import Fit, fit_report, frames_from_targets, targets
 from lightcube.pictures.frames import Frames, Pictures
+from tests.helpers.recipes import fitted
 
 GRID = Grid((12, 16, 14))
 FITS: tuple[Fit, ...] = ("crop", "pad", "stretch")
@@ -59,8 +61,8 @@ def plain_resize(image: NDArray[np.float32], rows: int, columns: int, box: tuple
 @pytest.mark.parametrize("shape", [(12, 16), (6, 8), (10, 14), (12, 6)])
 def test_at_the_frames_size_pictures_are_not_touched(mode: Fit, elevation: float, shape: tuple[int, int]) -> None:
     read = pictures(shape, shape, shape)
-    frames = fit(read, GRID, elevation=elevation, frame_width=shape[1] / 16, fit=mode)
-    assert frames.views.picture_shape == shape
+    frames = fitted(read, GRID, elevation=elevation, frame_width=shape[1] / 16, fit_mode=mode)
+    assert frames.rig.picture_shape == shape
     np.testing.assert_array_equal(frames.pictures.view(np.uint32), np.stack(read.images).view(np.uint32))
     np.testing.assert_array_equal(frames.weight, 1)
     assert frames.names == read.names
@@ -69,16 +71,16 @@ def test_at_the_frames_size_pictures_are_not_touched(mode: Fit, elevation: float
 @pytest.mark.parametrize("size", [(14, 18), (22, 26), (18, 22), (49, 47), (61, 59)])
 def test_rounding_of_the_aspect_touches_nothing(size: tuple[int, int]) -> None:
     read = pictures(size, size)
-    frames = fit(read, Grid((size[0], size[1], size[1])))
+    frames = fitted(read, Grid((size[0], size[1], size[1])))
     np.testing.assert_array_equal(frames.pictures, np.stack(read.images))
 
 
 @pytest.mark.parametrize("first", [(9, 12), (30, 40), (45, 60), (31, 40)])
 def test_crop_is_a_centred_lanczos_of_the_part_with_the_right_aspect(first: tuple[int, int]) -> None:
     read = pictures(first, (40, 30), (11, 60), (12, 17))
-    frames = fit(read, GRID)
+    frames = fitted(read, GRID)
     rows, columns = picture_shape(GRID, 1.0, first[1] / first[0])
-    assert frames.views.picture_shape == (rows, columns)
+    assert frames.rig.picture_shape == (rows, columns)
     for image, frame in zip(read.images, frames.pictures, strict=True):
         high, wide = image.shape[:2]
         aspect = columns / rows
@@ -93,7 +95,7 @@ def test_crop_is_a_centred_lanczos_of_the_part_with_the_right_aspect(first: tupl
 
 def test_stretch_takes_all_of_each_picture() -> None:
     read = pictures((9, 12), (40, 30), (5, 60))
-    frames = fit(read, GRID, fit="stretch")
+    frames = fitted(read, GRID, fit_mode="stretch")
     for image, frame in zip(read.images, frames.pictures, strict=True):
         high, wide = image.shape[:2]
         np.testing.assert_allclose(frame, plain_resize(image, 12, 16, (0, 0, wide, high)), atol=2e-5)
@@ -112,8 +114,8 @@ def test_stretch_takes_all_of_each_picture() -> None:
 )
 def test_pad_keeps_all_and_does_not_care_about_the_rest(size: tuple[int, int], inside: tuple[int, int]) -> None:
     read = pictures((24, 32), size)
-    frames = fit(read, GRID, fit="pad")
-    assert frames.views.picture_shape == (12, 16)
+    frames = fitted(read, GRID, fit_mode="pad")
+    assert frames.rig.picture_shape == (12, 16)
     top, left = (12 - inside[0]) // 2, (16 - inside[1]) // 2
     window = (slice(top, top + inside[0]), slice(left, left + inside[1]))
     wanted = plain_resize(read.images[1], *inside, (0, 0, size[1], size[0]))
@@ -129,7 +131,7 @@ def test_pad_keeps_all_and_does_not_care_about_the_rest(size: tuple[int, int], i
 
 def test_pad_never_loses_a_picture_altogether() -> None:
     for grid in (Grid((3, 5, 7)), Grid((4, 6, 6)), Grid((1, 1, 1)), Grid((2, 2, 2))):
-        frames = fit(pictures((20, 20), (1, 300), (300, 1)), grid, fit="pad")
+        frames = fitted(pictures((20, 20), (1, 300), (300, 1)), grid, fit_mode="pad")
         assert np.all(frames.weight.max(axis=(1, 2)) == 1)
 
 
@@ -147,12 +149,12 @@ def test_laws_of_any_fit(
     read = pictures(*sizes)
     grid = Grid(shape)
     try:
-        frames = fit(read, grid, frame_width=frame_width, elevation=elevation, fit=mode)
+        frames = fitted(read, grid, frame_width=frame_width, elevation=elevation, fit_mode=mode)
     except InputError as error:
         assert "wider than the cube's screen" in str(error)  # noqa: PT017 - any other exception fails the test
         return
     first = read.images[0].shape
-    assert frames.views.picture_shape == picture_shape(grid, frame_width, first[1] / first[0], elevation)
+    assert frames.rig.picture_shape == picture_shape(grid, frame_width, first[1] / first[0], elevation)
     assert frames.pictures.dtype == np.float32
     for image, frame, weight in zip(read.images, frames.pictures, frames.weight, strict=True):
         assert set(np.unique(weight)) <= {0, 1}
@@ -162,10 +164,10 @@ def test_laws_of_any_fit(
         assert np.all(inside <= image.max(axis=(0, 1)))
         np.testing.assert_array_equal(frame[weight == 0], 1)
     flat = replace(read, images=tuple(image * 0 + np.float32(0.3) for image in read.images))
-    same = fit(flat, grid, frame_width=frame_width, elevation=elevation, fit=mode)
+    same = fitted(flat, grid, frame_width=frame_width, elevation=elevation, fit_mode=mode)
     np.testing.assert_array_equal(same.pictures[same.weight > 0], np.float32(0.3))
     mirrored = replace(read, images=tuple(image[::-1, ::-1] for image in read.images))
-    turned = fit(mirrored, grid, frame_width=frame_width, elevation=elevation, fit=mode)
+    turned = fitted(mirrored, grid, frame_width=frame_width, elevation=elevation, fit_mode=mode)
     np.testing.assert_allclose(turned.pictures, frames.pictures[:, ::-1, ::-1], atol=2e-5)
     np.testing.assert_array_equal(turned.weight, frames.weight[:, ::-1, ::-1])
 
@@ -174,37 +176,37 @@ def test_shrinking_keeps_the_light() -> None:
     """A fine checker of black and white becomes half the light, not half the display value."""
     checker = np.indices((96, 128)).sum(axis=0) % 2
     image = np.repeat(checker[:, :, None].astype(np.float32), 3, axis=2)
-    frames = fit(Pictures((image, image), ("a", "b")), GRID)
+    frames = fitted(Pictures((image, image), ("a", "b")), GRID)
     np.testing.assert_allclose(frames.pictures, 0.5, atol=1e-3)
 
 
 class TestAngles:
     def test_those_asked_for_win(self) -> None:
         read = replace(pictures((12, 16), (12, 16)), angles=np.array([1.0, 2.0]), elevation=10.0)
-        frames = fit(read, GRID, angles=[30, -40], elevation=20)
-        np.testing.assert_allclose(frames.views.angles, [30, 320])
-        np.testing.assert_allclose(frames.views.elevations, 20)
+        frames = fitted(read, GRID, angles=[30, -40], elevation=20)
+        np.testing.assert_allclose(frames.rig.views.angles, [30, 320])
+        np.testing.assert_allclose(frames.rig.views.elevations, 20)
 
     def test_then_a_span(self) -> None:
         read = replace(pictures((12, 16), (12, 16)), angles=np.array([1.0, 2.0]))
-        np.testing.assert_allclose(fit(read, GRID, span=90).views.angles, spread_angles(2, 90))
+        np.testing.assert_allclose(fitted(read, GRID, span=90).angles, spread_angles(2, 90))
 
     def test_then_those_of_the_pictures(self) -> None:
         read = replace(pictures((12, 16), (12, 16)), angles=np.array([1.0, 2.0]), elevation=10.0)
-        frames = fit(read, GRID)
-        np.testing.assert_allclose(frames.views.angles, [1, 2])
-        np.testing.assert_allclose(frames.views.elevations, 10)
-        np.testing.assert_allclose(fit(read, GRID, elevation=0).views.elevations, 0)
+        frames = fitted(read, GRID)
+        np.testing.assert_allclose(frames.rig.views.angles, [1, 2])
+        np.testing.assert_allclose(frames.rig.views.elevations, 10)
+        np.testing.assert_allclose(fitted(read, GRID, elevation=0).rig.views.elevations, 0)
 
     @pytest.mark.parametrize("elevation", [0.0, 35.0])
     def test_else_spread_evenly(self, elevation: float) -> None:
-        frames = fit(pictures(*[(12, 16)] * 5), GRID, elevation=elevation)
-        np.testing.assert_allclose(frames.views.angles, spread_angles(5, elevation=elevation))
+        frames = fitted(pictures(*[(12, 16)] * 5), GRID, elevation=elevation)
+        np.testing.assert_allclose(frames.rig.views.angles, spread_angles(5, elevation=elevation))
 
     @pytest.mark.parametrize("angles", [[0, 360], [10, -350], [5, 5], [-1e-12, 0], [359.9999999999, 0]])
     def test_the_same_view_twice_is_refused(self, angles: list[float]) -> None:
         with pytest.raises(InputError, match=r"number 1 and 2 .* are the same view"):
-            fit(pictures((12, 16), (12, 16)), GRID, angles=angles)
+            fitted(pictures((12, 16), (12, 16)), GRID, angles=angles)
         with pytest.raises(InputError, match=r"number 1 and 2 .* are the same view"):
             distinct_angles(angles)
 
@@ -222,43 +224,43 @@ class TestRefused:
     @pytest.mark.parametrize("bad", [math.nan, math.inf])
     def test_angles_that_are_not_finite(self, bad: float) -> None:
         with pytest.raises(InputError, match="angle number 2"):
-            fit(pictures((12, 16), (12, 16)), GRID, angles=[0, bad])
+            fitted(pictures((12, 16), (12, 16)), GRID, angles=[0, bad])
 
     def test_another_number_of_angles(self) -> None:
         with pytest.raises(InputError, match="3 angles for 2 pictures"):
-            fit(pictures((12, 16), (12, 16)), GRID, angles=[1, 2, 3])
+            fitted(pictures((12, 16), (12, 16)), GRID, angles=[1, 2, 3])
 
     def test_angles_and_span(self) -> None:
         with pytest.raises(InputError, match="use one of the two"):
-            fit(pictures((12, 16), (12, 16)), GRID, angles=[1, 2], span=90)
+            fitted(pictures((12, 16), (12, 16)), GRID, angles=[1, 2], span=90)
 
     @pytest.mark.parametrize("span", [0, 361, math.nan])
     def test_spans(self, span: float) -> None:
         with pytest.raises(InputError, match="span"):
-            fit(pictures((12, 16), (12, 16)), GRID, span=span)
+            fitted(pictures((12, 16), (12, 16)), GRID, span=span)
 
     @pytest.mark.parametrize("elevation", [90, -90, math.nan, math.inf])
     def test_elevations(self, elevation: float) -> None:
         with pytest.raises(InputError, match="elevation"):
-            fit(pictures((12, 16), (12, 16)), GRID, elevation=elevation)
+            fitted(pictures((12, 16), (12, 16)), GRID, elevation=elevation)
 
     @pytest.mark.parametrize("count", [0, 1])
     def test_fewer_than_two_pictures(self, count: int) -> None:
         with pytest.raises(InputError, match=f"^{count} picture{'s' if count != 1 else ''} cannot"):
-            fit(pictures(*[(12, 16)] * count), GRID)
+            fitted(pictures(*[(12, 16)] * count), GRID)
 
     def test_frames_wider_than_the_screen(self) -> None:
         with pytest.raises(InputError, match="wider than its screen"):
-            fit(pictures((12, 16), (12, 16)), GRID, frame_width=2)
+            fitted(pictures((12, 16), (12, 16)), GRID, frame_width=2)
 
     @pytest.mark.parametrize("frame_width", [0, -1, math.nan, math.inf])
     def test_widths(self, frame_width: float) -> None:
         with pytest.raises(InputError, match="frame width"):
-            fit(pictures((12, 16), (12, 16)), GRID, frame_width=frame_width)
+            fitted(pictures((12, 16), (12, 16)), GRID, frame_width=frame_width)
 
     def test_unknown_fits(self) -> None:
         with pytest.raises(InputError, match="crop, pad, stretch"):
-            fit(pictures((12, 16), (12, 16)), GRID, fit="squeeze")  # type: ignore[arg-type]
+            fitted(pictures((12, 16), (12, 16)), GRID, fit_mode="squeeze")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -282,7 +284,7 @@ class TestRefused:
 )
 def test_the_report_says_what_was_done(sizes: list[tuple[int, int]], mode: Fit, line: str) -> None:
     read = pictures(*sizes)
-    assert fit_report(read, fit(read, GRID, fit=mode), mode) == line.format(read.names[0])
+    assert fit_report(read, fitted(read, GRID, fit_mode=mode), mode) == line.format(read.names[0])
 
 
 class TestTargets:
@@ -315,13 +317,13 @@ class TestTargets:
     @given(seed=st.integers(0, 2**32 - 1), transfer=st.sampled_from(["srgb", "linear"]))
     def test_a_cube_gives_its_frames_back(self, seed: int, transfer: str) -> None:
         grid = Grid((3, 5, 7))
-        views = turntable(grid, [1, 2], picture_shape=(3, 5))
+        rig = turntable(grid, [1, 2], picture_shape=(3, 5))
         levels = np.random.default_rng(seed).integers(0, 256, (2, 3, 5, 4), dtype=np.uint8)
         levels[:, 0, 0, 3] = 255
         cube = Cube(
             np.zeros((3, 3, 5, 7), np.float32),
             grid,
-            views,
+            rig,
             targets=levels,
             names=("a", "b"),
             transfer=transfer,  # type: ignore[arg-type]
@@ -330,7 +332,7 @@ class TestTargets:
         np.testing.assert_array_equal(targets(frames), levels)
         assert frames.names == ("a", "b")
         assert frames.transfer == transfer
-        assert frames.views is views
+        assert frames.rig is rig
 
     def test_a_cube_without_targets_is_refused(self) -> None:
         grid = Grid((3, 5, 7))

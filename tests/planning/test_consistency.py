@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from lightcube.io.scenes import read_scene
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import decode, encode
-from lightcube.optics.views import spread_angles, turntable
-from lightcube.pictures.fitting import fit
+from lightcube.optics.views import spread_angles
 from lightcube.pictures.frames import Frames
 from lightcube.pictures.samples import photographs
 from lightcube.planning.consistency import (
@@ -29,6 +29,7 @@ from lightcube.planning.consistency import (
 )
 from lightcube.projection.projector import Projector
 from lightcube.scene.tracer import scene_frames
+from tests.helpers.recipes import fitted, lit
 
 JIT_OFF = bool(getattr(config, "DISABLE_JIT", 0))
 SHAPE = (3, 5, 7)
@@ -37,11 +38,11 @@ GEMS = Grid((16, 16, 16)) if JIT_OFF else Grid((32, 34, 30))
 ANGLES = [11.0, 52.0, 83.0, 124.0, 165.0]
 
 
-def pictures_of(cube: NDArray[Any], grid: Grid, views: Any, powers: NDArray[Any] | float = 1.0) -> Frames:
+def pictures_of(cube: NDArray[Any], grid: Grid, rig: Any, powers: NDArray[Any] | float = 1.0) -> Frames:
     """What a cube ``(channel, z, y, x)`` casts."""
-    absorbance = Projector(grid, views).forward(columns_from_volume(cube)).reshape(-1, views.picture_shape[0] * 3)
-    light = pictures_from_columns(np.exp(-absorbance), views.picture_shape, 3)
-    return Frames((light * powers).astype(np.float32), views)
+    absorbance = Projector(grid, rig).forward(columns_from_volume(cube)).reshape(-1, rig.picture_shape[0] * 3)
+    light = pictures_from_columns(np.exp(-absorbance), rig.picture_shape, 3)
+    return Frames((light * powers).astype(np.float32), rig)
 
 
 def gems(angles: Any, elevation: float) -> Frames:
@@ -50,14 +51,14 @@ def gems(angles: Any, elevation: float) -> Frames:
 
 def unrelated(elevation: float) -> Frames:
     whole = turntable(GEMS, [0.0], elevation=elevation).picture_shape[1]
-    return fit(photographs(5), GEMS, angles=ANGLES, elevation=elevation, frame_width=whole / GEMS.shape[1])
+    return fitted(photographs(5), GEMS, angles=ANGLES, elevation=elevation, frame_width=whole / GEMS.shape[1])
 
 
 def grey(seed: int = 0, columns: int = 9, angles: Any = ANGLES, elevation: float = 0.0) -> Frames:
     """Pictures of 3 rows, between a fifth and a third of white."""
-    views = turntable(Grid(SHAPE, SIDE), angles, elevation=elevation, picture_shape=(3, columns))
-    light = np.random.default_rng(seed).uniform(0.2, 0.3, (len(views), 3, columns, 3))
-    return Frames(light.astype(np.float32), views, names=tuple("abcdefgh"[: len(views)]))
+    rig = turntable(Grid(SHAPE, SIDE), angles, elevation=elevation, picture_shape=(3, columns))
+    light = np.random.default_rng(seed).uniform(0.2, 0.3, (len(rig), 3, columns, 3))
+    return Frames(light.astype(np.float32), rig, names=tuple("abcdefgh"[: len(rig)]))
 
 
 @pytest.mark.parametrize("columns", [3, 4, 6, 7, 9])
@@ -77,12 +78,12 @@ def test_no_cube_s_own_pictures_conflict(shape: tuple[int, int, int], filled: fl
 def test_one_voxel_s_totals_differ_by_the_factor_that_is_allowed() -> None:
     # Turned by 45 degrees a voxel is a rhomb, seen by one beam through its tip or by two beside it.
     grid = Grid((1, 8, 8))
-    views = turntable(grid, [45.0])
+    rig = turntable(grid, [45.0])
     totals = []
     for x in range(8):
         cube = np.zeros((3, 1, 8, 8))
         cube[:, 0, 3, x] = 1
-        totals.append(-np.log(pictures_of(cube, grid, views).pictures[0, 0, :, 0].astype(float)).sum())
+        totals.append(-np.log(pictures_of(cube, grid, rig).pictures[0, 0, :, 0].astype(float)).sum())
     assert max(totals) <= np.sqrt(2) + 1e-5
     assert min(totals) >= 2 * np.sqrt(2) - 2 - 1e-5
     assert max(totals) / min(totals) > 1.5
@@ -166,9 +167,9 @@ def test_moments_are_those_of_plain_sums() -> None:
 
 
 def plain_moments(frames: Frames) -> dict[str, float]:
-    views, rows, columns, _ = frames.pictures.shape
-    raised = frames.views.elevations[0] > 0
-    turn = np.radians(frames.views.angles)
+    rig, rows, columns, _ = frames.pictures.shape
+    raised = frames.rig.views.elevations[0] > 0
+    turn = np.radians(frames.rig.views.angles)
     total: dict[tuple[int, int, int], float] = {}
     across: dict[tuple[int, int, int], float] = {}
     down: dict[tuple[int, int, int], float] = {}
@@ -182,15 +183,15 @@ def plain_moments(frames: Frames) -> dict[str, float]:
     scale = float(np.mean(list(total.values())))
     deviations: dict[str, list[float]] = {"total": [], "with": [], "across": [], "down": []}
     for r, c in slots:
-        column = np.array([total[v, r, c] for v in range(views)])
-        of_channel = np.array([[total[v, other, c] for v in range(views)] for other, k in slots if k == c])
+        column = np.array([total[v, r, c] for v in range(rig)])
+        of_channel = np.array([[total[v, other, c] for v in range(rig)] for other, k in slots if k == c])
         deviations["total"] += list(column - column.mean())
         deviations["with"] += list(column - column.mean() - of_channel.mean(axis=0) + of_channel.mean())
         design = np.stack([np.cos(turn), np.sin(turn)]).T
-        deviations["across"] += list(left_by(design, np.array([across[v, r, c] for v in range(views)])))
+        deviations["across"] += list(left_by(design, np.array([across[v, r, c] for v in range(rig)])))
         if raised:
-            design = np.stack([np.cos(turn), np.sin(turn), np.ones(views)]).T
-            deviations["down"] += list(left_by(design, np.array([down[v, r, c] for v in range(views)])))
+            design = np.stack([np.cos(turn), np.sin(turn), np.ones(rig)]).T
+            deviations["down"] += list(left_by(design, np.array([down[v, r, c] for v in range(rig)])))
     spread = {name: float(np.sqrt(np.mean(np.square(found or [0.0])))) / scale for name, found in deviations.items()}
     return {
         "total": spread["total"],
@@ -264,8 +265,9 @@ def test_what_is_don_t_care_changes_nothing(elevation: float) -> None:
     light[3, 1] = 1
     made = replace(frames, pictures=light, weights=weights)
     other = np.where(weights[..., None] > 0, light, np.random.default_rng(7).random(light.shape)).astype(np.float32)
-    facts = check(made, grid, 1.0)
-    assert facts == check(replace(made, pictures=other), grid, 1.0)
+    made = lit(made, lamp_power=1.0)
+    facts = check(made, grid)
+    assert facts == check(replace(made, pictures=other), grid)
     assert bool(facts["row_conflicts"]) == (elevation == 0)
 
 
@@ -273,8 +275,8 @@ def test_the_load_counts_widths_or_areas() -> None:
     grid = Grid((6, 5, 7))
     level = turntable(grid, ANGLES, picture_shape=(4, 3))
     raised = turntable(grid, ANGLES, elevation=30.0, picture_shape=(4, 3))
-    assert load(level, grid) == pytest.approx(5 * 3 / 5)
-    assert load(raised, grid) == pytest.approx(5 * 3 * 4 / (5 * 6))
+    assert load(level.views, grid) == pytest.approx(5 * 3 / 5)
+    assert load(raised.views, grid) == pytest.approx(5 * 3 * 4 / (5 * 6))
 
 
 def test_facts_go_through_json_and_say_whether_the_whole_shadow_is_seen() -> None:
@@ -290,19 +292,19 @@ def test_facts_go_through_json_and_say_whether_the_whole_shadow_is_seen() -> Non
 
 def test_good_pictures_need_no_advice() -> None:
     grid = Grid((32, 32, 32))
-    assert advice(check(fit(photographs(16), grid, elevation=35.0, frame_width=0.5), grid)) == []
+    assert advice(check(fitted(photographs(16), grid, elevation=35.0, frame_width=0.5), grid)) == []
     for elevation in (0.0, 35.0):
-        assert advice(check(gems(spread_angles(5, elevation=elevation), elevation), GEMS, 1.0)) == []
+        assert advice(check(lit(gems(spread_angles(5, elevation=elevation), elevation), lamp_power=1.0), GEMS)) == []
 
 
 def test_advice_names_pictures_rows_and_a_way_out() -> None:
     grid = Grid((24, 24, 24))
-    frames = fit(photographs(8), grid, span=360.0, elevation=0.0, frame_width=1.4)
+    frames = fitted(photographs(8), grid, span=360.0, elevation=0.0, frame_width=1.4)
     light = frames.pictures.copy()
     light[3, 4:7] = 1
     light[3, 9] = 1
     light[6], light[5, :2] = light[1], 0.5
-    facts = check(replace(frames, pictures=light), grid, 1.0)
+    facts = check(lit(replace(frames, pictures=light), lamp_power=1.0), grid)
     said = advice(facts)
     for beginning, part in [
         ("The load is 11.3; unrelated pictures come out well up to 4.5: use at most 3 pictures", "at most 13 pixels"),

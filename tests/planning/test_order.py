@@ -13,8 +13,9 @@ from lightcube.forward.casting import play
 from lightcube.kernels import ordering
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.views import spread_angles, turntable
-from lightcube.pictures.arranging import shifted, spread_over_screen
+from lightcube.optics.rig import turntable
+from lightcube.optics.views import spread_angles
+from lightcube.pictures.arranging import spread_over_screen
 from lightcube.pictures.frames import Frames
 from lightcube.planning import order as orders
 from lightcube.planning.order import Order, best_order
@@ -26,17 +27,17 @@ GRID = Grid((3, 5, 7), 0.5)
 def unrelated(count: int, elevation: float = 35.0, grid: Grid = GRID, seed: int = 0) -> Frames:
     """Pictures of noise, 3 pixels high and 5 wide, with weights and names."""
     random = np.random.default_rng(seed)
-    views = turntable(grid, spread_angles(count, elevation=elevation), elevation=elevation, picture_shape=(3, 5))
+    rig = turntable(grid, spread_angles(count, elevation=elevation), elevation=elevation, picture_shape=(3, 5))
     pictures = random.random((count, 3, 5, 3)).astype(np.float32)
     weights = random.integers(1, 4, (count, 3, 5)).astype(np.float32)
-    return Frames(pictures, views, weights, tuple(f"picture {i}" for i in range(count)))
+    return Frames(pictures, rig, weights, tuple(f"picture {i}" for i in range(count)))
 
 
 def cast_by_a_cube(count: int, elevation: float) -> Frames:
     extinction = np.random.default_rng(3).random((3, *GRID.shape)).astype(np.float32)
-    views = turntable(GRID, spread_angles(count, elevation=elevation), elevation=elevation, picture_shape=(3, 5))
-    cube = Cube(extinction, GRID, views)
-    return Frames(play(cube), views)
+    rig = turntable(GRID, spread_angles(count, elevation=elevation), elevation=elevation, picture_shape=(3, 5))
+    cube = Cube(extinction, GRID, rig)
+    return Frames(play(cube), rig)
 
 
 @pytest.fixture(autouse=True)
@@ -63,7 +64,7 @@ def test_names_and_weights_go_with_their_pictures_and_the_views_stay() -> None:
     assert order.names == ("picture 2", "picture 0", "picture 3", "picture 1")
     np.testing.assert_array_equal(order.pictures[0], frames.pictures[2])
     np.testing.assert_array_equal(order.weight[3], frames.weight[1])
-    assert order.views is frames.views
+    assert order.rig is frames.rig
 
 
 def test_the_order_does_not_depend_on_how_the_pictures_are_numbered() -> None:
@@ -151,12 +152,12 @@ def test_tiles_are_weighted_means(shape: tuple[int, int]) -> None:
 def test_the_model_is_what_ridge_regression_leaves(elevation: float, tiles: tuple[int, int]) -> None:
     frames = unrelated(3, elevation)
     features = orders._features(frames, tiles)
-    parts = orders._parts(frames.views, GRID, features, tiles)
+    parts = orders._parts(frames.rig.views, GRID, features, tiles)
     order = [1, 2, 0]
     left = sum(parts[:, stop, order[stop]] for stop in range(3))
     matrix = np.zeros((3, 5, 3, 105))
     for view, row, column in np.ndindex(3, 3, 5):
-        lengths = lengths_of_beam(GRID, *beam_of_pixel(frames.views, view, row, column))
+        lengths = lengths_of_beam(GRID, *beam_of_pixel(frames.rig.views, view, row, column))
         matrix[view, column, row] = lengths.ravel()
     edges = [range(round(i * 5 / tiles[1] * 2), round((i + 1) * 5 / tiles[1] * 2)) for i in range(tiles[1])]
     rows = np.stack([np.mean([matrix[:, half // 2] for half in halves], axis=0) for halves in edges], axis=1)
@@ -210,8 +211,8 @@ def test_a_tour_of_points_on_a_circle_goes_round_it() -> None:
 @pytest.mark.parametrize(("elevation", "rows"), [(0.0, 3), (35.0, 3), (20.0, 5)])
 def test_moved_pictures_stand_on_the_screen_and_neighbours_apart(elevation: float, rows: int) -> None:
     grid = Grid((5, 12, 14))
-    views = turntable(grid, spread_angles(6, elevation=elevation), elevation=elevation, picture_shape=(rows, 4))
-    frames = Frames(np.ones((6, rows, 4, 3), np.float32), views)
+    rig = turntable(grid, spread_angles(6, elevation=elevation), elevation=elevation, picture_shape=(rows, 4))
+    frames = Frames(np.ones((6, rows, 4, 3), np.float32), rig)
     offsets = spread_over_screen(frames, grid, 2)
     screen = raster_shape(grid, elevation)
     assert np.all(2 * np.abs(offsets) <= np.array([12 - 4, screen[0] - rows]))
@@ -230,10 +231,10 @@ def test_level_pictures_as_high_as_the_cube_move_sideways_only() -> None:
 
 def test_a_moved_window_shows_that_part_of_the_whole_screen() -> None:
     frames = cast_by_a_cube(4, 35.0)
-    cube = Cube(np.random.default_rng(3).random((3, *GRID.shape)).astype(np.float32), GRID, frames.views)
+    cube = Cube(np.random.default_rng(3).random((3, *GRID.shape)).astype(np.float32), GRID, frames.rig)
     offsets = np.array([[1, 2], [-1, 0], [0, -2], [2, 1]])
-    shown = play(replace(cube, views=shifted(frames, offsets).views))
-    whole = play(cube, whole_screen=True, angles=frames.views.angles)
+    shown = play(replace(cube, rig=frames.rig.shifted(offsets)))
+    whole = play(cube, whole_screen=True, angles=frames.rig.views.angles)
     for picture, screen, (right, down) in zip(shown, whole, offsets, strict=True):
         top, side = (screen.shape[0] - 3) // 2 + down, (screen.shape[1] - 5) // 2 + right
         np.testing.assert_allclose(picture, screen[top : top + 3, side : side + 5], rtol=1e-5)
@@ -244,4 +245,4 @@ def test_what_cannot_be_moved_is_refused() -> None:
     with pytest.raises(InputError, match="at least 0"):
         spread_over_screen(frames, GRID, -1)
     with pytest.raises(InputError, match="offsets of shape"):
-        shifted(frames, np.zeros((2, 2), int))
+        frames.rig.shifted(np.zeros((2, 2), int))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lightcube.optics.grid import Grid
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.planning.placement import doubtful, facts, impossible
 from lightcube.projection.projector import Projector
 
@@ -184,8 +184,8 @@ def test_a_screen_shows_one_picture_at_a_stop() -> None:
 )
 def test_the_beams_that_meet_the_cube_are_those_of_the_matrix(shape: tuple[int, int, int], lamp: Lamp) -> None:
     wide = stage(shape, lamps=(lamp,), screens=(Screen("wall", (30.0, 6.0, -12.0), (38.0, 27.0), 1.9),))
-    views, _ = exposures(wide)
-    matrix = Projector(wide.grid, views)
+    rig = wide.rig()
+    matrix = Projector(wide.grid, rig)
     met = (np.diff(matrix.to_sparse().tocsr().indptr) > 0).reshape(3, -1).mean(axis=1)
     assert 0 < met.min() < 1
     assert [each["beams_in_cube"] for each in facts(wide)["per_picture"]] == pytest.approx(met.tolist())

@@ -11,37 +11,34 @@ from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.views import spread_angles
 from lightcube.pictures.frames import Frames
 from lightcube.planning import prediction
 from lightcube.planning.prediction import Prediction, law, predict, reduced
 from lightcube.scoring.metrics import score
+from tests.helpers.recipes import lit
 
 
 def problem(
     shape: tuple[int, int, int] = (10, 12, 12),
-    views: int = 4,
+    rig: int = 4,
     picture: tuple[int, int] = (6, 4),
     elevation: float = 35.0,
     seed: int = 0,
 ) -> tuple[Frames, Grid]:
     """Random pictures."""
     grid = Grid(shape, 2.5)
-    stops = turntable(grid, spread_angles(views, elevation=elevation), elevation=elevation, picture_shape=picture)
-    pictures = np.random.default_rng(seed).uniform(0.05, 1, (views, *picture, 3)).astype(np.float32)
+    stops = turntable(grid, spread_angles(rig, elevation=elevation), elevation=elevation, picture_shape=picture)
+    pictures = np.random.default_rng(seed).uniform(0.05, 1, (rig, *picture, 3)).astype(np.float32)
     return Frames(pictures, stops), grid
 
 
 def doubled(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
     """The same problem with voxels and pixels of half the size."""
     nz, ny, nx = grid.shape
-    views, (rows, columns) = frames.views, frames.views.picture_shape
-    fine = replace(
-        views,
-        column_steps=views.column_steps / 2,
-        row_steps=views.row_steps / 2,
-        picture_shape=(2 * rows, 2 * columns),
-    )
+    rows, columns = frames.rig.picture_shape
+    fine = frames.rig.with_pixels(0.5, (2 * rows, 2 * columns))
     pictures, weights = (array.repeat(2, axis=1).repeat(2, axis=2) for array in (frames.pictures, frames.weight))
     return Frames(pictures, fine, weights), Grid((2 * nz, 2 * ny, 2 * nx), grid.voxel_mm / 2)
 
@@ -65,7 +62,9 @@ def test_what_was_doubled_is_reduced_to_what_it_was(elevation: float) -> None:
     np.testing.assert_allclose(small.pictures[seen], frames.pictures[seen], rtol=1e-6)
     np.testing.assert_allclose(small.weight, frames.weight, rtol=1e-6)
     for part in ("lamps", "origins", "column_steps", "row_steps"):
-        np.testing.assert_allclose(getattr(small.views, part), getattr(frames.views, part), rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(
+            getattr(small.rig.views, part), getattr(frames.rig.views, part), rtol=1e-12, atol=1e-12
+        )
 
 
 @pytest.mark.parametrize(
@@ -86,8 +85,8 @@ def test_reduced_problems_keep_their_proportions(
 
 
 def _check_proportions(frames: Frames, grid: Grid, small: Frames, small_grid: Grid, width: int) -> None:
-    shape, picture, elevation = grid.shape, frames.views.picture_shape, float(frames.views.elevations[0])
-    (nz, ny, nx), (rows, columns) = small_grid.shape, small.views.picture_shape
+    shape, picture, elevation = grid.shape, frames.rig.picture_shape, float(frames.rig.views.elevations[0])
+    (nz, ny, nx), (rows, columns) = small_grid.shape, small.rig.picture_shape
     assert 0.8 * width - 1 <= max(ny, nx) <= width + 1
     raster = raster_shape(small_grid, elevation)
     assert (rows - raster[0]) % 2 == (columns - raster[1]) % 2 == 0
@@ -96,7 +95,7 @@ def _check_proportions(frames: Frames, grid: Grid, small: Frames, small_grid: Gr
     load = picture[1] / np.sqrt(shape[1] * shape[2]), columns / np.sqrt(ny * nx)
     assert load[1] / load[0] == pytest.approx(1, abs=0.12)
     assert np.array([nz, rows, columns]) == pytest.approx(scale * np.array([shape[0], *picture]), abs=2.1)
-    lengths = np.linalg.norm(small.views.column_steps, axis=1)
+    lengths = np.linalg.norm(small.rig.views.column_steps, axis=1)
     assert lengths == pytest.approx(small_grid.voxel_mm)
 
 
@@ -107,8 +106,8 @@ def test_the_largest_pictures_stay_on_the_screen_and_level_ones_as_high_as_the_c
         rows, columns = raster_shape(grid, elevation)
         small, small_grid = reduced(*problem(grid.shape, 1, (rows, columns), elevation), 20)
         most = raster_shape(small_grid, elevation)
-        assert np.all(np.array(small.views.picture_shape) <= most)
-        assert elevation != 0 or small.views.picture_shape[0] == most[0] == small_grid.shape[0]
+        assert np.all(np.array(small.rig.picture_shape) <= most)
+        assert elevation != 0 or small.rig.picture_shape[0] == most[0] == small_grid.shape[0]
 
 
 def test_a_small_problem_stays_as_it_is() -> None:
@@ -119,7 +118,7 @@ def test_a_small_problem_stays_as_it_is() -> None:
 def test_reduced_pictures_have_the_values_of_the_large_ones_in_the_order_of_their_means() -> None:
     frames, grid = problem((36, 36, 36), 2, (18, 12))
     small, _ = reduced(frames, grid, 12)
-    assert small.views.picture_shape == (6, 4)
+    assert small.rig.picture_shape == (6, 4)
     for before, after in zip(frames.pictures, small.pictures, strict=True):
         # plain: means of 3 x 3 pixels, and of nine values at a time from the darkest on
         means = before.reshape(6, 3, 4, 3, 3).mean(axis=(1, 3)).reshape(24, 3)
@@ -183,8 +182,8 @@ def test_what_is_easier_is_not_told_to_be_worse(
     frames, grid = problem((16, 20, 18), 5, (8, 12))
     other, options = easier(frames, grid)
     hard, easy = (
-        predict(frames, grid, Recipe(lamp_max=2.0)),
-        predict(other, grid, Recipe(**{"lamp_max": 2.0, **options})),
+        predict(lit(frames, lamp_max=2.0), grid),
+        predict(lit(other, **{"lamp_max": 2.0, **options}), grid),
     )
     assert hard.psnr_mean < 50
     assert np.mean(easy.psnr) >= np.mean(hard.psnr) - 0.5
@@ -198,7 +197,8 @@ def test_a_hold_costs_something() -> None:
 
 def test_wider_pictures_are_told_to_be_worse() -> None:
     told = [
-        np.mean(predict(*problem((16, 20, 18), 5, (8, columns)), Recipe(lamp_max=2)).psnr) for columns in (4, 10, 20)
+        np.mean(predict(lit(frames, lamp_max=2), grid).psnr)
+        for frames, grid in (problem((16, 20, 18), 5, (8, columns)) for columns in (4, 10, 20))
     ]
     assert told[0] > told[1] > told[2]
 

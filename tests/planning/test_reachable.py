@@ -8,7 +8,7 @@ import pytest
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures.frames import Frames
 from lightcube.planning.reachable import least_light, out_of_reach, sentences, too_bright
 
@@ -20,16 +20,15 @@ def faded(lamps: int = 1, falloff_mm: float = 60.0) -> tuple[Stage, Frames]:
     wall = Screen("wall", (40, 0, 0), (16, 12), 2.0, reach_mm=20, falloff_mm=falloff_mm, cosine=True)
     names = tuple(lamp.name for lamp in lit)
     stage = Stage(grid, lit, (wall,), tuple(Shot(str(i), "wall", names, i) for i in range(2)), stops=(10.0, 130.0))
-    views, lighting = exposures(stage)
+    rig = stage.rig()
     random = np.random.default_rng(lamps)
     cube = Cube(
         random.gamma(0.5, 0.3, (3, *grid.shape)).astype(np.float32),
         grid,
-        views,
-        random.uniform(0.5, 3, (len(lighting.pairs), 3)),
-        lighting=lighting,
+        rig,
+        random.uniform(0.5, 3, (len(rig.pairs), 3)),
     )
-    return stage, Frames(np.stack(list(cast(cube, views, cube.powers, lighting))), views, lighting=lighting)
+    return stage, Frames(np.stack(list(cast(cube, rig, cube.powers))), rig)
 
 
 @pytest.mark.parametrize("lamps", [1, 2])
@@ -43,10 +42,9 @@ def test_what_a_cube_casts_is_within_reach(lamps: int) -> None:
 def test_an_opaque_cube_shows_the_least_light() -> None:
     """Under one lamp the bound is met: a black cube beside which a pixel is as bright as the lamp."""
     stage, frames = faded()
-    views, lighting = frames.views, frames.lighting
-    assert lighting is not None
-    black = Cube(np.full((3, *stage.grid.shape), 1e3, np.float32), stage.grid, views, lighting=lighting)
-    shown = np.stack(list(cast(black, views, black.powers, lighting)))
+    rig = frames.rig
+    black = Cube(np.full((3, *stage.grid.shape), 1e3, np.float32), stage.grid, rig)
+    shown = np.stack(list(cast(black, rig, black.powers)))
     least = least_light(replace(frames, pictures=shown))
     behind = (shown[0, ..., 0] < 0.5) & (shown[0, ..., 0].max() > 0.9)
     assert np.any(behind)
@@ -73,16 +71,14 @@ def test_without_fading_everything_is_within_reach() -> None:
 def test_brighter_than_all_lamps_is_out_of_reach() -> None:
     """The bound is what the lamps show at their largest power where no cube stands."""
     stage, frames = faded(2)
-    views, lighting = frames.views, frames.lighting
-    assert lighting is not None
+    rig = frames.rig
     clear = Cube(
         np.zeros((3, *stage.grid.shape), np.float32),
         stage.grid,
-        views,
-        np.repeat(lighting.most[lighting.pairs[:, 1], None], 3, axis=1),
-        lighting=lighting,
+        rig,
+        np.repeat(rig.lamps.most[rig.pairs[:, 1], None], 3, axis=1),
     )
-    most = np.stack(list(cast(clear, views, clear.powers, lighting)))
+    most = np.stack(list(cast(clear, rig, clear.powers)))
     assert np.all(too_bright(replace(frames, pictures=most)) == 0)
     brighter = most * np.where(np.arange(6) < 2, 1.05, 0.95)[:, None, None].astype(np.float32)
     assert np.allclose(too_bright(replace(frames, pictures=brighter)), 2 / 6)

@@ -14,7 +14,7 @@ from lightcube.kernels.layout import (
     volume_from_columns,
 )
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import turntable
+from lightcube.optics.views import turntable_views
 from lightcube.projection.projector import Projector, dot_test
 from tests.helpers import plain
 from tests.projection.test_rays import lamps_for, lit, screens_for
@@ -26,7 +26,7 @@ def operator(kind: str, shape: tuple[int, int, int] = (3, 5, 7)) -> Projector:
     """One of each kind of matrix, on four views of unequal sizes."""
     grid = Grid(shape, 0.7)
     if kind in ("level", "raised"):
-        return Projector(grid, turntable(grid, [0.0, 13.0, 90.0, 200.0], elevation=35.0 * (kind == "raised")))
+        return Projector(grid, turntable_views(grid, [0.0, 13.0, 90.0, 200.0], elevation=35.0 * (kind == "raised")))
     lamps = ["near", "inside"] if kind == "point" else ["aslant", "+x"]
     screens = [screens_for(shape)[name] for name in ("slanted", "on faces of x")]
     heard = np.random.default_rng(0).random((4, 2, 5)) < 0.6 if kind == "some pixels" else None

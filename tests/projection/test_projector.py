@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from lightcube.errors import InputError
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.views import Views, turntable
+from lightcube.optics.views import Views, turntable_views
 from lightcube.projection.projector import Projector, dot_test
 from tests.helpers import plain
 
@@ -29,7 +29,7 @@ def project(projector: Projector, volume: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("shape", SHAPES)
 def test_agrees_with_plain_boxes(shape: tuple[int, int, int], elevation: float) -> None:
     grid = Grid(shape, voxel_mm=0.7)
-    views = turntable(grid, ANGLES, elevation=elevation)
+    views = turntable_views(grid, ANGLES, elevation=elevation)
     volume = np.random.default_rng(1).random((2, *shape))
     assert np.allclose(
         project(Projector(grid, views), volume), plain.absorbance_pictures(grid, views, volume), rtol=1e-9, atol=1e-9
@@ -40,7 +40,7 @@ def test_agrees_with_plain_boxes(shape: tuple[int, int, int], elevation: float) 
 def test_long_rows_agree_with_the_sparse_matrix(turns: int) -> None:
     """Rows of 131 numbers are copied to begin at cache lines, those of the voxels where there are many beams."""
     grid = Grid((1, 5, 7), voxel_mm=0.7)
-    matrix = Projector(grid, turntable(grid, np.linspace(0, 300, turns)))
+    matrix = Projector(grid, turntable_views(grid, np.linspace(0, 300, turns)))
     x = np.random.default_rng(3).random((matrix.shape[1], 131)).astype(np.float32)
     b = np.random.default_rng(4).random((matrix.shape[0], 131)).astype(np.float32)
     assert np.allclose(matrix.forward(x), matrix.to_sparse() @ x, rtol=1e-5, atol=1e-5)
@@ -54,7 +54,7 @@ def test_windows_of_any_size_agree_with_plain_boxes(rows: int, columns: int, ele
     grid = Grid((4, 6, 5))
     if elevation == 0 and rows > 4:
         rows = 4
-    views = turntable(grid, [0.0, 90.0, 30.0], elevation=elevation, picture_shape=(rows, columns))
+    views = turntable_views(grid, [0.0, 90.0, 30.0], elevation=elevation, picture_shape=(rows, columns))
     volume = np.random.default_rng(2).random((3, 4, 6, 5))
     assert np.allclose(
         project(Projector(grid, views), volume), plain.absorbance_pictures(grid, views, volume), rtol=1e-9, atol=1e-9
@@ -69,7 +69,7 @@ def test_adjoint_is_the_transpose(
 ) -> None:
     grid = Grid(shape, voxel_mm=1.3)
     for columns in (1, 3, 7):
-        assert dot_test(Projector(grid, turntable(grid, ANGLES, elevation=elevation)), columns, dtype) < bound
+        assert dot_test(Projector(grid, turntable_views(grid, ANGLES, elevation=elevation)), columns, dtype) < bound
 
 
 def test_dot_test_finds_a_wrong_transpose() -> None:
@@ -91,7 +91,9 @@ def test_sparse_rows_and_linear_operator_are_the_same_matrix(
     elevation: float, picture_shape: tuple[int, int] | None
 ) -> None:
     grid = Grid((2, 4, 3), 0.5)
-    projector = Projector(grid, turntable(grid, [0, 31, 90, 200], elevation=elevation, picture_shape=picture_shape))
+    projector = Projector(
+        grid, turntable_views(grid, [0, 31, 90, 200], elevation=elevation, picture_shape=picture_shape)
+    )
     dense = projector.forward(np.eye(projector.shape[1]))
     assert np.allclose(projector.to_sparse().toarray(), dense, atol=1e-12)
     assert np.allclose(projector.adjoint(np.eye(projector.shape[0])), dense.T, atol=1e-12)
@@ -111,7 +113,7 @@ def test_sparse_rows_and_linear_operator_are_the_same_matrix(
 def test_chords_of_a_box_are_analytic(elevation: float) -> None:
     """A grid of ones is a box: each beam's absorbance is its chord by the slab method."""
     grid = Grid((3, 5, 7), 2.0)
-    views = turntable(grid, [7.0, 77.0, 160.0], elevation=elevation)
+    views = turntable_views(grid, [7.0, 77.0, 160.0], elevation=elevation)
     pictures = project(Projector(grid, views), np.ones((1, 3, 5, 7)))[..., 0]
     half = np.array(grid.size_mm[::-1]) / 2
     for view, row, column in np.ndindex(*pictures.shape):
@@ -135,7 +137,7 @@ def test_chords_of_a_sphere_are_analytic(elevation: float) -> None:
     z, y, x = np.meshgrid(*[np.arange(n) - (n - 1) / 2] * 3, indexing="ij")
     radius = 0.4 * n
     ball = (x**2 + y**2 + z**2 < radius**2).astype(np.float64)[None]
-    views = turntable(grid, [20.0, 65.0], elevation=elevation)
+    views = turntable_views(grid, [20.0, 65.0], elevation=elevation)
     pictures = project(Projector(grid, views), ball)[..., 0]
     expected = np.zeros_like(pictures)
     for index in np.ndindex(*pictures.shape):
@@ -155,7 +157,7 @@ def test_a_view_along_an_axis_holds_the_whole_mass(shape: tuple[int, int, int], 
     grid = Grid(shape, 0.5)
     volume = np.random.default_rng(3).random((1, *shape))
     for columns in (raster_shape(grid)[1], raster_shape(grid)[1] - 1):
-        views = turntable(grid, [angle], picture_shape=(shape[0], columns))
+        views = turntable_views(grid, [angle], picture_shape=(shape[0], columns))
         pictures = project(Projector(grid, views), volume)
         assert np.sum(pictures, axis=(0, 2, 3)) == pytest.approx(0.5 * np.sum(volume, axis=(0, 2, 3))[::-1])
 
@@ -164,7 +166,7 @@ def test_half_a_turn_is_the_mirror_only_at_elevation_0() -> None:
     grid = Grid((3, 5, 7))
     volume = np.random.default_rng(4).random((2, 3, 5, 7))
     for elevation, mirrored in ((0.0, True), (20.0, False), (-35.0, False)):
-        views = turntable(grid, [33.0, 213.0], elevation=elevation)
+        views = turntable_views(grid, [33.0, 213.0], elevation=elevation)
         front, back = project(Projector(grid, views), volume)
         assert np.allclose(front, back[:, ::-1], atol=1e-9) == mirrored
 
@@ -174,7 +176,7 @@ def test_raising_the_lamp_looks_along_the_same_columns_shifted() -> None:
     grid = Grid((1, 1, 9))
     volume = np.zeros((1, 1, 1, 9))
     volume[..., 8] = 1
-    views = turntable(grid, [0.0], elevation=45.0)
+    views = turntable_views(grid, [0.0], elevation=45.0)
     picture = project(Projector(grid, views), volume)[0, :, :, 0]
     row = int(np.argmax(picture.max(axis=1)))
     # light goes along +x and down: what stands 4 voxels downstream is met by beams that cross the axis 4 higher
@@ -192,8 +194,8 @@ def test_any_view_agrees_with_plain_boxes(
     shape: tuple[int, int, int], angle: float, elevation: float, side: float
 ) -> None:
     grid = Grid(shape, side)
-    full = turntable(grid, [angle], elevation=elevation)
-    views = turntable(grid, [angle], elevation=elevation, picture_shape=(min(3, full.picture_shape[0]), 2))
+    full = turntable_views(grid, [angle], elevation=elevation)
+    views = turntable_views(grid, [angle], elevation=elevation, picture_shape=(min(3, full.picture_shape[0]), 2))
     volume = np.random.default_rng(5).random((1, *shape))
     fast = project(Projector(grid, views), volume)
     assert np.allclose(fast, plain.absorbance_pictures(grid, views, volume), rtol=1e-6, atol=1e-6 * side)
@@ -202,7 +204,7 @@ def test_any_view_agrees_with_plain_boxes(
 def test_the_tie_rule_starts_at_a_billionth_of_a_voxel() -> None:
     """Within 1e-9 of a face a beam along it is shared; a thousandth of a voxel beside it is not."""
     grid = Grid((1, 2, 4))
-    views = turntable(grid, [0.0], picture_shape=(1, 1))
+    views = turntable_views(grid, [0.0], picture_shape=(1, 1))
     volume = np.zeros((1, 1, 2, 4))
     volume[:, :, 0] = 1
     for offset, expected in ((0.0, 2.0), (0.5e-9, 2.0), (-0.5e-9, 2.0), (1e-6, 0.0), (-1e-6, 4.0)):
@@ -217,7 +219,7 @@ def test_the_tie_rule_starts_at_a_billionth_of_a_voxel() -> None:
 @pytest.mark.parametrize("up", [0.0, 0.5, 1.0, -0.3])
 def test_screens_moved_up_and_lamps_just_above_the_horizon_agree_with_plain_boxes(up: float, elevation: float) -> None:
     grid = Grid((3, 4, 5))
-    views = turntable(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 4))
+    views = turntable_views(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 4))
     moved = Views(views.lamps, views.origins + np.array([0, 0, up]), views.column_steps, views.row_steps, (3, 4))
     volume = np.random.default_rng(11).random((2, 3, 4, 5))
     fast = project(Projector(grid, moved), volume)
@@ -227,7 +229,7 @@ def test_screens_moved_up_and_lamps_just_above_the_horizon_agree_with_plain_boxe
 def test_many_columns_are_many_times_one_column() -> None:
     """More columns than one task takes: blocks must not leave a seam."""
     grid = Grid((1, 3, 4))
-    projector = Projector(grid, turntable(grid, [10.0, 100.0]))
+    projector = Projector(grid, turntable_views(grid, [10.0, 100.0]))
     x = np.random.default_rng(8).random((projector.shape[1], 301))
     dense = projector.to_sparse().toarray()
     assert np.allclose(projector.forward(x), dense @ x)
@@ -239,7 +241,7 @@ def test_agrees_with_astra() -> None:
     n, count = 9, 7
     grid = Grid((1, n, n))
     angles = (np.arange(count) + 0.5) * 180 / count
-    views = turntable(grid, angles)
+    views = turntable_views(grid, angles)
     width = views.picture_shape[1]
     geometry = astra.create_proj_geom("parallel", 1.0, width, np.radians(90 - angles))
     projector = astra.create_projector("line", geometry, astra.create_vol_geom(n, n))
@@ -253,7 +255,7 @@ def test_agrees_with_astra() -> None:
 
 def test_refuses_what_it_cannot_project() -> None:
     grid = Grid((3, 5, 7))
-    projector = Projector(grid, turntable(grid, [0.0]))
+    projector = Projector(grid, turntable_views(grid, [0.0]))
     with pytest.raises(InputError, match="shape"):
         projector.forward(np.zeros((3, 3)))
     with pytest.raises(InputError, match="float32 or float64"):

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from lightcube.errors import InputError
 from lightcube.kernels.rays import BRICK
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.views import Views, rotations, turntable
+from lightcube.optics.views import Views, rotations, turntable_views
 from lightcube.projection.projector import Projector, dot_test
 from lightcube.projection.rays import Rays, shadow_matrices
 from lightcube.projection.stacked import StackedBeams
@@ -172,7 +172,7 @@ def test_on_a_turntable_both_engines_are_one_matrix(
     rows, columns = raster_shape(grid, elevation)
     random = np.random.default_rng(2)
     for picture_shape in {(rows, columns), (rows, columns - 1), (max(rows - 1, 1), columns - 2)}:
-        views = turntable(grid, [0.0, 13.0, 90.0, 133.7, 180.0], elevation=elevation, picture_shape=picture_shape)
+        views = turntable_views(grid, [0.0, 13.0, 90.0, 133.7, 180.0], elevation=elevation, picture_shape=picture_shape)
         any_rays, stacked = Rays(grid, views), StackedBeams(grid, views)
         x = random.random((any_rays.shape[1], 3)).astype(dtype)
         b = random.random((any_rays.shape[0], 3)).astype(dtype)
@@ -185,7 +185,7 @@ def test_on_a_turntable_both_engines_are_one_matrix(
 def test_the_engine_follows_from_where_lamps_and_screens_stand() -> None:
     """Stacked beams are many times quicker and cast a turntable's geometry alone: they must not take another."""
     grid = Grid((3, 5, 7), 2.0)
-    table = turntable(grid, [0.0, 30.0, 200.0], elevation=20.0)
+    table = turntable_views(grid, [0.0, 30.0, 200.0], elevation=20.0)
 
     def changed(**vectors: np.ndarray) -> Views:
         kept = {name: getattr(table, name) for name in ("lamps", "origins", "column_steps", "row_steps")}
@@ -195,7 +195,7 @@ def test_the_engine_follows_from_where_lamps_and_screens_stand() -> None:
     point = np.array([[*(-9 * lamps[0, :3]), 1], *lamps[1:]])
     stacked = {
         "a turntable": table,
-        "one whose lamp is level": turntable(grid, [0.0, 30.0]),
+        "one whose lamp is level": turntable_views(grid, [0.0, 30.0]),
         "another window": changed(origins=table.origins + 0.3),
         "light aslant on the screen": changed(column_steps=table.column_steps + np.array([0.3, -0.2, 0])),
         "another length of the direction": changed(lamps=3 * lamps),

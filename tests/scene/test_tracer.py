@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from lightcube.errors import InputError
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import Views, turntable
+from lightcube.optics.views import Views, turntable_views
 from lightcube.scene.motion import rotation_matrix
 from lightcube.scene.scene import Scene, scene_from_tables
-from lightcube.scene.tracer import scene_frames, scene_views, shadows, trace
+from lightcube.scene.tracer import scene_frames, scene_rig, shadows, trace
 
 Floats = NDArray[Any]
 JIT_OFF = bool(getattr(config, "DISABLE_JIT", 0))
@@ -281,7 +281,7 @@ def test_a_moved_shape_is_a_moved_picture() -> None:
 
 def test_a_shadow_is_beer_and_lambert_along_the_beam() -> None:
     grid = Grid((9, 7, 5), 0.5)
-    views = turntable(grid, [0.0, 90.0])
+    views = turntable_views(grid, [0.0, 90.0])
     picture = shadows(shadow_scene(solid("sphere", radius=1.0), width=3.5), views, grid)
     rows, columns = views.picture_shape
     z, y = (np.arange(rows) - (rows - 1) / 2) * 0.5, (np.arange(columns) - (columns - 1) / 2) * 0.5
@@ -294,7 +294,7 @@ def test_a_shadow_is_beer_and_lambert_along_the_beam() -> None:
 def test_half_a_turn_on_is_the_mirror_image_at_elevation_zero_only() -> None:
     grid = Grid((7, SIZE, SIZE))
     for elevation in (0.0, 30.0):
-        views = turntable(grid, [20.0, 200.0], elevation=elevation)
+        views = turntable_views(grid, [20.0, 200.0], elevation=elevation)
         first, second = shadows(shadow_scene(*SOLIDS), views, grid)
         close = np.abs(first - second[:, ::-1]).max()
         assert (close < 1e-6) == (elevation == 0)
@@ -303,7 +303,7 @@ def test_half_a_turn_on_is_the_mirror_image_at_elevation_zero_only() -> None:
 
 def test_shadows_add_as_absorbances_when_solids_add() -> None:
     grid = Grid((7, SIZE, SIZE))
-    views = turntable(grid, [33.0], elevation=20.0)
+    views = turntable_views(grid, [33.0], elevation=20.0)
     together = shadows(shadow_scene(*SOLIDS), views, grid)
     apart = np.prod([shadows(shadow_scene(one), views, grid) for one in SOLIDS], axis=0)
     np.testing.assert_allclose(together, apart, rtol=1e-5)
@@ -315,8 +315,8 @@ def test_turning_the_lamp_is_turning_the_solid_back() -> None:
     camera = {"type": "shadow", "cube_width": 3.0}
     made = scene(*turned, camera=camera, groups={"table": {"rotation": [0, 0, 37]}})
     np.testing.assert_allclose(
-        shadows(made, turntable(grid, [0.0], elevation=25.0), grid),
-        shadows(shadow_scene(*SOLIDS), turntable(grid, [37.0], elevation=25.0), grid),
+        shadows(made, turntable_views(grid, [0.0], elevation=25.0), grid),
+        shadows(shadow_scene(*SOLIDS), turntable_views(grid, [37.0], elevation=25.0), grid),
         atol=1e-5,
     )
 
@@ -325,7 +325,9 @@ def test_a_shadow_does_not_depend_on_the_voxels_size() -> None:
     small, large = Grid((5, 7, 7), 0.1), Grid((5, 7, 7), 30.0)
     made = shadow_scene(*SOLIDS)
     np.testing.assert_allclose(
-        shadows(made, turntable(small, [10.0]), small), shadows(made, turntable(large, [10.0]), large), rtol=1e-5
+        shadows(made, turntable_views(small, [10.0]), small),
+        shadows(made, turntable_views(large, [10.0]), large),
+        rtol=1e-5,
     )
 
 
@@ -344,7 +346,7 @@ def test_a_point_lamp_casts_a_larger_shadow_and_only_of_what_stands_before_it() 
 
 def test_a_moving_solid_casts_the_shadow_of_its_instant() -> None:
     grid = Grid((5, 7, 7))
-    views = turntable(grid, [0.0, 0.0, 0.0])
+    views = turntable_views(grid, [0.0, 0.0, 0.0])
     keys = [{"time": 0.0, "position": [0, -0.6, 0]}, {"time": 1.0, "position": [0, 0.6, 0]}]
     moving = shadows(shadow_scene(solid("sphere", radius=0.5, motion={"keys": keys})), views, grid)
     for view, y in zip(moving, (-0.6, -0.2, 0.2), strict=True):
@@ -355,7 +357,7 @@ def test_a_moving_solid_casts_the_shadow_of_its_instant() -> None:
 @pytest.mark.parametrize("name", scene_names())
 def test_shipped_scenes_are_pictures_and_loops(name: str) -> None:
     made = read_scene(name)
-    grid, views = scene_views(made, 3, (7, 5))
+    grid, views = scene_rig(made, 3, (7, 5))
     said: list[tuple[int, int]] = []
     frames = scene_frames(made, views, grid, callback=lambda done, of: said.append((done, of)))
     assert frames.pictures.shape == (3, 5, 7, 3)
@@ -369,11 +371,11 @@ def test_shipped_scenes_are_pictures_and_loops(name: str) -> None:
 
 def test_a_scene_brings_its_own_views() -> None:
     made = scene(BALL, frames={"count": 5, "size": [7, 3], "span": 90, "elevation": 20})
-    grid, views = scene_views(made)
+    grid, rig = scene_rig(made)
     assert grid.shape == (3, 7, 7)
-    assert views.picture_shape == (3, 7)
-    np.testing.assert_allclose(views.angles, [9, 27, 45, 63, 81])
-    np.testing.assert_allclose(views.elevations, 20)
+    assert rig.picture_shape == (3, 7)
+    np.testing.assert_allclose(rig.stops.angle, [9, 27, 45, 63, 81])
+    assert rig.elevation_deg == 20
 
 
 def test_the_wrong_camera_and_empty_pictures_are_refused() -> None:
@@ -381,7 +383,7 @@ def test_the_wrong_camera_and_empty_pictures_are_refused() -> None:
     with pytest.raises(InputError, match="use shadows"):
         trace(shadow_scene(*SOLIDS), 2, (3, 3))
     with pytest.raises(InputError, match=r"camera\.type"):
-        shadows(scene(BALL), turntable(grid, [0.0]), grid)
+        shadows(scene(BALL), turntable_views(grid, [0.0]), grid)
     for frames, shape in ((0, (3, 3)), (1, (0, 3)), (1, (3, 0))):
         with pytest.raises(InputError, match="at least 1"):
             trace(scene(BALL), frames, shape)

@@ -16,13 +16,13 @@ from PIL import Image
 from lightcube import io
 from lightcube.drawing import plots
 from lightcube.errors import InputError
-from lightcube.forward.casting import play
-from lightcube.forward.turning import lamp_at
+from lightcube.forward.casting import cast, play
+from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import Views, turned, turntable
 from lightcube.pictures.fitting import targets
 from lightcube.pictures.frames import Frames
 from lightcube.report.measuring import measure
@@ -39,8 +39,8 @@ def make_cube(angles: list[float], elevation: float = 0.0, strength: float = 1.0
     random = np.random.default_rng(0)
     extinction = (strength * random.random((3, *SHAPE))).astype(np.float32)
     grid = Grid(SHAPE, 0.5)
-    views = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
-    return Cube(extinction, grid, views, lamp_powers=random.uniform(0.5, 4.0, (len(views), 3)))
+    rig = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
+    return Cube(extinction, grid, rig, lamp_powers=random.uniform(0.5, 4.0, (len(rig), 3)))
 
 
 def cast_frames(cube: Cube, noise: float = 0.0) -> Frames:
@@ -48,11 +48,11 @@ def cast_frames(cube: Cube, noise: float = 0.0) -> Frames:
     random = np.random.default_rng(1)
     shown = play(cube)
     shown = (shown * random.uniform(1 - noise, 1 + noise, shown.shape)).astype(np.float32)
-    return Frames(shown, cube.views, random.integers(1, 4, shown.shape[:3]).astype(np.float32))
+    return Frames(shown, cube.rig, random.integers(1, 4, shown.shape[:3]).astype(np.float32))
 
 
 def white(cube: Cube) -> Frames:
-    return Frames(np.ones((len(cube.views), *cube.views.picture_shape, 3), np.float32), cube.views)
+    return Frames(np.ones((len(cube.rig), *cube.rig.picture_shape, 3), np.float32), cube.rig)
 
 
 def empty(angles: list[float], elevation: float = 0.0) -> Cube:
@@ -75,7 +75,7 @@ def test_at_the_stops_the_curve_is_the_score(elevation: float) -> None:
     ):
         assert quality == pytest.approx(scores["views"][view]["psnr"], rel=1e-5)
         assert likeness == pytest.approx(scores["views"][view]["ssim"], rel=1e-5)
-    assert np.allclose(found.angles[at_stops] % 180, cube.views.angles[found.nearest[at_stops]] % 180)
+    assert np.allclose(found.angles[at_stops] % 180, cube.angles[found.nearest[at_stops]] % 180)
 
 
 def test_between_the_stops_it_is_what_is_played_against_the_nearer_frame() -> None:
@@ -123,7 +123,7 @@ def test_a_lobe_ends_where_the_picture_falls_below_30_db() -> None:
     frames = cast_frames(cube)
     found = curve(cube, frames)
     assert np.all((found.lobes > 0.2) & (found.lobes < 50))
-    for view, stop in enumerate(cube.views.angles):
+    for view, stop in enumerate(cube.rig.views.angles):
         plain = 0.0
         for side in (-1, 1):
             distance = 0.0
@@ -140,8 +140,8 @@ def test_with_a_level_lamp_half_a_turn_is_the_mirror_image() -> None:
     assert found.period == 180
     pictures, weights = frames.pictures.copy(), frames.weight.copy()
     pictures[0], weights[0] = pictures[0, :, ::-1], weights[0, :, ::-1]
-    views = turntable(cube.grid, [190.0, 70.0, 140.0], picture_shape=(3, 5))
-    mirrored = curve(replace(cube, views=views), Frames(pictures, views, weights))
+    rig = turntable(cube.grid, [190.0, 70.0, 140.0], picture_shape=(3, 5))
+    mirrored = curve(replace(cube, rig=rig), Frames(pictures, rig, weights))
     assert np.array_equal(mirrored.nearest, found.nearest)
     assert mirrored.psnr == pytest.approx(found.psnr, rel=1e-4)
     assert mirrored.lobes == pytest.approx(found.lobes, abs=1e-3)
@@ -176,14 +176,6 @@ def test_any_stops_make_a_curve_of_one_period(hundredths: list[int], elevation: 
     assert found.lobes.sum() <= found.period + 1e-9
 
 
-def test_turning_the_views_is_turning_the_table() -> None:
-    cube = make_cube([20.0, 75.0], 35.0)
-    by = turned(cube.views, [10.0, -90.0])
-    fresh = turntable(cube.grid, [30.0, -15.0], elevation=35.0, picture_shape=(3, 5))
-    for name in ("lamps", "origins", "column_steps", "row_steps"):
-        assert np.allclose(getattr(by, name), getattr(fresh, name), atol=1e-12), name
-
-
 @pytest.mark.parametrize("elevation", [0.0, 35.0])
 def test_each_disturbance_is_what_it_says(elevation: float) -> None:
     cube = make_cube([20.0, 75.0, 250.0], elevation)
@@ -198,7 +190,8 @@ def test_each_disturbance_is_what_it_says(elevation: float) -> None:
     # By a whole voxel the picture moves by a whole pixel: to the right, and up.
     assert np.allclose(off(right_voxels=1.0)[:, :, 1:], shown[:, :, :-1], rtol=1e-5)
     assert np.allclose(off(up_voxels=1.0)[:, :-1], shown[:, 1:], rtol=1e-5)
-    further = play(cube, cube.views.angles + 0.2) / lamp_at(cube, cube.views.angles + 0.2)[:, None, None]
+    now, powers = moment(cube, cube.angles + 0.2)
+    further = np.stack(list(cast(cube, now, powers))) / powers[:, None, None]
     assert np.allclose(off(turn_deg=0.2), further * cube.powers[:, None, None], rtol=1e-4)
 
 
@@ -298,13 +291,6 @@ def test_bad_input_is_a_sentence() -> None:
         curve(cube, frames.take([0]))
     with pytest.raises(InputError, match="do not fit the cube"):
         robust(cube, frames.take([0]))
-    parts = [turntable(cube.grid, [a], elevation=e, picture_shape=(3, 5)) for a, e in ((10.0, 0.0), (50.0, 20.0))]
-    names = ("lamps", "origins", "column_steps", "row_steps")
-    views = Views(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names}, picture_shape=(3, 5))
-    mixed = replace(cube, views=views)
-    with pytest.raises(InputError, match="several elevations"):
-        curve(mixed, cast_frames(mixed))
-    assert robust(mixed, cast_frames(mixed))["undisturbed"]["psnr_min"] == 100
     off: list[dict[str, Any]] = [{"lamp": -1.0}, {"black": -0.1}, {"levels": -1}, {"turn_deg": np.nan}]
     for bad in (*off, {"up_voxels": np.inf}):
         with pytest.raises(InputError, match="finite numbers"):
@@ -349,7 +335,7 @@ def solved(tmp_path: Path) -> Path:
     extinction = np.random.default_rng(0).uniform(0, 0.1, (3, 4, 5, 6)).astype(np.float32)
     cube = Cube(extinction, grid, turntable(grid, [10.0, 100.0], picture_shape=(4, 5)))
     path = tmp_path / "solved.npz"
-    io.save(replace(cube, targets=targets(Frames(play(cube), cube.views))), path)
+    io.save(replace(cube, targets=targets(Frames(play(cube), cube.rig))), path)
     return path
 
 

@@ -11,7 +11,7 @@ from lightcube.kernels.display import conjugate, curvature, display_of_log, resi
 from lightcube.kernels.display import curve as curve_of
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
 from lightcube.solvers.contract import Progress
 from lightcube.solvers.display import display_values
@@ -80,7 +80,7 @@ def test_the_conjugate_is_the_largest_of_all_differences(slope: float, wanted: f
 
 def small_problem() -> tuple[Projector, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     grid = Grid((1, 3, 4))
-    views = turntable(grid, spread_angles(3))
+    views = turntable_views(grid, spread_angles(3))
     matrix = Projector(grid, views)
     random = np.random.default_rng(0)
     wanted = random.uniform(0.02, 1.4, (matrix.shape[0], 2))
@@ -135,7 +135,7 @@ def test_the_objective_at_the_end_is_a_minimum_in_every_direction() -> None:
 def test_a_beam_that_is_much_too_dark_comes_back() -> None:
     """Started from nearly black, where display values alone have no gradient left."""
     grid = Grid((1, 2, 3))
-    matrix = Projector(grid, turntable(grid, [30.0, 100.0]))
+    matrix = Projector(grid, turntable_views(grid, [30.0, 100.0]))
     truth = np.random.default_rng(1).random((6, 3)) * 0.3
     wanted = np.exp(-matrix.forward(truth))
     result = display_values(matrix, wanted, x0=np.full((6, 3), 20.0), iterations=800)
@@ -144,14 +144,14 @@ def test_a_beam_that_is_much_too_dark_comes_back() -> None:
 
 def test_bright_beams_beyond_the_lamp_pull_to_transparent() -> None:
     grid = Grid((1, 2, 3))
-    matrix = Projector(grid, turntable(grid, [30.0]))
+    matrix = Projector(grid, turntable_views(grid, [30.0]))
     result = display_values(matrix, np.full((matrix.shape[0], 1), 2.0), x0=np.full((6, 1), 0.5), iterations=50)
     assert np.allclose(result.x, 0)
 
 
 def test_voxels_that_no_weighted_beam_meets_stay_where_they_are() -> None:
     grid = Grid((1, 4, 6))
-    matrix = Projector(grid, turntable(grid, [0.0], picture_shape=(1, 2)))
+    matrix = Projector(grid, turntable_views(grid, [0.0], picture_shape=(1, 2)))
     result = display_values(matrix, np.full((matrix.shape[0], 1), 0.5), iterations=5)
     unseen = np.asarray(matrix.to_sparse().sum(axis=0)).ravel() == 0
     assert unseen.any()
@@ -176,7 +176,7 @@ def test_the_callback_sees_the_absorbance_of_x_and_stops() -> None:
 def lamp_problem() -> tuple[Projector, np.ndarray, np.ndarray]:
     """Pictures of a known cube under lamps of known powers, brighter and darker than 1, two channels."""
     grid = Grid((2, 3, 4))
-    matrix = Projector(grid, turntable(grid, spread_angles(4)))
+    matrix = Projector(grid, turntable_views(grid, spread_angles(4)))
     random = np.random.default_rng(3)
     powers = np.array([[0.5, 1.0], [2.0, 3.0], [1.0, 0.7], [5.0, 1.5]])
     truth = random.uniform(0, 0.4, (matrix.shape[1], 4))

@@ -14,7 +14,7 @@ from lightcube.errors import InputError
 from lightcube.kernels.row_action import BLOCK, sweep
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers.cgls import cgls
@@ -432,7 +432,7 @@ def test_a_sweep_is_the_plain_row_actions(dtype: type[np.floating]) -> None:
 def test_a_cubes_own_shadows_come_back(name: str, dtype: type[np.floating], elevation: float) -> None:
     """At least 60 dB in display values; lamp powers differ between views and colours."""
     grid = Grid((2, 3, 5), 0.7)
-    projector = Projector(grid, turntable(grid, spread_angles(9, elevation=elevation), elevation=elevation))
+    projector = Projector(grid, turntable_views(grid, spread_angles(9, elevation=elevation), elevation=elevation))
     rng = np.random.default_rng(11)
     columns = 6 if elevation == 0 else 3
     x = (rng.uniform(0, 0.8, (projector.shape[1], columns)) * (rng.random((projector.shape[1], 1)) < 0.6)).astype(dtype)

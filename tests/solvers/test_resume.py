@@ -14,7 +14,7 @@ from scipy.sparse import csr_array
 from lightcube.errors import InputError
 from lightcube.kernels import convex, descent, display, momentum
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Floats, Mixture, Progress, Result
@@ -33,7 +33,7 @@ every_dtype = pytest.mark.parametrize("dtype", ["float32", "float64"])
 def arguments(dtype: str, free: bool) -> dict[str, Any]:
     """Pictures with much noise, so that bounds are met and equations rejected, but for two columns."""
     grid = Grid((2, 3, 5), 0.7)
-    A = Projector(grid, turntable(grid, spread_angles(4)))
+    A = Projector(grid, turntable_views(grid, spread_angles(4)))
     rng = np.random.default_rng(5)
     powers = rng.uniform(0.8, 2.0, (4, 3))
     x = rng.uniform(0, 0.5, (A.shape[1], 6)) * (rng.random((A.shape[1], 6)) < 0.6)

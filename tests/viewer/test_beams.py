@@ -61,8 +61,7 @@ def test_the_film_strip_finds_a_picture_on_its_screen(visit: Open) -> None:
         tab.get_by_role("button", name=re.compile(f"^{number + 1}, ")).click()
         stands(tab, float(cube.angles[number]))
         assert marked(tab) == [str(number + 1)]
-        assert cube.lighting is not None
-        screen = int(cube.lighting.screen[number])
+        screen = int(cube.rig.stops.screen[number])
         assert tab.locator(".tabs [aria-pressed=true]").inner_text() == ("wall", "floor")[screen]
         rows, columns = shown(tab).shape[:2]
         pictures = right(cube, float(cube.angles[number]))
@@ -84,7 +83,7 @@ def test_the_whole_shadow_has_a_frame_where_the_picture_is(visit: Open) -> None:
 def test_a_beam_says_what_it_passes(visit: Open, where: float) -> None:
     tab, cube = visit(width=1440, height=900), turning()
     turned_to(tab, where)
-    views = cube.views.take([STOPS.index(where)])
+    views = cube.rig.views.take([STOPS.index(where)])
     box = tab.locator(".choose canvas").bounding_box()
     for row, column in [(0, 0), (5, 2), (7, 9)]:
         tab.mouse.move(

@@ -11,9 +11,9 @@ import pytest
 from hatchling.builders.wheel import WheelBuilder
 
 import lightcube
-from lightcube.drawing.standing import as_stage, standing
+from lightcube.drawing.standing import drawn, standing
 from lightcube.forward.casting import play
-from lightcube.forward.turning import exposures_at, views_at
+from lightcube.forward.turning import moment
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import rotations
 from lightcube.viewer import modules
@@ -238,30 +238,30 @@ def test_display_values_are_those_of_python(evaluate: Evaluate, transfer: Any) -
 @pytest.mark.parametrize("name", CUBES)
 def test_exposures_are_those_of_python(evaluate: Evaluate, name: str) -> None:
     cube, _, data = held_in_a_page(name)
-    staged = as_stage(cube)
+    staged = drawn(cube)
     found = asked(evaluate, data, "argument.angles.map((angle) => exposures(scene, angle))", angles=ANGLES)
-    views, lighting, powers = exposures_at(staged, ANGLES)
+    rig, powers = moment(staged, ANGLES)
     shown = [exposure for at_angle in found for exposure in at_angle]
-    assert [exposure["screen"] for exposure in shown] == lighting.screen.tolist()
-    assert [exposure["angle"] for exposure in shown] == lighting.angle.tolist()
-    nearly([exposure["window"] for exposure in shown], lighting.window, 0)
-    assert all(tuple(exposure["raster"]) == views.picture_shape for exposure in shown)
+    assert [exposure["screen"] for exposure in shown] == rig.stops.screen.tolist()
+    assert [exposure["angle"] for exposure in shown] == rig.stops.angle.tolist()
+    nearly([exposure["window"] for exposure in shown], rig.stops.window, 0)
+    assert all(tuple(exposure["raster"]) == rig.picture_shape for exposure in shown)
     each = [view for exposure in shown for view in exposure["views"]]
     for field, wanted in (
-        ("light", views.lamps),
-        ("origin", views.origins),
-        ("right", views.column_steps),
-        ("down", views.row_steps),
-        ("power", np.broadcast_to(powers[lighting.pair] * lighting.share, (len(views), 3))),
-        ("reach", lighting.reach_mm),
-        ("falloff", lighting.falloff_mm),
-        ("full_at", lighting.full_at_mm),
-        ("cosine", lighting.cosine),
-        ("lamp", lighting.lamp),
+        ("light", rig.views.lamps),
+        ("origin", rig.views.origins),
+        ("right", rig.views.column_steps),
+        ("down", rig.views.row_steps),
+        ("power", np.broadcast_to(powers[rig.pair] * rig.sums.share, (len(rig.views), 3))),
+        ("reach", rig.fading.reach_mm),
+        ("falloff", rig.fading.falloff_mm),
+        ("full_at", rig.fading.full_at_mm),
+        ("cosine", rig.fading.cosine),
+        ("lamp", rig.sums.lamp),
     ):
         nearly([view[field] for view in each], wanted, 1e-9)
     dark = [not exposure["lit"] for exposure in shown for _ in exposure["views"]]
-    np.testing.assert_array_equal(dark, np.all(powers[lighting.pair] * lighting.share == 0, axis=1))
+    np.testing.assert_array_equal(dark, np.all(powers[rig.pair] * rig.sums.share == 0, axis=1))
 
 
 @pytest.mark.parametrize("name", ["raised", "level, moved, held"])
@@ -273,16 +273,16 @@ def test_a_whole_shadow_has_its_middle_in_the_middle(evaluate: Evaluate, name: s
       return { exposure, room: standing(scene, angle, true), picture: castPicture(cube, exposure) };
     })"""
     found = asked(evaluate, data, expression, angles=ANGLES)
-    views = views_at(cube, ANGLES, whole_screen=True)
+    rig = moment(cube, ANGLES, whole_screen=True)[0]
     wanted = play(packed.cube, ANGLES, whole_screen=True)
     for i, each in enumerate(found):
         exposure, room = each["exposure"], each["room"]
-        assert tuple(exposure["raster"]) == tuple(exposure["window"]) == views.picture_shape
+        assert tuple(exposure["raster"]) == tuple(exposure["window"]) == rig.picture_shape
         origin = np.array(exposure["views"][0]["origin"])
-        nearly(np.cross(origin, views.lamps[i, :3]), np.zeros(3), 1e-9)
+        nearly(np.cross(origin, rig.views.lamps[i, :3]), np.zeros(3), 1e-9)
         screen = standing(cube, ANGLES[i]).screens[0]
         assert abs(np.reshape(room["turn"], (3, 3)) @ origin @ screen.facing - screen.corner @ screen.facing) < 1e-9
-        across = 0.5 * (views.picture_shape[1] * screen.right + views.picture_shape[0] * screen.down)
+        across = 0.5 * (rig.picture_shape[1] * screen.right + rig.picture_shape[0] * screen.down)
         nearly(np.reshape(room["turn"], (3, 3)) @ origin - across, room["screens"][0]["corner"], 1e-9)
         nearly(np.reshape(each["picture"], wanted[i].shape), wanted[i], 2e-6)
 
@@ -290,7 +290,7 @@ def test_a_whole_shadow_has_its_middle_in_the_middle(evaluate: Evaluate, name: s
 @pytest.mark.parametrize("name", CUBES)
 def test_stops_are_each_named_once_and_shown_at_their_angle(evaluate: Evaluate, name: str) -> None:
     cube, _, data = held_in_a_page(name)
-    angles = as_stage(cube).angles
+    angles = drawn(cube).angles
     expression = """[stops(scene), stops(scene).map((angle) => exposures(scene, angle).filter((e) => e.lit)
       .map((e) => scene.pictures[e.picture].angle)), nearestPicture(scene, 7, 0)]"""
     found, own, none = asked(evaluate, data, expression)

@@ -18,14 +18,13 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube import io
-from lightcube.drawing.standing import as_stage
 from lightcube.errors import InputError
-from lightcube.forward.casting import cast, play
-from lightcube.forward.turning import exposures_at, lamp_at, views_at
+from lightcube.forward.casting import cast
+from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import turntable
 from lightcube.viewer import packing
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.packing import BITS, lost, pack
@@ -44,23 +43,13 @@ def random_cube(
 ) -> Cube:
     """A cube that casts pictures of 3 x 5 pixels, off the middle by whole pixels."""
     rng = np.random.default_rng(seed)
-    views = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
+    rig = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
     aside = rng.integers(-1, 2, (2, len(angles), 1))
-    views = replace(views, origins=views.origins + aside[0] * views.column_steps + aside[1] * views.row_steps)
+    rig = rig.shifted(aside[..., 0].T)
     extinction = rng.exponential(0.1, (channels, *grid.shape)).astype(np.float32)
     powers = rng.uniform(0.5, 4, (len(angles), channels))
     targets = rng.integers(0, 256, (len(angles), 3, 5, channels + 1), np.uint8)
-    return Cube(extinction, grid, views, powers, targets=targets, **more)
-
-
-@pytest.mark.parametrize(("angles", "elevation"), TURNTABLES)
-@pytest.mark.parametrize("hold", [0.0, 6.0])
-def test_a_turntable_shows_the_same_as_a_stage(angles: list[float], elevation: float, hold: float) -> None:
-    cube = random_cube(angles, elevation, hold_deg=hold)
-    asked = [*angles, 0.0, 90.0, 33.0, 187.5, 301.0]
-    views, lighting, powers = exposures_at(as_stage(cube), asked)
-    staged = np.stack(list(cast(as_stage(cube), views, powers, lighting)))
-    np.testing.assert_allclose(staged, play(cube, asked), atol=2e-5)
+    return Cube(extinction, grid, rig, powers, targets=targets, **more)
 
 
 def decoded(data: bytes, count: int, bits: int) -> list[int]:
@@ -125,7 +114,7 @@ def test_what_is_lost_is_what_one_sees(angles: list[float], elevation: float) ->
     packed = pack(cube)
     middles = [(a + b) / 2 for a, b in zip(angles, [*angles[1:], angles[0] + 360], strict=True)]
     shown = [
-        255 * encode(np.minimum(np.stack(list(cast(each, views_at(each, at), lamp_at(each, at)))), 1))
+        255 * encode(np.minimum(np.stack(list(cast(each, *moment(each, at)))), 1))
         for each in (cube, packed.cube)
         for at in [[*angles, *middles]]
     ]

@@ -14,10 +14,9 @@ from scipy.ndimage import map_coordinates
 from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import sampled
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.rig import turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import Transfer, decode, encode
-from lightcube.optics.views import turntable
 from lightcube.viewer import packing
 from lightcube.viewer.description import describe
 from lightcube.viewer.packing import pack
@@ -90,9 +89,9 @@ def on_turntable(name: str, **more: Any) -> Cube:
     """A random cube with three stops and powers of their own."""
     shape, elevation, window, channels, transfer = TURNTABLES[name]
     grid = Grid(shape, 0.8)
-    views = turntable(grid, [20.0, 90.0, 130.0], elevation=elevation, picture_shape=window)
+    rig = turntable(grid, [20.0, 90.0, 130.0], elevation=elevation, picture_shape=window)
     powers = np.random.default_rng(1).uniform(0.5, 3, (3, channels))
-    return Cube(glass(shape, channels), grid, views, powers, transfer=transfer, hold_deg=1.0, **more)
+    return Cube(glass(shape, channels), grid, rig, powers, transfer=transfer, hold_deg=1.0, **more)
 
 
 @pytest.mark.parametrize("whole", [False, True])
@@ -117,9 +116,9 @@ def test_codes_of_more_bits(evaluate: Run, name: str, bits: int, kind: str, monk
 def test_beams_along_faces(evaluate: Run, shape: tuple[int, int, int], shift: float) -> None:
     """Whole voxels from the middle, or half a voxel beside: in one of them the beams of 0° and 90° run along faces."""
     grid = Grid(shape)
-    views = turntable(grid, [0.0, 90.0, 200.0], picture_shape=(shape[0] - 2, shape[1] - 2))
-    beside = shift * (views.column_steps + views.row_steps)
-    cube = Cube(glass(shape), grid, replace(views, origins=views.origins + beside))
+    rig = turntable(grid, [0.0, 90.0, 200.0], picture_shape=(shape[0] - 2, shape[1] - 2))
+    beside = shift * (rig.views.column_steps + rig.views.row_steps)
+    cube = Cube(glass(shape), grid, replace(rig, views=replace(rig.views, origins=rig.views.origins + beside)))
     angles = [0.0, 90.0, 180.0, 270.0, 1e-3, 90 - 1e-4, 180 + 1e-5]
     assert worst(shadows(evaluate, cube, angles), cube, angles) <= OFF
 
@@ -153,9 +152,9 @@ def on_stage(name: str) -> Cube:
         its = tuple(lamp.name for lamp in lamps if (lamp.name == "sun") == (screen.name == "floor"))
         shots += [Shot(f"{screen.name} {stop}", screen.name, its, stop) for stop in range(3)]
     stage = Stage(GRID, lamps, screens, tuple(shots), (0.0, 110.0, 230.0))
-    views, lighting = sampled(*exposures(stage), lamp_samples=samples)
-    powers = np.random.default_rng(2).uniform(0.4, 1.5, (len(lighting.pairs), 3))
-    return Cube(glass(GRID.shape), GRID, views, powers, lighting=lighting)
+    rig = stage.rig().sampled(lamp=samples)
+    powers = np.random.default_rng(2).uniform(0.4, 1.5, (len(rig.pairs), 3))
+    return Cube(glass(GRID.shape), GRID, rig, powers)
 
 
 @pytest.mark.parametrize("name", ROOMS)
@@ -237,9 +236,9 @@ def test_glass_is_seen_by_the_eye(evaluate: Run) -> None:
     """Light from behind an even cube is dimmed by the law of Beer and Lambert over each ray's chord."""
     shape, extinction = (6, 8, 10), np.array([0.02, 0.06, 0.15])
     grid = Grid(shape, 1.3)
-    views = turntable(grid, [0.0, 70.0], elevation=20.0, picture_shape=(6, 8))
+    rig = turntable(grid, [0.0, 70.0], elevation=20.0, picture_shape=(6, 8))
     cube, clear = (
-        Cube(np.broadcast_to(each[:, None, None, None], (3, *shape)).astype(np.float32), grid, views)
+        Cube(np.broadcast_to(each[:, None, None, None], (3, *shape)).astype(np.float32), grid, rig)
         for each in (extinction, 0 * extinction)
     )
     through, past = seen(evaluate, cube), seen(evaluate, clear)

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lightcube.drawing.standing import as_stage
+from lightcube.drawing.standing import drawn
 from lightcube.forward.casting import play
-from lightcube.forward.turning import exposures_at
+from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import encode
@@ -94,7 +94,7 @@ def sheets_of(
     evaluate: Evaluate, packed: Packed, data: dict[str, str], angles: tuple[float, ...]
 ) -> tuple[Cube, list[Any], list[Views]]:
     found = asked(evaluate, data, SHEETS, angles=angles)
-    views, _, _ = exposures_at(as_stage(packed.cube), angles)
+    views = moment(drawn(packed.cube), angles)[0].views
     return packed.cube, found, [views.take([i // 3]) for i in range(len(found))]
 
 
@@ -173,8 +173,8 @@ def test_cells_are_the_voxels_at_the_height_of_the_plane(evaluate: Evaluate, nam
 @pytest.mark.parametrize("off", [0.5, -0.5])
 def test_a_plane_along_faces_shows_a_slice_beside_it(evaluate: Evaluate, off: float) -> None:
     """Level beams half a voxel down, or up: the lowest, or highest, run on the outside of the cube."""
-    views = table(0, 70)
-    cube = on_table(replace(views, origins=views.origins + off * views.row_steps))
+    rig = table(0, 70)
+    cube = on_table(replace(rig, views=replace(rig.views, origins=rig.views.origins + off * rig.views.row_steps)))
     _, found, _ = sheets_of(evaluate, *paged(cube)[1:], (0.0, 30.0))
     assert len(found) == 6
     for each in found:

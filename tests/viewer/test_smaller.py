@@ -15,7 +15,7 @@ from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
-from lightcube.optics.views import turntable
+from lightcube.optics.rig import turntable
 from lightcube.pictures.fitting import frames_from_targets
 from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import coarser
@@ -35,11 +35,11 @@ __all__ = ["run"]
 def solved() -> Cube:
     """A cube of 10 x 12 x 12 voxels and two smooth pictures of 6 x 8."""
     grid = Grid((10, 12, 12), 2.0)
-    views = turntable(grid, [20.0, 130.0], elevation=35.0, picture_shape=(6, 8))
+    rig = turntable(grid, [20.0, 130.0], elevation=35.0, picture_shape=(6, 8))
     down, across = np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 8), indexing="ij")
     waves = [0.5 + 0.4 * np.sin(3 * down + 4 * across + phase) for phase in range(6)]
     pictures = np.stack([np.stack(waves[:3], -1), np.stack(waves[3:], -1)]).astype(np.float32)
-    return solving.solve(Frames(pictures, views), grid, Recipe(passes=60)).cube
+    return solving.solve(Frames(pictures, rig), grid, Recipe(passes=60)).cube
 
 
 def test_a_cube_that_fits_is_kept(solved: Cube) -> None:
@@ -50,7 +50,7 @@ def test_the_smaller_cube_shows_the_same_pictures(solved: Cube, monkeypatch: pyt
     monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
     small = smaller(solved)
     assert small.grid == Grid((7, 8, 8), 3.0)
-    assert small.views.picture_shape == (4, 6)
+    assert small.rig.picture_shape == (4, 6)
     np.testing.assert_allclose(small.angles, solved.angles)
     wanted, _ = coarser(frames_from_targets(solved), solved.grid, 1.5)
     assert small.scores["psnr_mean"] == pytest.approx(mean_psnr(play(small), wanted))
@@ -78,7 +78,7 @@ BOUNDS: dict[str, dict[str, Any]] = {
 def test_what_bounded_the_cube_bounds_the_smaller_one(
     solved: Cube, bounds: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    cube = solving.solve(frames_from_targets(solved), solved.grid, **asked(passes=20, **bounds)).cube
+    cube = solving.solve(**asked(frames_from_targets(solved), solved.grid, passes=20, **bounds)).cube
     monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
     small = smaller(cube)
     assert small.extinction.max() <= bounds.get("max_extinction", 0.02 if "material" in bounds else np.inf) * (1 + 1e-6)
@@ -86,19 +86,22 @@ def test_what_bounded_the_cube_bounds_the_smaller_one(
     assert np.all((least <= small.powers) & (small.powers <= most))
     if bounds.get("powers") == "shared":
         assert np.all(small.powers == small.powers[0])
-    for bound in ("powers", "lamp_power", "lamp_max", "black"):
-        assert small.provenance.get(bound) == cube.provenance.get(bound), bound
+    assert small.provenance["powers"] == cube.provenance["powers"]
+    for name in ("least", "most"):
+        np.testing.assert_array_equal(getattr(small.rig.lamps, name), getattr(cube.rig.lamps, name))
+    assert small.rig.screens.black == cube.rig.screens.black
 
 
 def test_what_bounded_a_stages_cube_bounds_the_smaller_one(monkeypatch: pytest.MonkeyPatch) -> None:
     known_cube, wanted = known(stage("two coloured lamps"))
     bounds: dict[str, Any] = {"powers": "shared", "max_extinction": 0.05, "black": 0.1}
-    cube = solving.solve(wanted, known_cube.grid, **asked(passes=20, **bounds)).cube
+    cube = solving.solve(**asked(wanted, known_cube.grid, passes=20, **bounds)).cube
     monkeypatch.setattr(page_cube, "MOST_SIDE", max(cube.grid.shape) - 1)
     small = smaller(cube)
     assert small.extinction.max() <= 0.05 * (1 + 1e-6)
-    for bound in ("powers", "max_extinction", "black"):
+    for bound in ("powers", "max_extinction"):
         assert small.provenance[bound] == cube.provenance[bound], bound
+    assert small.rig.screens.black.tolist() == cube.rig.screens.black.tolist() == [0.1] * len(cube.rig.screens.names)
 
 
 def test_what_it_loses_is_what_its_pixels_show(solved: Cube, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -113,14 +116,12 @@ def test_what_it_loses_is_what_its_pixels_show(solved: Cube, monkeypatch: pytest
 @pytest.mark.parametrize("room", ["two coloured lamps", "aslant and by the inverse square"])
 def test_a_stages_cube_gets_smaller_too(room: str, monkeypatch: pytest.MonkeyPatch) -> None:
     cube, _ = known(stage(room))
-    assert cube.lighting is not None
     monkeypatch.setattr(page_cube, "MOST_SIDE", max(cube.grid.shape) - 1)
     small = smaller(cube)
-    assert small.lighting is not None
     ratio = small.grid.voxel_mm / cube.grid.voxel_mm
-    for window, fine in zip(small.lighting.window, cube.lighting.window, strict=True):
+    for window, fine in zip(small.rig.stops.window, cube.rig.stops.window, strict=True):
         assert np.all(window >= np.ceil(fine / ratio))
-        assert np.all(window <= small.views.picture_shape)
+        assert np.all(window <= small.rig.picture_shape)
     assert lost(cube, small)[1] < 40
 
 

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.problem import held_views, is_level
+from lightcube.backward.problem import held, is_level
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import Part, halvings, split
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Lighting
+from lightcube.optics.rig import Rig
 from lightcube.pictures.frames import Frames
 
 #: Passes at each of the coarser sizes at most; no more than of the cube itself.
@@ -54,7 +54,7 @@ class Job:
     @property
     def frozen(self) -> bool:
         """Whether lamp powers that are free are found at half the size and then kept."""
-        return self.recipe.powers == "coarse" or (self.units > 1 and not self.recipe.is_lamp_fixed)
+        return self.recipe.powers == "coarse" or (self.units > 1 and not self.frames.rig.lamps.are_fixed)
 
     @property
     def levels(self) -> int:
@@ -68,17 +68,13 @@ class Job:
 
     @property
     def lamp_bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Lower and upper bound of the lamp powers, each ``(lamps, channels)``; a stage's lamps have their own."""
-        lighting, shared = self.frames.lighting, self.recipe.powers == "shared"
-        if lighting is not None:
-            lamps = np.arange(len(lighting.most)) if shared else lighting.pairs[:, 1]
-            low, high = (
-                np.repeat(bound[lamps, None], self.channels, axis=1) for bound in (lighting.least, lighting.most)
-            )
-            return low, high
-        shape = (1 if shared else len(self.frames), self.channels)
-        least, most = self.recipe.lamp_bounds
-        return np.full(shape, least), np.full(shape, most)
+        """Lower and upper bound of the lamp powers, each ``(lamps, channels)``."""
+        rig = self.frames.rig
+        lamps = np.arange(len(rig.lamps.names)) if self.recipe.powers == "shared" else rig.pairs[:, 1]
+        low, high = (
+            np.repeat(bound[lamps, None], self.channels, axis=1) for bound in (rig.lamps.least, rig.lamps.most)
+        )
+        return low, high
 
     @property
     def max_extinction(self) -> float:
@@ -88,7 +84,7 @@ class Job:
     @property
     def level(self) -> bool:
         """Whether each slice of the cube casts one row of the pictures by itself, at all angles that are asked for."""
-        return is_level(self.grid, held_views(self.frames, self.recipe.hold_deg, self.grid)[0])
+        return is_level(self.grid, held(self.frames.rig, self.recipe, self.grid).views)
 
     @property
     def parts(self) -> list[Part]:
@@ -131,16 +127,16 @@ def shares(job: Job) -> dict[str, float]:
 
 def fingerprint(job: Job) -> Fingerprint:
     """What a job is known by: two jobs with the same one come to the same cube, bit for bit."""
-    frames, views = job.frames, job.frames.views
-    geometry = (views.lamps, views.origins, views.column_steps, views.row_steps)
+    frames = job.frames
     nz, ny, nx = job.grid.shape
     return {
         "lightcube": version("lightcube"),
         "pictures": _checksum(frames.pictures),
         "weights": _checksum(frames.weight),
         "names": hashlib.sha256("\0".join(frames.names).encode()).hexdigest(),
-        "angles and screens": _checksum(*geometry),
-        "lamps": None if frames.lighting is None else _checksum(*_arrays(frames.lighting)),
+        "lamps and screens": _checksum(*_arrays(frames.rig)),
+        "largest lamp power": float(frames.rig.lamps.most.max()),
+        "black": float(frames.rig.screens.black.max()),
         "voxels": f"{nz} x {ny} x {nx}",
         "voxel side": job.grid.voxel_mm,
         "transfer": frames.transfer,
@@ -161,24 +157,23 @@ def differences(old: Fingerprint, new: Fingerprint) -> list[str]:
 #: Fields of a recipe, where people call them otherwise.
 _WORDS = {
     "powers": "lamp powers",
-    "lamp_power": "lamp power",
-    "lamp_max": "largest lamp power",
     "hold_deg": "hold",
     "max_extinction": "largest extinction",
     "per": "what extinction is counted along",
     "enough_db": "PSNR that is enough",
     "dtype": "precision",
 }
-_CHECKSUMS = ("pictures", "weights", "names", "angles and screens", "lamps")
+_CHECKSUMS = ("pictures", "weights", "names", "lamps and screens")
 
 
 def _said(value: str | float | None) -> str:
     return "none" if value is None else f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
-def _arrays(lighting: Lighting) -> list[NDArray[Any]]:
-    """All of a lighting as arrays."""
-    return [np.asarray(getattr(lighting, each.name)) for each in fields(lighting)]
+def _arrays(rig: Rig) -> list[NDArray[Any]]:
+    """All of a rig as arrays."""
+    parts = [getattr(rig, each.name) for each in fields(rig)]
+    return [np.asarray(getattr(part, each.name)) for part in parts for each in fields(part)]
 
 
 def _checksum(*arrays: NDArray[Any]) -> str:

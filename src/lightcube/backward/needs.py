@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from lightcube.backward.job import Job, shares
-from lightcube.backward.problem import Problem, held_views, pose
+from lightcube.backward.problem import Problem, held, pose
 from lightcube.backward.units import coarse_shape, coarser, most_units, split
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
@@ -112,12 +112,11 @@ def _solver(
 
 def job_memory(job: Job) -> int:
     """`memory_needed` of a job."""
-    views, lighting = job.frames.views, job.frames.lighting
+    rig = job.frames.rig
+    views = rig.views
     steepest = float(np.max(np.abs(views.elevations)))
-    angles = len(held_views(job.frames, job.recipe.hold_deg, job.grid)[0]) // len(views)
-    mixed = (
-        0 if lighting is None or lighting.is_plain else _MIXED * angles * len(views) * math.prod(views.picture_shape)
-    )
+    angles = len(held(rig, job.recipe, job.grid)) // len(rig)
+    mixed = 0 if rig.is_thin else _MIXED * angles * len(views) * math.prod(views.picture_shape)
     return mixed + memory_needed(
         job.recipe.method,
         job.grid,
@@ -195,6 +194,6 @@ def _seconds_of_products(problem: Problem) -> float:
 
 def _work(job: Job, frames: Frames, grid: Grid) -> tuple[float, float]:
     """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
-    rows, columns = frames.views.picture_shape
-    pixels = len(held_views(frames, job.recipe.hold_deg, grid)[0]) * rows * columns * job.channels
+    rows, columns = frames.rig.picture_shape
+    pixels = len(held(frames.rig, job.recipe, grid).views) * rows * columns * job.channels
     return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)

@@ -16,9 +16,9 @@ from lightcube.kernels.layout import (
 )
 from lightcube.optics.grid import Grid, dense_step
 from lightcube.optics.law import falling_light
-from lightcube.optics.rig import Lighting, held_lighting
+from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer, decode
-from lightcube.optics.views import Views, held
+from lightcube.optics.views import Views
 from lightcube.pictures.frames import Frames
 from lightcube.projection.projector import Projector
 from lightcube.projection.stacked import StackedBeams, is_stacked
@@ -135,11 +135,11 @@ def pose(frames: Frames, grid: Grid, recipe: Recipe, part: Part | None = None) -
     Pixels darker than the screen's black are wanted at it. The ends of a hold, with nothing to hold on to beyond,
     count twice: else they are what falls apart first (measured).
     """
-    views, lighting, kept = held_views(frames, recipe.hold_deg, grid)
-    angles = (len(views) if lighting is None else lighting.pictures) // len(frames)
+    rig = held(frames.rig, recipe, grid)
+    views, angles = rig.views, len(rig) // len(frames)
     heard = np.repeat(frames.weight > 0, angles, axis=0)
-    matrix = Projector(grid, views, heard if lighting is None else heard[lighting.picture])
-    darkest = decode(np.array([recipe.black], np.float32), frames.transfer)
+    matrix = Projector(grid, views, heard[rig.sums.picture])
+    darkest = decode(frames.rig.screens.black[frames.rig.stops.screen].astype(np.float32), frames.transfer)
     high, channels = views.picture_shape[0], frames.pictures.shape[-1]
     part = part or Part(slice(0, channels), slice(0, grid.shape[0]))
     rows = slice(0, high)
@@ -155,13 +155,13 @@ def pose(frames: Frames, grid: Grid, recipe: Recipe, part: Part | None = None) -
         importance[[0, -1]] = 2
     weights = block(np.repeat(frames.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
     weights *= np.repeat(np.tile(importance, len(frames)), len(weights) // (len(frames) * angles))[:, None]
-    lamp_of_view = lamp_numbers(frames, recipe.powers)[kept]
+    lamp_of_view = lamp_numbers(frames.rig, rig, recipe.powers)
     mixture = None
-    if lighting is not None and not lighting.is_plain:
-        mixture = mixture_of(views, lighting, lamp_of_view, part.colours, rows)
+    if not rig.is_thin:
+        mixture = mixture_of(rig, lamp_of_view, channels, part.colours, rows)
     return Problem(
         matrix=matrix,
-        light=block(np.maximum(frames.pictures[:, rows, :, part.colours], darkest)),
+        light=block(np.maximum(frames.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
         weights=weights,
         lamp_of_view=lamp_of_view,
         mixture=mixture,
@@ -173,29 +173,25 @@ def pose(frames: Frames, grid: Grid, recipe: Recipe, part: Part | None = None) -
     )
 
 
-def held_views(frames: Frames, hold: float, grid: Grid) -> tuple[Views, Lighting | None, NDArray[np.intp]]:
-    """Views and lighting of every picture at the angles that a hold asks for, the angles of a picture in a row.
-
-    Also returns ``(views,)``: the number of the frames' view that each one is a copy of.
-    """
-    if frames.lighting is not None:
-        return held_lighting(frames.views, frames.lighting, hold, dense_step(grid))
-    views = held(frames.views, hold, grid)
-    return views, None, np.repeat(np.arange(len(frames)), len(views) // len(frames))
+def held(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
+    """Every picture at the angles that a hold asks for, those of a picture in a row."""
+    return rig.held(recipe.hold_deg, dense_step(grid))
 
 
-def lamp_numbers(frames: Frames, powers: Powers) -> NDArray[np.intp]:
-    """``(views,)``: which power each view has: every lamp has one for each of its pictures, or one (``"shared"``)."""
-    lighting = frames.lighting
-    if lighting is None:
-        return np.zeros(len(frames), np.intp) if powers == "shared" else np.arange(len(frames))
-    return lighting.lamp if powers == "shared" else lighting.pair
+def lamp_numbers(rig: Rig, held_rig: Rig, powers: Powers) -> NDArray[np.intp]:
+    """``(views,)``: which power each view of a held rig has: every lamp one for each picture, or one (``"shared"``)."""
+    if powers == "shared":
+        return held_rig.sums.lamp
+    angles = len(held_rig) // len(rig)
+    lamps = len(rig.lamps.names)
+    keys = rig.pairs[:, 0] * lamps + rig.pairs[:, 1]
+    return np.searchsorted(keys, held_rig.sums.picture // angles * lamps + held_rig.sums.lamp)
 
 
 def mixture_of(
-    views: Views,
-    lighting: Lighting,
+    rig: Rig,
     lamp_of_view: NDArray[np.intp],
+    channels: int,
     colours: slice = slice(None),
     rows: slice = slice(None),
 ) -> Mixture:
@@ -207,6 +203,6 @@ def mixture_of(
         Which lamp power each view has.
     """
     light, shadow = (
-        columns_from_pictures(each[:, rows, :, None]).reshape(len(views), -1) for each in falling_light(views, lighting)
+        columns_from_pictures(each[:, rows, :, None]).reshape(len(rig.views), -1) for each in falling_light(rig)
     )
-    return Mixture(lighting.starts, lamp_of_view, lighting.share[:, colours], light, shadow)
+    return Mixture(rig.starts, lamp_of_view, rig.sums.of_colours(channels)[:, colours], light, shadow)

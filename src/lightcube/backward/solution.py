@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lightcube.backward.job import Job, level_name
 from lightcube.backward.pieces import POWERS
-from lightcube.backward.problem import held_views, volume_from_unknowns
+from lightcube.backward.problem import held, volume_from_unknowns
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
 from lightcube.kernels.layout import clear_volume
@@ -76,14 +76,13 @@ def merged(job: Job, store: Store) -> Solution:
     cube = Cube(
         extinction=extinction,
         grid=job.grid,
-        views=job.frames.views,
+        rig=job.frames.rig,
         lamp_powers=_of_pictures(job, powers),
         targets=targets(job.frames),
         names=job.frames.names,
         transfer=job.frames.transfer,
         status="complete" if complete else "interrupted",
         hold_deg=job.recipe.hold_deg,
-        lighting=job.frames.lighting,
         provenance=_made_with(job) | made,
     )
     undetermined = sum(int(each.get("undetermined", 0)) for each in facts)
@@ -95,9 +94,7 @@ def _of_pictures(job: Job, powers: NDArray[np.float64]) -> NDArray[np.float64]:
     """The powers of each picture's lamps, as a cube keeps them, from those that the job solves for."""
     if job.recipe.powers != "shared":
         return powers
-    if job.frames.lighting is None:
-        return np.repeat(powers, len(job.frames), axis=0)
-    return powers[job.frames.lighting.pairs[:, 1]]
+    return powers[job.frames.rig.pairs[:, 1]]
 
 
 def _place(
@@ -163,11 +160,10 @@ def _made_with(job: Job) -> dict[str, Any]:
     """What the cube remembers of how it was made, beside its hold."""
     recipe = job.recipe.plain()
     del recipe["hold_deg"]
-    views = len(held_views(job.frames, job.recipe.hold_deg, job.grid)[0])
     return {
         "lightcube": version("lightcube"),
         **recipe,
-        "angles_per_view": views // len(job.frames.views),
+        "angles_per_picture": len(held(job.frames.rig, job.recipe, job.grid)) // len(job.frames),
         "units": job.units,
         **job.provenance,
     }

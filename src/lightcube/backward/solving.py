@@ -15,7 +15,7 @@ from lightcube.backward.store import MemoryStore, Store
 from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.rig import Lighting
+from lightcube.optics.rig import Rig
 from lightcube.pictures.frames import Frames
 from lightcube.projection.stacked import is_stacked
 
@@ -87,8 +87,7 @@ def make_job(
     """Check what `solve` is asked for, and leave nothing open; parameters and errors as there."""
     recipe = recipe or Recipe()
     check_frames(frames, grid)
-    if frames.lighting is not None:
-        _check_on_stage(recipe, frames.lighting)
+    _check_method(recipe, frames.rig)
     if recipe.passes is None and recipe.chooses_powers:
         recipe = replace(recipe, passes=QUALITIES["normal"][0])
     job = Job(frames, grid, recipe, provenance=dict(provenance or {}))
@@ -98,18 +97,16 @@ def make_job(
     return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)
 
 
-def _check_on_stage(recipe: Recipe, lighting: Lighting) -> None:
-    """Raise `InputError` where a recipe contradicts a stage, or its method cannot do what that asks for."""
-    if recipe.lamp_power is not None or recipe.lamp_max is not None:
-        raise InputError("the powers of a stage's lamps are said on the stage: leave out those given beside it")
+def _check_method(recipe: Recipe, rig: Rig) -> None:
+    """Raise `InputError` where a recipe's method cannot do what a rig asks for."""
     if recipe.chooses_powers:
         return
-    free = lighting.lamp_names[int(np.argmax(lighting.least < lighting.most))]
-    if np.any(lighting.least < lighting.most):
+    if not rig.lamps.are_fixed:
+        free = rig.lamps.names[int(np.argmax(rig.lamps.least < rig.lamps.most))]
         raise InputError(
             f"method {recipe.method} cannot choose the power of lamp {free!r}: give it one, or use method display"
         )
-    if not lighting.is_plain:
+    if not rig.is_thin:
         raise InputError(
             f"method {recipe.method} takes logarithms, and light that adds up has none: use method display"
         )
@@ -117,10 +114,11 @@ def _check_on_stage(recipe: Recipe, lighting: Lighting) -> None:
 
 def check_frames(frames: Frames, grid: Grid) -> None:
     """Raise `InputError` where a picture is larger than the grid's screen; other screens are as large as they are."""
-    if frames.lighting is not None or not is_stacked(grid, frames.views):
+    rig = frames.rig
+    if not np.all(rig.screens.endless) or not is_stacked(grid, rig.views):
         return
-    rows, columns = frames.views.picture_shape
-    most = [raster_shape(grid, elevation) for elevation in set(frames.views.elevations.tolist())]
+    rows, columns = rig.picture_shape
+    most = [raster_shape(grid, elevation) for elevation in set(rig.views.elevations.tolist())]
     most_rows, most_columns = min(most)
     if rows > most_rows or columns > most_columns:
         raise InputError(

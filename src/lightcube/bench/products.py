@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lightcube.bench.clock import seconds, threads
 from lightcube.kernels import stacked as kernels
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
 from lightcube.projection.stacked import StackedBeams
 
@@ -21,7 +21,7 @@ _COUNTED = 8
 def projector(n: int, views: int, elevation: float) -> Projector:
     """`views` pictures of an n-cube on a turntable, each the whole screen."""
     grid = Grid((n, n, n))
-    return Projector(grid, turntable(grid, spread_angles(views, elevation=elevation), elevation=elevation))
+    return Projector(grid, turntable_views(grid, spread_angles(views, elevation=elevation), elevation=elevation))
 
 
 def columns_of(matrix: Projector) -> int:

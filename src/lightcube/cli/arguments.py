@@ -59,7 +59,7 @@ def play_angles(
         return cube.angles
     if angles is not None:
         return check_angles(numbers(angles, "--angles"))
-    if cube.lighting is not None and not turn and not np.any(cube.lighting.turning):
+    if not turn and not np.any(cube.rig.turning.turns):
         return cube.angles[:1]  # nothing turns: all angles look alike
     first, last, pictures = (
         start or 0.0,

@@ -19,7 +19,8 @@ from lightcube.forward import casting, turning
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns, volume_from_columns
 from lightcube.optics.absorption import extinction, transmittance
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.views import spread_angles
 from lightcube.pictures.frames import Frames
 from lightcube.pictures.samples import photographs
 from lightcube.planning.plan import plan
@@ -69,9 +70,9 @@ def run(folder: Path) -> None:
 
 def _juggler(grid: Grid) -> Frames:
     """A traced scene, one picture for every step of a whole turn of the cube under a raised lamp."""
-    views = turntable(grid, spread_angles(32, elevation=35.0), elevation=35.0, picture_shape=(48, 48))
+    rig = turntable(grid, spread_angles(32, elevation=35.0), elevation=35.0, picture_shape=(48, 48))
     with progress("tracing", as_json=False) as advance:
-        return scene_frames(io.read_scene("juggler"), views, grid, callback=advance)
+        return scene_frames(io.read_scene("juggler"), rig, grid, callback=advance)
 
 
 def _one(name: str, frames: Frames, grid: Grid, folder: Path, recipe: Recipe | None = None) -> dict[str, Any]:
@@ -86,20 +87,19 @@ def _one(name: str, frames: Frames, grid: Grid, folder: Path, recipe: Recipe | N
     shown = casting.play(cube)
     sheet = contact_sheet(shown, frames, [view["psnr"] for view in scores["views"]])
     io.write_sheet(folder / f"{name}.png", sheet, overwrite=True)
-    stops = _on_a_screen(casting.cast(cube, cube.views, cube.powers))
+    stops = _on_a_screen(casting.cast(cube))
     io.write_pictures(
         folder / f"{name}-stops.mp4", stops, count=len(frames), fps=min(10, len(frames) / 4), scale=6, overwrite=True
     )
     turn = turning.turn(cube, 180)
-    views, powers = turning.views_at(cube, turn, whole_screen=True), turning.lamp_at(cube, turn)
-    shadows = _on_a_screen(casting.cast(cube, views, powers))
+    shadows = _on_a_screen(casting.cast(cube, *turning.moment(cube, turn, whole_screen=True)))
     io.write_pictures(folder / f"{name}-turn.mp4", shadows, count=len(turn), fps=20, scale=4, overwrite=True)
     io.write_page(folder / f"{name}.html", page(cube, name), overwrite=True)
-    rows, columns = frames.views.picture_shape
+    rows, columns = frames.rig.picture_shape
     return {
         "name": name,
         "pictures": f"{len(frames)} of {columns} x {rows}",
-        "elevation": float(frames.views.elevations[0]),
+        "elevation": frames.rig.elevation_deg,
         "seconds": seconds,
         **scores,
     }
@@ -116,9 +116,9 @@ def paper(folder: Path) -> None:
     grid = Grid((3, 3, 3))
     truth = extinction(np.random.default_rng(2).uniform(0.3, 1.0, (3, 3, 3, 3)), grid.voxel_mm)
     x = columns_from_volume(truth)
-    turning = turntable(grid, np.arange(0, 360, 5.0))
+    whole_turn = turntable(grid, np.arange(0, 360, 5.0))
     rows, columns = raster_shape(grid)
-    shown = pictures_from_columns(transmittance(Projector(grid, turning).forward(x)), (rows, columns), 3)
+    shown = pictures_from_columns(transmittance(Projector(grid, whole_turn).forward(x)), (rows, columns), 3)
     io.write_pictures(folder / "paper.gif", shown.astype(np.float32), fps=12, scale=48, overwrite=True)
     out.print(f"A random cube of 3 x 3 x 3 voxels turns: {columns} x {rows} pictures in {folder}/paper.gif")
     views = turntable(grid, spread_angles(8))

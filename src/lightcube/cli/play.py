@@ -50,16 +50,21 @@ def play(
     if room and (target or no_mask or screens):
         raise InputError("--room shows all there is: leave out --screens, --target and --no-mask")
     loaded = playing.with_samples(load(cube), lamp_samples, pixel_samples)
-    if (target or no_mask) and loaded.lighting is not None:
-        raise InputError(f"{cube} was made on a stage: leave out --target and --no-mask, and see score --sheet")
+    many = len(loaded.rig.screens.names) > 1
+    if target and many:
+        raise InputError(f"{cube} has several screens: leave out --target, and see score --sheet")
+    if no_mask and not np.all(loaded.rig.screens.endless):
+        raise InputError(f"the screens of {cube} have edges and are shown whole: leave out --no-mask")
     turned = arguments.play_angles(loaded, angles, start, end, count, stops=stops)
     if room:
         show = playing.of_room(loaded, np.unique(turned) if stops else turned)
-    elif loaded.lighting is None and not screens:
-        show = playing.of_turntable(loaded, turned, stops=stops, target=target, whole_screen=no_mask)
+    elif screens or (many and not stops):
+        show = playing.of_screens(loaded, np.unique(turned) if stops else turned)
+    elif stops:
+        show = playing.of_stops(loaded, target=target, whole_screen=no_mask)
     else:
-        show = playing.of_stage(loaded, turned, stops=stops, side_by_side=screens)
-    for sentence in staging.unsampled(loaded.lighting):
+        show = playing.of_turn(loaded, turned, target=target, whole_screen=no_mask)
+    for sentence in staging.unsampled(loaded.rig):
         if not as_json:
             err.print(sentence)
     with progress("playing", as_json=as_json) as advance:

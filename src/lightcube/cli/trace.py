@@ -1,5 +1,6 @@
 """The command `lightcube trace`."""
 
+import math
 from typing import Annotated
 
 import typer
@@ -8,7 +9,7 @@ from lightcube import io
 from lightcube.cli import arguments
 from lightcube.cli.console import done, progress
 from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE
-from lightcube.scene.tracer import scene_frames, scene_views
+from lightcube.scene.tracer import scene_frames, scene_rig
 from lightcube.verbs import solving
 
 
@@ -34,10 +35,10 @@ def trace(
     if size is not None:
         width, height = arguments.whole_numbers(size, "x", "--size", 2)
         shape = (width, height)
-    grid, views = scene_views(described, frames, shape, span, elevation)
-    solving.check_memory(24 * len(views) * views.picture_shape[0] * views.picture_shape[1])
+    grid, rig = scene_rig(described, frames, shape, span, elevation)
+    solving.check_memory(24 * len(rig) * math.prod(rig.picture_shape))
     with progress("tracing", as_json=as_json) as advance:
-        made = scene_frames(described, views, grid, callback=advance)
-    io.write_pictures(output, made.pictures, fps=fps, views=views, overwrite=overwrite)
-    rows, columns = views.picture_shape
-    done(as_json, f"{len(views)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(views))
+        made = scene_frames(described, rig, grid, callback=advance)
+    io.write_pictures(output, made.pictures, fps=fps, views=rig.views, overwrite=overwrite)
+    rows, columns = rig.picture_shape
+    done(as_json, f"{len(rig)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(rig))

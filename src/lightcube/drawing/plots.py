@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.drawing.sheet import MOST, triple
-from lightcube.drawing.standing import Standing, as_stage, corners_of, extent, standing, table_of
+from lightcube.drawing.standing import Standing, corners_of, drawn, extent, standing, table_of
 from lightcube.drawing.svg import hull
 from lightcube.errors import InputError
 from lightcube.forward.casting import play
-from lightcube.forward.turning import exposures_at, stage_of
+from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Lighting
+from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import unit
 from lightcube.pictures.fitting import frames_from_targets
@@ -94,7 +94,7 @@ def sheet_plot(cube: Cube, frames: Frames | None = None) -> "Figure":
     scores = score_pictures(shown, wanted)["views"]
     count = len(wanted)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
-    rows, columns = wanted.views.picture_shape
+    rows, columns = wanted.rig.picture_shape
     lines = math.ceil(len(chosen) / max(2, round(8 * min(1.0, rows / columns))))
     across = math.ceil(len(chosen) / lines)
     wide = 1.25 * max(1.0, columns / rows)
@@ -171,10 +171,9 @@ def geometry_plot(cube: Cube, angle: float | None = None) -> "Figure":
     angle
         Of the turntable, degrees; None = the first stop's. The pointer shows it among the stops around the table.
     """
-    staged = as_stage(cube)
-    lighting = stage_of(staged)
-    at = float(lighting.angle[0]) if angle is None else angle
-    room = standing(staged, at)
+    rig = drawn(cube).rig
+    at = float(rig.stops.angle[0]) if angle is None else angle
+    room = standing(cube, at)
     points = extent(cube.grid, room)
     middle, half = (points.max(axis=0) + points.min(axis=0)) / 2, np.ptp(points, axis=0) / 2
     high = 1.1 * float(half[1:].max())
@@ -182,10 +181,10 @@ def geometry_plot(cube: Cube, angle: float | None = None) -> "Figure":
     figure = _figure(10.0, 1.2 + 4.2 * high / wide)
     figure.suptitle(f"The set-up, the table at {at:.4g}°", color=_INK)
     for axes, name, up in zip(figure.subplots(1, 2), ("from above", "from the side"), (1, 2), strict=True):
-        _draw_table(axes, cube.grid, lighting, room, at, up)
-        for beam in _beams(staged, room, at):
+        _draw_table(axes, cube.grid, rig, room, at, up)
+        for beam in _beams(cube, room, at):
             _draw_beam(axes, beam, up)
-        _draw_solids(axes, cube.grid, lighting, room, up)
+        _draw_solids(axes, cube.grid, rig, room, up)
         axes.set(xlim=(middle[0] - wide, middle[0] + wide), ylim=(middle[up] - high, middle[up] + high))
         axes.set(aspect="equal", xlabel="x, mm", ylabel=f"{'xyz'[up]}, mm")
         axes.set_title(name, fontsize=10, color=_QUIET)
@@ -193,26 +192,26 @@ def geometry_plot(cube: Cube, angle: float | None = None) -> "Figure":
     return figure
 
 
-def _colour(lighting: Lighting, lamp: int) -> tuple[float, ...]:
+def _colour(rig: Rig, lamp: int) -> tuple[float, ...]:
     """Of a lamp, from 0 to 1; one for white ones that can be seen on paper."""
-    light = encode(np.asarray(lighting.share[lighting.lamp == lamp].sum(axis=0)))
+    light = encode(np.asarray(rig.sums.of_colours(3)[rig.sums.lamp == lamp].sum(axis=0)))
     if np.ptp(light) < 0.2 * light.max():
         return _AMBER
     return tuple(float(part) for part in 0.9 * light / light.max())
 
 
-def _beams(staged: Cube, room: Standing, angle: float) -> Iterator[_Beam]:
+def _beams(cube: Cube, room: Standing, angle: float) -> Iterator[_Beam]:
     """Of every lamp that shines on a screen at that angle."""
-    _, lighting, powers = exposures_at(staged, [angle])
-    lit = np.any(powers[lighting.pair] * lighting.share > 0, axis=1)
-    lamps = list(np.unique(lighting.lamp))
-    for screen, number in sorted(set(zip(lighting.picture[lit].tolist(), lighting.lamp[lit].tolist(), strict=True))):
+    rig, powers = moment(cube, [angle])
+    lit = np.any(powers[rig.pair] * rig.sums.share > 0, axis=1)
+    lamps = list(np.unique(rig.sums.lamp))
+    for screen, number in sorted(set(zip(rig.sums.picture[lit].tolist(), rig.sums.lamp[lit].tolist(), strict=True))):
         lamp, ends = room.lamps[lamps.index(number)], room.screens[screen].corners
         starts = np.broadcast_to(lamp.place, (4, 3))
         if lamp.parallel:  # from the plane through the lamp's sign
             way = -unit(lamp.place)
             starts = ends - ((ends - lamp.place) @ way)[:, None] * way
-        yield _Beam(_colour(lighting, number), starts, ends)
+        yield _Beam(_colour(rig, number), starts, ends)
 
 
 def _draw_beam(axes: "Axes", beam: _Beam, up: int) -> None:
@@ -221,10 +220,10 @@ def _draw_beam(axes: "Axes", beam: _Beam, up: int) -> None:
     axes.plot(x, y, color=beam.colour, alpha=0.6, linewidth=0.7)
 
 
-def _draw_table(axes: "Axes", grid: Grid, lighting: Lighting, room: Standing, angle: float, up: int) -> None:
+def _draw_table(axes: "Axes", grid: Grid, rig: Rig, room: Standing, angle: float, up: int) -> None:
     """Draw the turntable, a tick for each stop where the axis points at who looks, and the pointer."""
     middle, right, down = table_of(grid, replace(room, turn=np.eye(3)))
-    way = -math.copysign(1.0, float(room.axis @ lighting.axis))  # from right to down is clockwise
+    way = -math.copysign(1.0, float(room.axis @ rig.turning.axis))  # from right to down is clockwise
 
     def rim(degrees: Reals, radius: float) -> Reals:
         turns = way * np.radians(degrees)[:, None]
@@ -232,7 +231,7 @@ def _draw_table(axes: "Axes", grid: Grid, lighting: Lighting, room: Standing, an
 
     disc = np.arange(0.0, 360.0, 5.0)
     axes.fill(*hull(rim(disc, 1.0)).T, facecolor="#ece8de", edgecolor="#b9b3a4", linewidth=0.8, closed=True)
-    stops = np.unique(lighting.angle)
+    stops = np.unique(rig.stops.angle)
     if abs(np.cross((1.0, 0.0, 0.0), np.eye(3)[up]) @ room.axis) < 0.5 or len(stops) == 1:
         return
     for ends in zip(rim(stops, 0.94), rim(stops, 1.0), strict=True):
@@ -241,7 +240,7 @@ def _draw_table(axes: "Axes", grid: Grid, lighting: Lighting, room: Standing, an
     axes.fill(*tip.T, color=_INK)
 
 
-def _draw_solids(axes: "Axes", grid: Grid, lighting: Lighting, room: Standing, up: int) -> None:
+def _draw_solids(axes: "Axes", grid: Grid, rig: Rig, room: Standing, up: int) -> None:
     """Draw the cube, the screens and the lamps, with the names of these."""
     plane = [0, up]
     corners = corners_of(grid, room.turn)[:, plane]
@@ -249,16 +248,16 @@ def _draw_solids(axes: "Axes", grid: Grid, lighting: Lighting, room: Standing, u
     for first in range(8):
         for second in {first | 1, first | 2, first | 4} - {first}:
             axes.plot(*corners[[first, second]].T, color="#3f6c99", alpha=0.5, linewidth=0.6, zorder=3)
-    for place, (number, screen) in enumerate(zip(np.unique(lighting.screen), room.screens, strict=True)):
+    for place, (number, screen) in enumerate(zip(np.unique(rig.stops.screen), room.screens, strict=True)):
         outline = screen.corners[:, plane]
         axes.fill(*outline.T, facecolor="#8d979e22", edgecolor=_INK, linewidth=1.8, zorder=4)
         ends = outline[np.argmax(outline[:, 1])], outline[np.argmin(outline[:, 1])]
-        _name(axes, lighting.screen_names[number], ends[place % 2], (4, -11)[place % 2])
-    for place, (number, lamp) in enumerate(zip(np.unique(lighting.lamp), room.lamps, strict=True)):
+        _name(axes, rig.screens.names[number], ends[place % 2], (4, -11)[place % 2])
+    for place, (number, lamp) in enumerate(zip(np.unique(rig.sums.lamp), room.lamps, strict=True)):
         sign: dict[str, Any] = {"marker": (12, 1, 0), "markersize": 15} if lamp.parallel else {"marker": "o"}
-        lit = _colour(lighting, number) if np.any(lamp.light > 0) else "white"
+        lit = _colour(rig, number) if np.any(lamp.light > 0) else "white"
         axes.plot(*lamp.place[plane], color=lit, markeredgecolor=_INK, markeredgewidth=0.7, zorder=5, **sign)
-        _name(axes, lighting.lamp_names[number], lamp.place[plane], (10, -17, 20)[place % 3])
+        _name(axes, rig.lamps.names[number], lamp.place[plane], (10, -17, 20)[place % 3])
 
 
 def _name(axes: "Axes", name: str, place: Reals, points: float) -> None:

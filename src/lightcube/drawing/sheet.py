@@ -36,7 +36,7 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
     """
     count = len(frames)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
-    rows, columns = frames.views.picture_shape
+    rows, columns = frames.rig.picture_shape
     scale = max(1, round(_SIDE / min(rows, columns)))
     cell_height, cell_width = rows * scale * 3 + 2 * _LINE + 2 * _GAP, max(columns * scale, 96) + _GAP
     per_line = max(1, min(len(chosen), 1800 // cell_width))

@@ -1,6 +1,6 @@
 """What stands where in the room at a turntable angle: the cube, the screens and the lamps.
 
-Lengths are mm. The room's frame is the cube's at angle 0. Where the table carries the cube, what the lighting says in
+Lengths are mm. The room's frame is the cube's at angle 0. Where the table carries the cube, what the rig says in
 the cube's frame is turned with it; where the cube stands still, the two frames are one.
 """
 
@@ -10,11 +10,11 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.forward.turning import exposures_at, views_at
+from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Lighting, turned_by
-from lightcube.optics.views import Views, rotations, turn_period, turned, unit
+from lightcube.optics.rig import Rig
+from lightcube.optics.views import Views, rotations, unit
 
 Reals = NDArray[np.float64]
 
@@ -64,84 +64,48 @@ class Standing:
     lamps: tuple[PlacedLamp, ...]
 
 
-def as_stage(cube: Cube) -> Cube:
-    """The cube of a turntable as one of a stage that shows the same at every angle; a stage's cube as it is.
+def drawn(cube: Cube) -> Cube:
+    """The cube with every picture that its rig shows, and endless screens where they can be seen: behind the cube.
 
-    Its one lamp and one screen stand still while the table turns, the screen behind the cube, where parallel light
-    casts the same shadow. Where level light shows every picture again half a turn on, mirrored, there are as many
-    pictures more. It keeps no targets.
-
-    Raises
-    ------
-    InputError
-        Where the lamps stand at several elevations.
+    Where level light shows every picture again half a turn on, mirrored, there are as many pictures more. Parallel
+    light casts the same shadow on every parallel screen. It keeps no targets.
     """
-    if cube.lighting is not None:
-        return cube
-    views_at(cube, [0.0])  # refuses lamps at several elevations
-    views, powers, names = cube.views, cube.powers, cube.names
-    if turn_period(views) == 180:
-        again = turned(views, 180.0)
-        aside = np.sum(again.origins * again.column_steps, axis=1) / np.sum(again.column_steps**2, axis=1)
-        again = replace(again, origins=again.origins - 2 * aside[:, None] * again.column_steps)
-        views, powers, names = _both(views, again), np.tile(powers, (2, 1)), 2 * names
-    light = views.lamps[:, :3]
-    away = _BEHIND * cube.grid.size_mm[1] / np.hypot(light[:, 0], light[:, 1])
-    views = replace(views, origins=views.origins + away[:, None] * light)
-    count = len(views)
-    lighting = Lighting(
-        picture=np.arange(count),
-        lamp=np.zeros(count, np.intp),
-        share=np.ones((count, powers.shape[1])),
-        reach_mm=np.full((count, 2), np.inf),
-        falloff_mm=np.zeros((count, 2)),
-        full_at_mm=np.full(count, np.inf),
-        disc_deg=np.zeros(count),
-        cosine=np.zeros(count, bool),
-        turning=np.ones((count, 2), bool),
-        way=np.full((count, 2), -1.0),
-        axis=np.array([0.0, 0.0, 1.0]),
-        angle=views.angles,
-        screen=np.zeros(count, np.intp),
-        window=np.tile(views.picture_shape, (count, 1)),
-        least=np.ones(1),
-        most=np.ones(1),
-        lamp_names=("lamp",),
-        screen_names=("screen",),
-    )
-    return replace(cube, views=views, lamp_powers=powers, names=names, lighting=lighting, targets=None)
-
-
-def _both(first: Views, second: Views) -> Views:
-    arrays = {
-        name: np.concatenate([getattr(first, name), getattr(second, name)])
-        for name in ("lamps", "origins", "column_steps", "row_steps")
-    }
-    return Views(**arrays, picture_shape=first.picture_shape)
+    rig = cube.rig.both_sides
+    times = len(rig) // len(cube.rig)
+    light = rig.views.lamps[:, :3]
+    level = np.hypot(light[:, 0], light[:, 1])
+    endless = rig.screens.endless[rig.stops.screen][rig.sums.picture]
+    away = np.where(endless, _BEHIND * cube.grid.size_mm[1] / np.maximum(level, 1e-9), 0.0)
+    views = replace(rig.views, origins=rig.views.origins + away[:, None] * light)
+    powers, names = np.tile(cube.powers, (times, 1)), times * cube.names
+    return replace(cube, rig=replace(rig, views=views), lamp_powers=powers, names=names, targets=None)
 
 
 def standing(cube: Cube, angle: float) -> Standing:
     """Where the cube, the screens and the lamps stand at an angle (degrees)."""
-    cube = as_stage(cube)
-    assert cube.lighting is not None  # noqa: S101 - a stage's
-    views, lighting, powers = exposures_at(cube, [angle])
-    carried = np.any(lighting.turning & (lighting.way < 0))
-    turn = rotations(lighting.axis, np.array([angle if carried else 0.0]))[0]
-    starts = lighting.starts
+    cube = drawn(cube)
+    rig, powers = moment(cube, [angle])
+    turn = rotations(rig.turning.axis, np.array([angle if carries_cube(rig) else 0.0]))[0]
+    starts = rig.starts
     screens = []
-    for picture, pixels in enumerate(lighting.window):
+    for picture, pixels in enumerate(rig.stops.window):
         its = slice(starts[picture], starts[picture + 1])
-        middle = views.origins[its].mean(axis=0)  # of a pixel's samples
-        screens.append(_placed(turn, middle, views, starts[picture], (int(pixels[0]), int(pixels[1]))))
-    light = powers[lighting.pair] * lighting.share
+        middle = rig.views.origins[its].mean(axis=0)  # of a pixel's samples
+        screens.append(_placed(turn, middle, rig.views, starts[picture], (int(pixels[0]), int(pixels[1]))))
+    light = powers[rig.pair] * rig.sums.share
     lamps = []
-    for number in range(len(lighting.lamp_names)):
-        if not np.any(cube.lighting.lamp == number):
+    for number in range(len(rig.lamps.names)):
+        if not np.any(cube.rig.sums.lamp == number):
             continue
-        place, parallel = _lamp_place(cube, cube.lighting, number, angle)
-        lamps.append(PlacedLamp(turn @ place, parallel, light[lighting.lamp == number].sum(axis=0)))
-    axis = lighting.axis * (1 if lighting.axis[2] >= 0 else -1)
+        place, parallel = _lamp_place(cube.rig, number, angle)
+        lamps.append(PlacedLamp(turn @ place, parallel, light[rig.sums.lamp == number].sum(axis=0)))
+    axis = rig.turning.axis * (1 if rig.turning.axis[2] >= 0 else -1)
     return _clear(cube.grid, Standing(turn, unit(axis), tuple(screens), tuple(lamps)))
+
+
+def carries_cube(rig: Rig) -> bool:
+    """Whether the table carries the cube."""
+    return bool(np.any(rig.turning.turns & (rig.turning.way < 0)))
 
 
 def _placed(turn: Reals, middle: Reals, views: Views, view: int, pixels: tuple[int, int]) -> PlacedScreen:
@@ -151,12 +115,11 @@ def _placed(turn: Reals, middle: Reals, views: Views, view: int, pixels: tuple[i
     return PlacedScreen(turn @ (middle - columns / 2 * right - rows / 2 * down), turn @ right, turn @ down, pixels)
 
 
-def _lamp_place(cube: Cube, lighting: Lighting, number: int, angle: float) -> tuple[Reals, bool]:
+def _lamp_place(rig: Rig, number: int, angle: float) -> tuple[Reals, bool]:
     """Where a lamp stands (or the way its light travels) in the cube's frame, lit or not, and whether it is the way."""
-    picture = int(lighting.picture[np.argmax(lighting.lamp == number)])
-    alone, kept = lighting.take([picture])
-    moved = turned_by(cube.views.take(kept), alone, angle - lighting.angle[picture])
-    lamps = moved.lamps[alone.lamp == number]  # of a disc's samples
+    picture = int(rig.sums.picture[np.argmax(rig.sums.lamp == number)])
+    alone = rig.take([picture])
+    lamps = alone.turned(angle - alone.stops.angle).views.lamps[alone.sums.lamp == number]  # of a disc's samples
     return lamps[:, :3].mean(axis=0), not lamps[0, 3]
 
 

@@ -28,15 +28,10 @@ def thumbnails(cube: Cube) -> bytes:
     """What a cube shows at its stops (of more than 16, 16), with a line of facts: a PNG."""
     count = len(cube.names)
     chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST)).round().astype(int))
-    if cube.lighting is None:
-        shown = cast(cube, cube.views.take(chosen), cube.powers[chosen])
-        windows = np.tile(cube.views.picture_shape, (len(chosen), 1))
-    else:
-        lighting, kept = cube.lighting.take(chosen)
-        powers = cube.powers[np.isin(cube.lighting.pairs[:, 0], chosen)]
-        shown, windows = cast(cube, cube.views.take(kept), powers, lighting), lighting.window
+    rig = cube.rig.take(chosen)
+    shown = cast(cube, rig, cube.powers[np.isin(cube.rig.pairs[:, 0], chosen)])
     tiles = []
-    for picture, (rows, columns) in zip(shown, windows, strict=True):
+    for picture, (rows, columns) in zip(shown, rig.stops.window, strict=True):
         levels = to_uint8(picture[:rows, :columns], cube.transfer)
         scale = max(1, round(_SIDE / min(rows, columns)))
         image = Image.fromarray(np.ascontiguousarray(np.broadcast_to(levels, (rows, columns, 3))))
@@ -62,9 +57,9 @@ def _strip(tiles: list[Image.Image], facts: str) -> Image.Image:
 def _facts(cube: Cube) -> str:
     """Size, pictures and quality, in one line."""
     nz, ny, nx = cube.grid.shape
-    rows, columns = cube.views.picture_shape
+    rows, columns = cube.rig.picture_shape
     count = len(cube.names)
-    many = f"{count} pictures of at most" if cube.lighting is not None else f"{count} pictures of"
+    many = f"{count} pictures of at most" if np.ptp(cube.rig.stops.window, axis=0).any() else f"{count} pictures of"
     facts = [f"{nx} x {ny} x {nz} voxels of {cube.grid.voxel_mm:.3g} mm", f"{many} {columns} x {rows}"]
     if "psnr_mean" in cube.scores:
         facts.append(f"PSNR {cube.scores['psnr_mean']:.1f} dB")

@@ -5,12 +5,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lightcube.forward.turning import exposures_at, lamp_at, views_at
+from lightcube.forward.turning import moment
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
 from lightcube.optics.cube import Cube
 from lightcube.optics.law import falling_light
-from lightcube.optics.rig import Lighting
-from lightcube.optics.views import Views, check_angles
+from lightcube.optics.rig import Rig
 from lightcube.projection.projector import Projector
 
 #: Views that are computed together: enough for all threads, few enough to bound memory.
@@ -18,37 +17,33 @@ _BATCH = 16
 
 
 def cast(
-    cube: Cube, views: Views, lamp_powers: NDArray[np.float64], lighting: Lighting | None = None
+    cube: Cube, rig: Rig | None = None, lamp_powers: NDArray[np.float64] | None = None
 ) -> Iterator[NDArray[np.float32]]:
     """Yield what the screen shows in each picture, ``(row, column, channel)`` float32 linear light, never clipped.
 
+    Pixels that are not on their screen are black; a beam that misses the cube shows the lamp's power.
+
     Parameters
     ----------
-    views
-        Lamps and screens.
+    rig
+        Lamps and screens; None = those that the cube was made for.
     lamp_powers
-        ``(views, channels)``; a beam that misses the cube shows the lamp's power.
-    lighting
-        Which views make which picture, the lamp powers being those of its pairs; None = each view is a picture.
-        Pixels that are not on the screen are black.
+        ``(pairs, channels)``, of the rig's ``pairs``; None = the cube's.
     """
-    columns = columns_from_volume(cube.extinction)
-    if lighting is None:
-        yield from _cast(columns, cube, views, lamp_powers)
-    else:
-        yield from _cast_sums(columns, cube, views, lamp_powers, lighting)
+    powers = cube.powers if lamp_powers is None else lamp_powers
+    yield from _cast(columns_from_volume(cube.extinction), cube, rig or cube.rig, powers)
 
 
 def play(cube: Cube, angles: ArrayLike | None = None, *, whole_screen: bool = False) -> NDArray[np.float32]:
-    """What the screen shows, ``(view, row, column, channel)`` float32 linear light, lamp included, never clipped.
+    """What the screen shows, ``(picture, row, column, channel)`` float32 linear light, lamp included, never clipped.
 
     Parameters
     ----------
     angles
-        Turntable angles in degrees; None = the pictures that the cube was made for. On a stage with several screens
-        the pictures of an angle follow each other (`exposures_at`).
+        Turntable angles in degrees; None = the pictures that the cube was made for. Where there are several screens the
+        pictures of an angle follow each other (`lightcube.forward.turning.moment`).
     whole_screen
-        Show the whole shadow and its surroundings instead of the picture window; a stage's screens are whole anyway.
+        Show the whole shadow and its surroundings instead of the picture, where the screen has no edges.
     """
     return player(cube, whole_screen=whole_screen)(angles)
 
@@ -61,64 +56,61 @@ def player(cube: Cube, *, whole_screen: bool = False) -> Callable[[ArrayLike | N
     Parameters
     ----------
     whole_screen
-        Show the whole shadow and its surroundings instead of the picture window.
+        As `play` takes it.
     """
     columns = columns_from_volume(cube.extinction)
-    if cube.lighting is not None:
-        return _stage_player(columns, cube, cube.lighting)
 
     def show(angles: ArrayLike | None) -> NDArray[np.float32]:
-        turned = cube.views.angles if angles is None else check_angles(angles)
-        powers = cube.powers if angles is None else lamp_at(cube, turned)
-        own = angles is None and not whole_screen
-        views = cube.views if own else views_at(cube, turned, whole_screen=whole_screen)
-        return np.stack(list(_cast(columns, cube, views, powers)))
+        if angles is None:
+            now, powers = cube.rig.whole(cube.grid) if whole_screen else cube.rig, cube.powers
+        else:
+            now, powers = moment(cube, angles, whole_screen=whole_screen)
+        return np.stack(list(_cast(columns, cube, now, powers)))
 
     return show
-
-
-def _stage_player(
-    columns: NDArray[np.floating], cube: Cube, lighting: Lighting
-) -> Callable[[ArrayLike | None], NDArray[np.float32]]:
-    def show(angles: ArrayLike | None) -> NDArray[np.float32]:
-        shown = (cube.views, lighting, cube.powers) if angles is None else exposures_at(cube, angles)
-        return np.stack(list(_cast_sums(columns, cube, shown[0], shown[2], shown[1])))
-
-    return show
-
-
-def _cast_sums(
-    columns: NDArray[np.floating], cube: Cube, views: Views, lamp_powers: NDArray[np.float64], lighting: Lighting
-) -> Iterator[NDArray[np.float32]]:
-    """Yield what `cast` does with a lighting, picture by picture, and a few views of it at a time."""
-    light, shadow = falling_light(views, lighting)
-    powers = (lamp_powers[lighting.pair] * lighting.share).astype(np.float32)
-    inside = lighting.inside(views.picture_shape)
-    starts = lighting.starts
-    for picture in range(lighting.pictures):
-        total = np.zeros((*views.picture_shape, powers.shape[1]), np.float32)
-        for first in range(starts[picture], starts[picture + 1], _BATCH):
-            batch = range(first, min(first + _BATCH, starts[picture + 1]))
-            heard = np.repeat(inside[picture][None], len(batch), axis=0)
-            matrix = Projector(cube.grid, views.take(batch), heard)
-            absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
-            lines = absorbance.reshape(len(batch) * views.picture_shape[1], -1)
-            absorbed = pictures_from_columns(lines, views.picture_shape, powers.shape[1])
-            for view, each in zip(batch, absorbed, strict=True):
-                total += powers[view] * light[view][..., None] * (1 + shadow[view][..., None] * np.expm1(-each))
-        yield total * inside[picture][..., None]
 
 
 def _cast(
-    columns: NDArray[np.floating], cube: Cube, views: Views, lamp_powers: NDArray[np.float64]
+    columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: NDArray[np.float64]
 ) -> Iterator[NDArray[np.float32]]:
     """Yield what `cast` does, of the cube's extinction as `columns_from_volume` lays it out."""
-    channels = lamp_powers.shape[1]
-    for start in range(0, len(views), _BATCH):
-        batch = views.take(slice(start, start + _BATCH))
-        matrix = Projector(cube.grid, batch)
+    yield from (_thin if rig.is_thin else _summed)(columns, cube, rig, lamp_powers)
+
+
+def _thin(
+    columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: NDArray[np.float64]
+) -> Iterator[NDArray[np.float32]]:
+    """Yield the unfaded shadows of single beams, a few views at a time: ``P T``."""
+    rows, width = rig.picture_shape
+    inside = rig.inside
+    all_inside = bool(np.all(inside))
+    for start in range(0, len(rig), _BATCH):
+        batch = slice(start, start + _BATCH)
+        matrix = Projector(cube.grid, rig.views.take(batch), None if all_inside else inside[batch])
         absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
-        light = absorbance.reshape(len(batch), batch.picture_shape[1], -1)
+        light = absorbance.reshape(-1, width, rows * lamp_powers.shape[1])
         np.exp(np.negative(light, out=light), out=light)
-        light *= np.tile(lamp_powers[start : start + _BATCH].astype(np.float32), batch.picture_shape[0])[:, None, :]
-        yield from pictures_from_columns(light.reshape(-1, light.shape[2]), batch.picture_shape, channels)
+        light *= np.tile(lamp_powers[batch].astype(np.float32), rows)[:, None, :]
+        shown = pictures_from_columns(light.reshape(-1, light.shape[2]), rig.picture_shape, lamp_powers.shape[1])
+        yield from shown if all_inside else shown * inside[batch][..., None]
+
+
+def _summed(
+    columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: NDArray[np.float64]
+) -> Iterator[NDArray[np.float32]]:
+    """Yield sums of views, ``P g (1 - a (1 - T))`` each, picture by picture and a few views of it at a time."""
+    light, shadow = falling_light(rig)
+    powers = (lamp_powers[rig.pair] * rig.sums.share).astype(np.float32)
+    inside, starts, shape = rig.inside, rig.starts, rig.picture_shape
+    for picture in range(len(rig)):
+        total = np.zeros((*shape, powers.shape[1]), np.float32)
+        for first in range(starts[picture], starts[picture + 1], _BATCH):
+            batch = range(first, min(first + _BATCH, starts[picture + 1]))
+            heard = np.repeat(inside[picture][None], len(batch), axis=0)
+            matrix = Projector(cube.grid, rig.views.take(batch), heard)
+            absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
+            lines = absorbance.reshape(len(batch) * shape[1], -1)
+            absorbed = pictures_from_columns(lines, shape, powers.shape[1])
+            for view, each in zip(batch, absorbed, strict=True):
+                total += powers[view] * light[view][..., None] * (1 + shadow[view][..., None] * np.expm1(-each))
+        yield total * inside[picture][..., None]

@@ -11,29 +11,16 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lightcube.errors import InputError
-from lightcube.io._lighting import LightingJson, lighting_to_json
+from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.cube import Cube, Status
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
-from lightcube.optics.views import Views
 
-#: Of the files that this version writes; it reads all versions up to this one.
-FORMAT_VERSION = 2
+#: Of the files that this version writes; it reads no earlier ones, which were never released.
+FORMAT_VERSION = 3
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Strict = ConfigDict(extra="forbid", strict=True)
-
-
-class _ViewsJson(BaseModel):
-    """`lightcube.optics.views.Views`, one list per view."""
-
-    model_config = _Strict
-
-    lamps: list[Annotated[list[_Number], Field(min_length=4, max_length=4)]]
-    origins: list[Annotated[list[_Number], Field(min_length=3, max_length=3)]]
-    column_steps: list[Annotated[list[_Number], Field(min_length=3, max_length=3)]]
-    row_steps: list[Annotated[list[_Number], Field(min_length=3, max_length=3)]]
-    picture_shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=2, max_length=2)]
 
 
 class _CubeJson(BaseModel):
@@ -41,33 +28,28 @@ class _CubeJson(BaseModel):
 
     model_config = _Strict
 
-    format_version: Literal[1, 2]
+    format_version: Literal[3]
     written_by: str
     extinction_unit: Literal["1/mm"]
     voxel_mm: Annotated[_Number, Field(gt=0)]
-    views: _ViewsJson
+    rig: RigJson
     lamp_powers: list[list[Annotated[_Number, Field(gt=0)]]]
     names: list[str]
     transfer: Transfer
     status: Status
     hold_deg: Annotated[_Number, Field(ge=0, le=180)] = 0.0
-    lighting: LightingJson | None = None
     scores: dict[str, Any]
     provenance: dict[str, Any]
 
 
 def to_json(cube: Cube) -> dict[str, Any]:
     """`cube` without its arrays as plain JSON values; every number comes back bit for bit."""
-    views = cube.views
     return {
-        "format_version": 1 if cube.lighting is None else 2,  # so that an older version reads what it can
+        "format_version": FORMAT_VERSION,
         "written_by": f"lightcube {version('lightcube')}",
         "extinction_unit": "1/mm",
         "voxel_mm": cube.grid.voxel_mm,
-        "views": {
-            **{name: getattr(views, name).tolist() for name in ("lamps", "origins", "column_steps", "row_steps")},
-            "picture_shape": list(views.picture_shape),
-        },
+        "rig": rig_to_json(cube.rig),
         "lamp_powers": cube.powers.tolist(),
         "names": list(cube.names),
         "transfer": cube.transfer,
@@ -75,7 +57,6 @@ def to_json(cube: Cube) -> dict[str, Any]:
         "hold_deg": float(cube.hold_deg),
         "scores": plain(cube.scores),
         "provenance": plain(cube.provenance),
-        **({} if cube.lighting is None else {"lighting": lighting_to_json(cube.lighting)}),
     }
 
 
@@ -105,12 +86,10 @@ def from_json(path: Path, document: object, extinction: NDArray[np.float32], tar
         raise damaged(path, f"extinction is {extinction.dtype} with {extinction.ndim} axes, not float32 with 4")
     try:
         _, nz, ny, nx = extinction.shape
-        views = Views(**{**said.views.model_dump(), "picture_shape": tuple(said.views.picture_shape)})
-        _check_light(views)
         return Cube(
             extinction,
             Grid((nz, ny, nx), said.voxel_mm),
-            views,
+            said.rig.rig(),
             np.array(said.lamp_powers, dtype=np.float64),
             targets,
             tuple(said.names),
@@ -119,7 +98,6 @@ def from_json(path: Path, document: object, extinction: NDArray[np.float32], tar
             said.provenance,
             said.status,
             said.hold_deg,
-            None if said.lighting is None else said.lighting.lighting(),
         )
     except ValueError as error:  # InputError among them
         raise damaged(path, str(error)) from error
@@ -130,6 +108,8 @@ def check_version(path: Path, document: object) -> None:
     if not isinstance(document, Mapping) or "format_version" not in document:
         raise InputError(f"{path} is no light cube: it has no lightcube metadata, give a file that lightcube wrote")
     found = document["format_version"]
+    if isinstance(found, int) and found < FORMAT_VERSION:
+        raise InputError(f"{path} is in format {found} of a lightcube that was never released: make it again")
     if isinstance(found, int) and found > FORMAT_VERSION:
         raise InputError(
             f"{path} is in format {found} of a newer lightcube, and this one reads up to {FORMAT_VERSION}: "
@@ -140,14 +120,3 @@ def check_version(path: Path, document: object) -> None:
 def damaged(path: Path, what: str) -> InputError:
     """Return the exception for a file that is a light cube's but not whole."""
     return InputError(f"{path} is a damaged light cube ({what}): get another copy or make it again")
-
-
-def _check_light(views: Views) -> None:
-    """Raise `InputError` where a lamp shines nowhere or a screen has no size."""
-    lamps = views.lamps
-    if not np.all(np.isin(lamps[:, 3], (0.0, 1.0))):
-        raise InputError("lamps: the fourth number of a lamp is 0 or 1")
-    if not np.all((lamps[:, 3] == 1) | np.any(lamps[:, :3] != 0, axis=1)):
-        raise InputError("lamps: a direction of light is zero")
-    if not np.all(np.any(np.cross(views.column_steps, views.row_steps) != 0, axis=1)):
-        raise InputError("column_steps: a screen's columns and rows run along one line")

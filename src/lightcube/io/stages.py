@@ -17,11 +17,10 @@ from lightcube.errors import InputError
 from lightcube.io._files import system_errors
 from lightcube.io.pictures import read_pictures
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import sampled
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import Transfer, check_transfer, decode
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.fitting import Fit, fit_to_stage
+from lightcube.pictures.fitting import Fit, fit
 from lightcube.pictures.frames import Frames, Pictures
 from lightcube.scene.description import Count, Line, Number, Point, Positive, hex_colour, sentence
 
@@ -110,6 +109,7 @@ class ScreenTable(_Table):
     reach_mm: Number | None = None
     falloff_mm: Number | None = None
     cosine: Flag | None = None
+    black: Number | None = None
 
 
 class PictureTable(_Table):
@@ -211,7 +211,7 @@ def read_stage_frames(
     Parameters
     ----------
     lamp_samples, pixel_samples
-        As in `lightcube.optics.rig.sampled`.
+        As in `lightcube.optics.rig.Rig.sampled`.
 
     Raises
     ------
@@ -219,8 +219,8 @@ def read_stage_frames(
         As from `read_stage`, and where a number of samples is out of its range.
     """
     stage, pictures, fits = read_stage(path, transfer=transfer)
-    views, lighting = sampled(*exposures(stage), lamp_samples=lamp_samples, pixel_samples=pixel_samples)
-    return stage, fit_to_stage(pictures, views, lighting, fits)
+    rig = stage.rig().sampled(lamp=lamp_samples, pixel=pixel_samples)
+    return stage, fit(pictures, rig, fits)
 
 
 @contextmanager

@@ -26,7 +26,6 @@ from lightcube.backward.recipe import from_plain
 from lightcube.backward.store import Arrays
 from lightcube.errors import InputError
 from lightcube.io._files import PARTIAL_SUFFIX, system_errors
-from lightcube.io._lighting import LightingJson, lighting_to_json
 from lightcube.io._metadata import plain
 from lightcube.io._places import (
     Place,
@@ -41,13 +40,13 @@ from lightcube.io._places import (
     remove,
     written,
 )
+from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
-from lightcube.optics.views import Views
 from lightcube.pictures.frames import Frames
 
 #: Of the folders that this version writes and reads.
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 
 _JOB, _FRAMES = "job.json", "frames.npz"
 _PIECE = re.compile(r"((?:level|unit)-[0-9]+)(\.state)?\.npz")
@@ -56,7 +55,6 @@ _HIDDEN = re.compile(r"\..+\.npz-[0-9a-f]{32}|\.job\.json-[0-9a-f]{32}")
 _STALE_S = 600.0
 #: Which job a file belongs to; no array of a piece is called so.
 _OWNER = "job-key"
-_GEOMETRY = ("lamps", "origins", "column_steps", "row_steps")
 
 
 class _JobJson(BaseModel):
@@ -64,14 +62,14 @@ class _JobJson(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    format_version: Literal[1]
+    format_version: Literal[2]
     written_by: str
     fingerprint: dict[str, str | int | float | None]
     shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=3, max_length=3)]
     voxel_mm: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     names: list[str]
     transfer: Transfer
-    lighting: LightingJson | None = None
+    rig: RigJson
     recipe: dict[str, str | int | float | None]
     units: Annotated[int, Field(ge=1)]
     provenance: dict[str, Any]
@@ -250,11 +248,8 @@ def load_job(partial: str | Path) -> Job:
         raise _damaged(path, "it is missing")
     try:
         pictures, weights = arrays["pictures"], arrays["weights"]
-        geometry = {name: arrays[name] for name in _GEOMETRY}
-        views = Views(**geometry, picture_shape=(pictures.shape[1], pictures.shape[2]))
-        lighting = None if said.lighting is None else said.lighting.lighting()
         job = Job(
-            frames=Frames(pictures, views, weights, tuple(said.names), said.transfer, lighting),
+            frames=Frames(pictures, said.rig.rig(), weights, tuple(said.names), said.transfer),
             grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),
             recipe=from_plain(said.recipe),
             units=said.units,
@@ -270,8 +265,7 @@ def load_job(partial: str | Path) -> Job:
 
 def _write_job(folder: Place, job: Job) -> None:
     frames, grid = job.frames, job.grid
-    geometry = {name: getattr(frames.views, name) for name in _GEOMETRY}
-    _write_arrays(child(folder, _FRAMES), {"pictures": frames.pictures, "weights": frames.weight, **geometry})
+    _write_arrays(child(folder, _FRAMES), {"pictures": frames.pictures, "weights": frames.weight})
     document = {
         "format_version": FORMAT_VERSION,
         "written_by": f"lightcube {version('lightcube')}",
@@ -280,7 +274,7 @@ def _write_job(folder: Place, job: Job) -> None:
         "voxel_mm": grid.voxel_mm,
         "names": list(frames.names),
         "transfer": frames.transfer,
-        "lighting": lighting_to_json(frames.lighting),
+        "rig": rig_to_json(frames.rig),
         "recipe": job.recipe.plain(),
         "units": job.units,
         "provenance": plain(job.provenance),

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Lighting
+from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
-from lightcube.optics.views import Views
 
 Status = Literal["complete", "interrupted"]
 
@@ -26,11 +25,11 @@ class Cube:
         ``(channel, z, y, x)`` float32 in 1/mm, at least 0; its axes may lie in memory in any order.
     grid
         Shape ``(nz, ny, nx)`` and voxel side.
-    views
-        Lamp and screen of each picture the cube was made for.
+    rig
+        Lamps and screens of the pictures the cube was made for.
     lamp_powers
-        ``(view, channel)`` float64 above 0, linear light, 1 = the paper's white lamp; default all 1. On a stage one for
-        each picture and lamp, in the order of ``lighting.pairs``.
+        ``(pair, channel)`` float64 above 0, linear light, 1 = the paper's white lamp; default all 1. One for each
+        picture and lamp, in the order of ``rig.pairs``.
     targets
         The wanted pictures as 8-bit display levels ``(picture, row, column, channel + 1)``; the last channel is
         the weight (0 = don't care, 255 = full). None where the cube was not made from pictures.
@@ -44,8 +43,6 @@ class Cube:
         How the cube was made: method, options, version of this package.
     hold_deg
         Degrees on either side of its stop over which a picture was asked to stand; the lamp does not change there.
-    lighting
-        Which views make which picture on a stage; None = each view is a picture.
     status
         ``"complete"``, or ``"interrupted"`` where the solver was stopped early.
 
@@ -57,7 +54,7 @@ class Cube:
 
     extinction: NDArray[np.float32]
     grid: Grid
-    views: Views
+    rig: Rig
     lamp_powers: NDArray[np.float64] | None = None
     targets: NDArray[np.uint8] | None = None
     names: tuple[str, ...] = ()
@@ -66,7 +63,6 @@ class Cube:
     provenance: Mapping[str, Any] = field(default_factory=dict)
     status: Status = "complete"
     hold_deg: float = 0.0
-    lighting: Lighting | None = None
     #: What a notebook shows of a cube, by MIME type; set by what can draw one, which stands above this module.
     shown_by: ClassVar[Callable[["Cube"], dict[str, Any]] | None] = None
 
@@ -80,22 +76,20 @@ class Cube:
             raise InputError(
                 "extinction holds negative or non-finite numbers: every voxel needs a finite value of at least 0"
             )
-        pictures, lamps = len(self.views), len(self.views)
-        if self.lighting is not None:
-            pictures, lamps = self.lighting.pictures, len(self.lighting.pairs)
-            if len(self.lighting.picture) != len(self.views) or self.lighting.share.shape[1] != len(extinction):
-                raise InputError(f"a lighting of {len(self.lighting.picture)} views does not fit {len(self.views)}")
-        shape = (lamps, len(extinction))
+        pictures, channels = len(self.rig), len(extinction)
+        if self.rig.sums.share.shape[1] not in (1, channels):
+            raise InputError(f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {channels}")
+        shape = (len(self.rig.pairs), channels)
         powers = np.ones(shape) if self.lamp_powers is None else np.array(self.lamp_powers, dtype=np.float64)
         if powers.shape != shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):
             raise InputError(f"lamp powers must be positive finite numbers of shape {shape}, not {powers.shape}")
         if self.targets is not None:
-            wanted = (pictures, *self.views.picture_shape, len(extinction) + 1)
+            wanted = (pictures, *self.rig.picture_shape, channels + 1)
             if self.targets.shape != wanted or self.targets.dtype != np.uint8:
                 raise InputError(f"targets must be 8-bit numbers of shape {wanted}, not {self.targets.shape}")
         names = self.names or tuple(str(i + 1) for i in range(pictures))
         if len(names) != pictures:
-            raise InputError(f"{pictures} views have {len(names)} names: give one name per view")
+            raise InputError(f"{pictures} pictures have {len(names)} names: give one name per picture")
         if self.status not in get_args(Status):
             raise InputError(f"a cube's status is one of {', '.join(get_args(Status))}, not {self.status!r}")
         if not 0 <= self.hold_deg <= 180:
@@ -113,7 +107,7 @@ class Cube:
     @property
     def angles(self) -> NDArray[np.float64]:
         """Turntable angle of each picture's stop, degrees."""
-        return self.views.angles if self.lighting is None else self.lighting.angle
+        return self.rig.stops.angle
 
     def __repr__(self) -> str:
         nz, ny, nx = self.grid.shape

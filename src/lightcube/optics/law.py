@@ -4,13 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.optics.grid import PARALLEL
-from lightcube.optics.rig import Lighting
-from lightcube.optics.views import Views
+from lightcube.optics.rig import Rig
 
 Reals = NDArray[np.float64]
 
 
-def falling_light(views: Views, lighting: Lighting) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def falling_light(rig: Rig) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Light g and strength of the shadow a of every pixel, ``(view, row, column)``, without the lamps' shares.
 
     With u the unit direction of the beam through the pixel at q, n the screen's normal and l the place of a point lamp:
@@ -18,13 +17,14 @@ def falling_light(views: Views, lighting: Lighting) -> tuple[NDArray[np.float32]
     ``a = exp(-max(0, u.q - reach) / falloff)``, a factor for the lamp and one for the screen. ``u.q`` is how far
     the light travels from where it is nearest to the cube's centre to the screen.
     """
+    views, fading = rig.views, rig.fading
     rows, columns = views.picture_shape
     across = np.arange(columns) - (columns - 1) / 2
     along = np.arange(rows) - (rows - 1) / 2
     light = np.ones((len(views), rows, columns), np.float32)
     shadow = np.ones_like(light)
     for v in range(len(views)):
-        asked = lighting.cosine[v], np.isfinite(lighting.full_at_mm[v]), np.isfinite(lighting.reach_mm[v])
+        asked = fading.cosine[v], np.isfinite(fading.full_at_mm[v]), np.isfinite(fading.reach_mm[v])
         if not np.any(np.hstack(asked)):
             continue
         pixels = (
@@ -37,14 +37,14 @@ def falling_light(views: Views, lighting: Lighting) -> tuple[NDArray[np.float32]
             normal = np.cross(views.column_steps[v], views.row_steps[v])
             light[v] *= np.abs(units @ normal) / np.linalg.norm(normal)
         if asked[1] and views.lamps[v, 3]:
-            light[v] *= (lighting.full_at_mm[v] / lengths) ** 2
+            light[v] *= (fading.full_at_mm[v] / lengths) ** 2
         travelled = np.sum(units * pixels, axis=-1)
-        for reach, falloff in zip(lighting.reach_mm[v], lighting.falloff_mm[v], strict=True):
-            shadow[v] *= fading(travelled, reach, falloff)
+        for reach, falloff in zip(fading.reach_mm[v], fading.falloff_mm[v], strict=True):
+            shadow[v] *= fade(travelled, reach, falloff)
     return light, shadow
 
 
-def fading(distance: Reals, reach: float, falloff: float) -> Reals:
+def fade(distance: Reals, reach: float, falloff: float) -> Reals:
     """Strength of a shadow so far behind the cube: 1 up to `reach`, then ``exp(-(distance - reach) / falloff)``."""
     beyond = np.maximum(distance - reach, 0)
     if falloff == 0:

@@ -1,8 +1,8 @@
-"""How the shadows of one or more lamps make a picture, where the lamps and screens of a stage stand.
+"""Every picture's views and how they add up to it, where the lamps and screens of a room stand, and what turns.
 
 A picture is a sum over its views of ``P g (1 - a (1 - T))``: P the lamp's power, g the light of a lamp of power 1 that
 reaches the pixel past no cube, T the transmittance of the beam, and a the strength of the shadow, which fades with
-distance. Lengths are mm, everything is in the cube's own frame, as in `lightcube.optics.views`.
+distance (`lightcube.optics.law`). Lengths are mm, all is in the cube's own frame, as in `lightcube.optics.views`.
 """
 
 import math
@@ -12,223 +12,573 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from lightcube.errors import InputError
-from lightcube.optics.views import Views, hold_offsets, rotations, smallest_gap
+from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.transfer import BLACK
+from lightcube.optics.views import Views, check_angles, hold_offsets, rotated, smallest_gap, turntable_views
 
 Reals = NDArray[np.float64]
+Counts = NDArray[np.intp]
+
+#: Bounds of the power of a lamp of which nothing is said; the lower one is that of any lamp that is not fixed.
+POWER_MIN, POWER_MAX = 1e-4, 16.0
+#: No lamp may be stronger.
+POWER_MOST = 1e6
+#: Stops nearer to each other than this, in degrees, are one.
+_SAME_STOP = 1e-6
+#: A part of a vector smaller than this is none.
+_NONE = 1e-9
+
+
+class _Columns:
+    """Arrays of one row per view or picture, which cannot be written to."""
+
+    def _keep(self, **kinds: tuple[DTypeLike, tuple[int, ...]]) -> None:
+        for name, (kind, shape) in kinds.items():
+            array: NDArray[Any] = np.array(getattr(self, name), dtype=kind)
+            if array.shape != shape:
+                raise InputError(f"{name} of a rig has shape {array.shape}, not {shape}")
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
 
 
 @dataclass(frozen=True, eq=False)
-class Lighting:
-    """Which views make which picture, under which lamp and how strong; views of a picture follow each other.
+class Sums(_Columns):
+    """Which views add up to which picture, under which lamp and with what share; those of a picture follow each other.
 
     Parameters
     ----------
     picture
         ``(views,)``: the picture that each view adds to, ascending from 0, none left out.
     lamp
-        ``(views,)``: the lamp of each view, a number into `lamp_names`.
+        ``(views,)``: the lamp of each view, a number into the rig's `Lamps`.
     share
-        ``(views, channels)`` of at least 0: the lamp's colour, divided among the samples of its disc and of pixels.
+        ``(views, channels)`` of at least 0: the lamp's colour, divided among the samples of its disc and of pixels; one
+        channel = the same for any number of colours.
+    disc_deg
+        ``(views,)``: angular diameter of the lamp's disc as seen from the cube's middle, degrees, of which the view is
+        the middle; 0 where it has none, or the view is a sample of it.
+    """
+
+    picture: Counts
+    lamp: Counts
+    share: Reals
+    disc_deg: Reals
+
+    def __post_init__(self) -> None:
+        views = len(self.picture)
+        self._keep(
+            picture=(np.intp, (views,)),
+            lamp=(np.intp, (views,)),
+            share=(np.float64, (views, np.shape(self.share)[-1])),
+            disc_deg=(np.float64, (views,)),
+        )
+        steps = np.diff(self.picture, prepend=-1)
+        if not views or np.any((steps != 0) & (steps != 1)) or steps[0] != 1:
+            raise InputError("views of a rig must be in the order of their pictures, none of which is left out")
+        if np.any(self.share < 0):
+            raise InputError("a rig's shares must be at least 0")
+
+    def of_colours(self, channels: int) -> Reals:
+        """``(views, channels)``: the share of each view and colour."""
+        return np.broadcast_to(self.share, (len(self.share), channels))
+
+
+@dataclass(frozen=True, eq=False)
+class Fading(_Columns):
+    """How light and shadows change with distance and slant.
+
+    Parameters
+    ----------
     reach_mm, falloff_mm
         ``(views, 2)``, of the lamp and of the screen: so far behind the cube the shadow keeps its full strength, and
         over each such length beyond it fades to 1/e (0 = it ends there). Both apply.
     full_at_mm
         ``(views,)``: so far from it a point lamp shows its power, and elsewhere by the inverse square of the distance;
         infinity = the same everywhere.
-    disc_deg
-        ``(views,)``: angular diameter of the lamp's disc as seen from the cube's middle, degrees, of which the view is
-        the middle; 0 where it has none, or the view is a sample of it (`sampled`).
     cosine
         ``(views,)`` bool: whether light that falls aslant on the screen is spread over more of it.
-    turning
-        ``(views, 2)`` bool: whether the lamp, and the screen, goes round the cube when the table turns.
-    way
-        ``(views, 2)``: which way they then go round, in the cube's frame, as the angle rises: 1 counter-clockwise
-        about `axis`, else -1.
-    axis
-        ``(3,)``, of the turntable.
-    angle, screen
-        ``(pictures,)``: angle of the stop (degrees), and the screen, a number into `screen_names`.
-    window
-        ``(pictures, 2)``: how many rows and columns of the picture, from its upper left, lie on the screen.
-    least, most
-        ``(lamps,)``: bounds of each lamp's power, equal where it is fixed.
-    lamp_names, screen_names
-        For people.
     """
 
-    picture: NDArray[np.intp]
-    lamp: NDArray[np.intp]
-    share: Reals
     reach_mm: Reals
     falloff_mm: Reals
     full_at_mm: Reals
-    disc_deg: Reals
     cosine: NDArray[np.bool_]
-    turning: NDArray[np.bool_]
-    way: Reals
-    axis: Reals
-    angle: Reals
-    screen: NDArray[np.intp]
-    window: NDArray[np.intp]
-    least: Reals
-    most: Reals
-    lamp_names: tuple[str, ...]
-    screen_names: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        views, pictures, lamps = len(self.picture), len(self.angle), len(self.lamp_names)
-        shapes: dict[str, tuple[type, tuple[int, ...]]] = {
-            **dict.fromkeys(("picture", "lamp"), (np.intp, (views,))),
-            "share": (np.float64, (views, np.shape(self.share)[-1])),
-            **dict.fromkeys(("reach_mm", "falloff_mm", "way"), (np.float64, (views, 2))),
-            **dict.fromkeys(("full_at_mm", "disc_deg"), (np.float64, (views,))),
-            "cosine": (np.bool_, (views,)),
-            "turning": (np.bool_, (views, 2)),
-            "axis": (np.float64, (3,)),
-            "angle": (np.float64, (pictures,)),
-            "screen": (np.intp, (pictures,)),
-            "window": (np.intp, (pictures, 2)),
-            **dict.fromkeys(("least", "most"), (np.float64, (lamps,))),
-        }
-        for name, (kind, shape) in shapes.items():
-            array: NDArray[Any] = np.array(getattr(self, name), dtype=kind)
-            if array.shape != shape:
-                raise InputError(f"{name} of a lighting has shape {array.shape}, not {shape}")
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
-        steps = np.diff(self.picture, prepend=-1, append=pictures)
-        if not (views and pictures) or np.any((steps != 0) & (steps != 1)) or steps[0] != 1 or steps[-1] != 1:
-            raise InputError("views of a lighting must be in the order of their pictures, none of which is left out")
-        if np.any(self.share < 0) or not np.all((self.least > 0) & (self.least <= self.most)):
-            raise InputError("a lighting's shares must be at least 0, and its lamps' powers above 0, least before most")
-        for numbers, names in ((self.lamp, self.lamp_names), (self.screen, self.screen_names)):
-            if np.any((numbers < 0) | (numbers >= len(names))):
-                raise InputError("a lighting's lamps and screens must be numbers of the names that it has, from 0")
-        object.__setattr__(self, "lamp_names", tuple(self.lamp_names))
-        object.__setattr__(self, "screen_names", tuple(self.screen_names))
-
-    @property
-    def pictures(self) -> int:
-        """How many pictures there are."""
-        return len(self.angle)
-
-    @cached_property
-    def pairs(self) -> NDArray[np.intp]:
-        """``(pairs, 2)``: every (picture, lamp) once, in order; each pair has lamp powers of its own."""
-        found: NDArray[np.intp] = np.unique(np.stack([self.picture, self.lamp], axis=1), axis=0)
-        return found
-
-    @cached_property
-    def pair(self) -> NDArray[np.intp]:
-        """``(views,)``: which of the `pairs` each view belongs to."""
-        keys = self.pairs[:, 0] * len(self.lamp_names) + self.pairs[:, 1]
-        return np.searchsorted(keys, self.picture * len(self.lamp_names) + self.lamp)
-
-    @property
-    def starts(self) -> NDArray[np.intp]:
-        """``(pictures + 1,)``: the views of picture p are those from ``starts[p]`` to before ``starts[p + 1]``."""
-        return np.searchsorted(self.picture, np.arange(self.pictures + 1))
-
-    @property
-    def is_plain(self) -> bool:
-        """Whether every picture is the unfaded shadow of one lamp: then the problem is convex."""
-        return bool(
-            len(self.picture) == self.pictures
-            and np.all(self.share == 1)
-            and np.all(np.isinf(self.reach_mm))
-            and np.all(np.isinf(self.full_at_mm))
-            and not np.any(self.cosine)
+        views = len(self.full_at_mm)
+        self._keep(
+            reach_mm=(np.float64, (views, 2)),
+            falloff_mm=(np.float64, (views, 2)),
+            full_at_mm=(np.float64, (views,)),
+            cosine=(np.bool_, (views,)),
         )
 
-    def inside(self, picture_shape: tuple[int, int]) -> NDArray[np.bool_]:
-        """``(pictures, rows, columns)``: the pixels that lie on their screen."""
-        rows, columns = (np.arange(count) for count in picture_shape)
-        inside: NDArray[np.bool_] = (rows[:, None] < self.window[:, :1, None]) & (columns < self.window[:, 1:, None])
-        return inside
+    @classmethod
+    def none(cls, views: int) -> "Fading":
+        """Light and shadows that are the same everywhere."""
+        return cls(np.full((views, 2), np.inf), np.zeros((views, 2)), np.full(views, np.inf), np.zeros(views, np.bool_))
 
-    def take(self, pictures: Sequence[int] | NDArray[np.integer]) -> tuple["Lighting", NDArray[np.intp]]:
-        """Some of the pictures, in this order, and the numbers of the views that belong to them.
-
-        A picture may come several times.
-        """
-        starts = self.starts
-        views = np.concatenate([np.arange(starts[p], starts[p + 1]) for p in pictures])
-        counts = [starts[p + 1] - starts[p] for p in pictures]
-        per_view = {each.name: getattr(self, each.name)[views] for each in fields(self) if each.name in _PER_VIEW}
-        per_picture = {name: getattr(self, name)[np.asarray(pictures)] for name in ("angle", "screen", "window")}
-        taken = per_view | per_picture | {"picture": np.repeat(np.arange(len(counts)), counts)}
-        return replace(self, **taken), views
+    @property
+    def is_none(self) -> bool:
+        """Whether light and shadows are the same everywhere."""
+        return bool(np.all(np.isinf(self.reach_mm)) and np.all(np.isinf(self.full_at_mm)) and not np.any(self.cosine))
 
 
-_PER_VIEW = ("lamp", "share", "reach_mm", "falloff_mm", "full_at_mm", "disc_deg", "cosine", "turning", "way")
+@dataclass(frozen=True, eq=False)
+class Turning(_Columns):
+    """What goes round the cube when the table turns.
+
+    Parameters
+    ----------
+    turns
+        ``(views, 2)`` bool: whether the lamp, and the screen, goes round the cube.
+    way
+        ``(views, 2)``: which way, in the cube's frame, as the angle rises: 1 counter-clockwise about `axis`, else -1.
+    axis
+        ``(3,)``, of the turntable.
+    """
+
+    turns: NDArray[np.bool_]
+    way: Reals
+    axis: Reals
+
+    def __post_init__(self) -> None:
+        views = len(self.turns)
+        self._keep(turns=(np.bool_, (views, 2)), way=(np.float64, (views, 2)), axis=(np.float64, (3,)))
 
 
-def turned_by(views: Views, lighting: Lighting, degrees: ArrayLike) -> Views:
-    """Views of a stage when the table has turned on by so many degrees: one number, or one per view."""
-    angles = np.broadcast_to(np.asarray(degrees, np.float64), len(views))
-    lamp, screen = (
-        rotations(lighting.axis, np.where(lighting.turning[:, i], lighting.way[:, i] * angles, 0.0)) for i in (0, 1)
-    )
-    shone = np.einsum("vij,vj->vi", lamp, views.lamps[:, :3])
-    origins, right, down = (
-        np.einsum("vij,vj->vi", screen, vectors) for vectors in (views.origins, views.column_steps, views.row_steps)
-    )
-    return Views(np.column_stack([shone, views.lamps[:, 3]]), origins, right, down, views.picture_shape)
+@dataclass(frozen=True, eq=False)
+class Stops(_Columns):
+    """Where each picture stands.
+
+    Parameters
+    ----------
+    angle, screen
+        ``(pictures,)``: angle of the stop (degrees), and the screen, a number into the rig's `Screens`.
+    window
+        ``(pictures, 2)``: how many rows and columns of the picture, from its upper left, lie on the screen.
+    """
+
+    angle: Reals
+    screen: Counts
+    window: Counts
+
+    def __post_init__(self) -> None:
+        pictures = len(self.angle)
+        self._keep(angle=(np.float64, (pictures,)), screen=(np.intp, (pictures,)), window=(np.intp, (pictures, 2)))
 
 
-def held_lighting(
-    views: Views, lighting: Lighting, hold_deg: float, step_deg: float
-) -> tuple[Views, Lighting, NDArray[np.intp]]:
-    """Every picture at several angles within `hold_deg` degrees of its stop, at most `step_deg` apart.
+@dataclass(frozen=True, eq=False)
+class Lamps(_Columns):
+    """The lamps: their names, and bounds of their power, equal where it is fixed; linear light, 1 shows white."""
 
-    Also returns ``(views,)``: the number of the given view that each one is a copy of.
+    names: tuple[str, ...]
+    least: Reals
+    most: Reals
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", tuple(self.names))
+        self._keep(least=(np.float64, (len(self.names),)), most=(np.float64, (len(self.names),)))
+        if not np.all((self.least > 0) & (self.least <= self.most)):
+            raise InputError("the powers of a rig's lamps must be above 0, the least before the largest")
+
+    @property
+    def are_fixed(self) -> bool:
+        """Whether every lamp has one given power."""
+        return bool(np.array_equal(self.least, self.most))
+
+
+@dataclass(frozen=True, eq=False)
+class Screens(_Columns):
+    """The screens: their names, the display value that each cannot be darker than, and whether it has no edges."""
+
+    names: tuple[str, ...]
+    black: Reals
+    endless: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", tuple(self.names))
+        self._keep(black=(np.float64, (len(self.names),)), endless=(np.bool_, (len(self.names),)))
+        for black in self.black:
+            if not BLACK <= black < 1:
+                raise InputError(
+                    f"black must be a display value from {BLACK:.4f}, half a level, to below 1, not {black:g}"
+                )
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """Every picture's views, how they add up, and what turns: a turntable's (`turntable`) or a stage's (`Stage.rig`).
+
+    Parameters
+    ----------
+    views
+        The beams, in the cube's frame: what the matrix is made of.
+    sums, fading, turning
+        Of each view.
+    stops
+        Of each picture.
+    lamps, screens
+        What stands in the room.
 
     Raises
     ------
     InputError
-        Where `hold_deg` is negative, or wider than half the way to the nearest other stop of a screen.
+        Where they do not fit each other.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> rig = lc.turntable(lc.Grid((3, 5, 7)), [0, 45, 90], elevation=30)
+    >>> rig
+    <rig of 3 pictures of 9 x 9 pixels, 3 views>
+    >>> rig.take([2, 0]).stops.angle
+    array([90.,  0.])
     """
-    gaps = [smallest_gap(lighting.angle[lighting.screen == screen], 360.0) for screen in np.unique(lighting.screen)]
-    offsets = hold_offsets(hold_deg, min(gaps) / 2, step_deg)
-    repeated, kept = lighting.take(np.repeat(np.arange(lighting.pictures), len(offsets)))
-    turn = np.tile(offsets, lighting.pictures)
-    moved = turned_by(views.take(kept), repeated, turn[repeated.picture])
-    return moved, replace(repeated, angle=repeated.angle + turn), kept
+
+    views: Views
+    sums: Sums
+    fading: Fading
+    turning: Turning
+    stops: Stops
+    lamps: Lamps
+    screens: Screens
+
+    def __post_init__(self) -> None:
+        views = len(self.views)
+        if not len(self.sums.picture) == len(self.fading.cosine) == len(self.turning.turns) == views:
+            raise InputError(f"the parts of a rig are not all of {views} views")
+        if self.sums.picture[-1] + 1 != len(self.stops.angle):
+            raise InputError(f"{len(self.stops.angle)} stops do not fit {self.sums.picture[-1] + 1} pictures")
+        for numbers, names in ((self.sums.lamp, self.lamps.names), (self.stops.screen, self.screens.names)):
+            if np.any((numbers < 0) | (numbers >= len(names))):
+                raise InputError("a rig's lamps and screens must be numbers of the names that it has, from 0")
+
+    @classmethod
+    def of(
+        cls,
+        views: Views,
+        angles: ArrayLike | None = None,
+        *,
+        power: float | None = None,
+        power_max: float = POWER_MAX,
+        black: float = BLACK,
+    ) -> "Rig":
+        """Each view a picture of its own, whose lamp and endless screen go round the standing cube together.
+
+        Parameters
+        ----------
+        angles
+            Of the pictures' stops, degrees; default those of the views' parallel lamps.
+        power
+            Power of the lamp where it is fixed, linear light: 1 shows white where a beam meets nothing.
+        power_max
+            Its largest power where it is not, at least 1.
+        black
+            Display value, in [0, 1), that the screen cannot be darker than.
+        """
+        count = len(views)
+        least, most = power_bounds(power, power_max)
+        return cls(
+            views,
+            Sums(np.arange(count), np.zeros(count, np.intp), np.ones((count, 1)), np.zeros(count)),
+            Fading.none(count),
+            Turning(np.ones((count, 2), np.bool_), np.full((count, 2), -1.0), np.array([0.0, 0.0, 1.0])),
+            Stops(
+                views.angles if angles is None else check_angles(angles),
+                np.zeros(count, np.intp),
+                np.tile(views.picture_shape, (count, 1)),
+            ),
+            Lamps(("lamp",), np.array([least]), np.array([most])),
+            Screens(("screen",), np.array([black]), np.array([True])),
+        )
+
+    def __len__(self) -> int:
+        return len(self.stops.angle)
+
+    def __repr__(self) -> str:
+        rows, columns = self.picture_shape
+        return f"<rig of {len(self)} pictures of {rows} x {columns} pixels, {len(self.views)} views>"
+
+    @property
+    def picture_shape(self) -> tuple[int, int]:
+        """``(rows, columns)`` of every picture; those on smaller screens use the upper left (`Stops.window`)."""
+        return self.views.picture_shape
+
+    @cached_property
+    def pairs(self) -> Counts:
+        """``(pairs, 2)``: every (picture, lamp) once, in order; each pair has lamp powers of its own."""
+        found: Counts = np.unique(np.stack([self.sums.picture, self.sums.lamp], axis=1), axis=0)
+        return found
+
+    @cached_property
+    def pair(self) -> Counts:
+        """``(views,)``: which of the `pairs` each view belongs to."""
+        lamps = len(self.lamps.names)
+        return np.searchsorted(self.pairs[:, 0] * lamps + self.pairs[:, 1], self.sums.picture * lamps + self.sums.lamp)
+
+    @property
+    def starts(self) -> Counts:
+        """``(pictures + 1,)``: the views of picture p are those from ``starts[p]`` to before ``starts[p + 1]``."""
+        return np.searchsorted(self.sums.picture, np.arange(len(self) + 1))
+
+    @cached_property
+    def is_thin(self) -> bool:
+        """Whether every picture is the unfaded shadow of one white lamp in single beams: then the problem is convex."""
+        return bool(len(self.views) == len(self) and np.all(self.sums.share == 1) and self.fading.is_none)
+
+    @property
+    def inside(self) -> NDArray[np.bool_]:
+        """``(pictures, rows, columns)``: the pixels that lie on their screen."""
+        rows, columns = (np.arange(count) for count in self.picture_shape)
+        high, wide = self.stops.window[:, :1, None], self.stops.window[:, 1:, None]
+        return np.asarray((rows[:, None] < high) & (columns < wide), np.bool_)
+
+    @cached_property
+    def mirrors(self) -> bool:
+        """Whether half a turn of the table shows every picture mirrored: level light, and screens that go with it."""
+        axis = self.turning.axis / np.linalg.norm(self.turning.axis)
+        light, across = (
+            vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+            for vectors in (self.views.lamps[:, :3], self.views.column_steps)
+        )
+        upright = np.linalg.norm(np.cross(self.views.row_steps, axis), axis=1)
+        return bool(
+            np.all(self.turning.turns)
+            and np.all(self.turning.way[:, 0] == self.turning.way[:, 1])
+            and np.all(self.views.lamps[:, 3] == 0)
+            and np.all(np.abs(light @ axis) < _NONE)
+            and np.all(np.abs(across @ axis) < _NONE)
+            and np.all(upright < _NONE * np.linalg.norm(self.views.row_steps, axis=1))
+        )
+
+    @cached_property
+    def period(self) -> float:
+        """Degrees after which lamps repeat: 360, or 180 where half a turn mirrors and no two stops are so far apart."""
+        return (
+            180.0
+            if self.mirrors
+            and all(
+                len(np.unique(np.round(own % 180, 9))) == len(np.unique(np.round(own % 360, 9)))
+                for own in (self.stops.angle[self.stops.screen == screen] for screen in np.unique(self.stops.screen))
+            )
+            else 360.0
+        )
+
+    @property
+    def widest_hold(self) -> float:
+        """Half the way, in degrees, between the two nearest stops of a screen."""
+        apart = 180.0 if self.mirrors else 360.0
+        screens = np.unique(self.stops.screen)
+        return min(smallest_gap(self.stops.angle[self.stops.screen == screen], apart) for screen in screens) / 2
+
+    def views_of(self, pictures: Sequence[int] | NDArray[np.integer]) -> Counts:
+        """Numbers of the views that belong to some of the pictures, in their order."""
+        starts = self.starts
+        return np.concatenate([np.arange(starts[p], starts[p + 1]) for p in pictures])
+
+    def take(self, pictures: Sequence[int] | NDArray[np.integer]) -> "Rig":
+        """Some of the pictures, in this order; a picture may come several times."""
+        chosen = np.asarray(pictures, np.intp)
+        taken = self._with_views(self.views_of(chosen))
+        counts = np.diff(self.starts)[chosen]
+        sums = replace(taken.sums, picture=np.repeat(np.arange(len(chosen)), counts))
+        return Rig(taken.views, sums, taken.fading, taken.turning, _taken(self.stops, chosen), self.lamps, self.screens)
+
+    def _with_views(self, chosen: Counts) -> "Rig":
+        """Some of the views, which may be of no picture in order: to be given new ones."""
+        rig = object.__new__(Rig)
+        parts = {each.name: getattr(self, each.name) for each in fields(self)}
+        parts["views"] = self.views.take(chosen)
+        parts["fading"] = _taken(self.fading, chosen)
+        parts["turning"] = replace(self.turning, turns=self.turning.turns[chosen], way=self.turning.way[chosen])
+        sums = {each.name: getattr(self.sums, each.name)[chosen] for each in fields(self.sums)}
+        parts["sums"] = replace(self.sums, **sums | {"picture": np.arange(len(chosen))})
+        for name, part in parts.items():
+            object.__setattr__(rig, name, part)
+        return rig
+
+    def turned(self, degrees: ArrayLike) -> "Rig":
+        """The same when the table has turned on by so many degrees: one number, or one per picture."""
+        angles = np.broadcast_to(np.asarray(degrees, np.float64), len(self))
+        each = angles[self.sums.picture]
+        lamp, screen = (np.where(self.turning.turns[:, i], self.turning.way[:, i] * each, 0.0) for i in (0, 1))
+        views = rotated(self.views, self.turning.axis, lamp, screen)
+        return replace(self, views=views, stops=replace(self.stops, angle=self.stops.angle + angles))
+
+    def held(self, hold_deg: float, step_deg: float) -> "Rig":
+        """Every picture at several angles within `hold_deg` degrees of its stop, at most `step_deg` apart, in a row.
+
+        Raises
+        ------
+        InputError
+            Where `hold_deg` is negative, or wider than half the way to the nearest other stop of a screen.
+        """
+        offsets = hold_offsets(hold_deg, self.widest_hold, step_deg)
+        if len(offsets) == 1:
+            return self
+        return self.take(np.repeat(np.arange(len(self)), len(offsets))).turned(np.tile(offsets, len(self)))
+
+    @cached_property
+    def both_sides(self) -> "Rig":
+        """The same with the mirror image of every picture at the stop half a turn on, where level light shows it."""
+        if self.period == 360:
+            return self
+        again = self.turned(180.0)
+        views = again.views
+        aside = np.sum(views.origins * views.column_steps, axis=1) / np.sum(views.column_steps**2, axis=1)
+        views = replace(views, origins=views.origins - 2 * aside[:, None] * views.column_steps)
+        both = self.take(np.tile(np.arange(len(self)), 2))
+        stops = replace(both.stops, angle=np.concatenate([self.stops.angle, again.stops.angle]))
+        return replace(both, views=self.views.joined(views), stops=stops)
+
+    def at(self, angles: ArrayLike) -> tuple["Rig", Counts]:
+        """The room at any turntable angles (degrees), and of which picture each of its pictures is the nearest stop.
+
+        The pictures of an angle follow each other, one for each screen in the order of ``screens.names``. The room is
+        lit as at the stop that is nearest: a screen that no picture is wanted on there is dark (its shares are 0). Half
+        a turn on level light shows pictures mirrored.
+        """
+        both = self.both_sides
+        asked, screens = check_angles(angles), np.unique(both.stops.screen)
+        away = np.abs(np.remainder(asked[:, None] - both.stops.angle + 180, 360) - 180)
+        own = np.where(both.stops.screen == screens[:, None, None], away, np.inf)  # (screen, angle, picture)
+        shown = np.argmin(own, axis=2).T.ravel()
+        lit = (np.min(own, axis=2) < np.min(away, axis=1) + _SAME_STOP).T.ravel()
+        now = np.repeat(asked, len(screens))
+        moved = both.take(shown).turned(now - both.stops.angle[shown])
+        share = moved.sums.share * lit[moved.sums.picture][:, None]
+        stops = replace(moved.stops, angle=now)
+        return replace(moved, sums=replace(moved.sums, share=share), stops=stops), shown % len(self)
+
+    def sampled(self, *, lamp: int = 1, pixel: int = 1) -> "Rig":
+        """Each view as several, whose mean is the light of a lamp's whole disc on a whole pixel.
+
+        Parameters
+        ----------
+        lamp
+            Points that the disc of a lamp with a size is sampled at, spread evenly over it like a sunflower's seeds
+            (H. Vogel, A better way to construct the sunflower head, 1979). The disc faces the cube's middle.
+        pixel
+            Points along each side of a pixel that it is averaged over; 1 = its middle.
+        """
+        if not 1 <= lamp <= 1024 or not 1 <= pixel <= 16:
+            raise InputError("take 1 to 1024 samples of a lamp's disc, and 1 to 16 along the side of a pixel")
+        seeds = [_seeds(*each, lamp) for each in zip(self.views.lamps, self.sums.disc_deg, strict=True)]
+        fine = (np.arange(pixel) + 0.5) / pixel - 0.5
+        down, right = (each.ravel() for each in np.meshgrid(fine, fine, indexing="ij"))
+        copies = np.array([len(each) * len(fine) ** 2 for each in seeds])
+        kept = np.repeat(np.arange(len(self.views)), copies)
+        copied = self._with_views(kept)
+        lamps = np.concatenate([np.repeat(each, len(fine) ** 2, axis=0) for each in seeds])
+        spread = np.concatenate([np.tile(np.stack([right, down], axis=1), (len(each), 1)) for each in seeds])
+        steps = copied.views.column_steps, copied.views.row_steps
+        origins = copied.views.origins + spread[:, :1] * steps[0] + spread[:, 1:] * steps[1]
+        share = copied.sums.share / copies[kept, None]
+        sums = replace(copied.sums, share=share, picture=self.sums.picture[kept])
+        if lamp > 1:
+            sums = replace(sums, disc_deg=np.zeros(len(kept)))
+        views = Views(lamps, origins, *steps, self.picture_shape)
+        return Rig(views, sums, copied.fading, copied.turning, self.stops, self.lamps, self.screens)
+
+    def shifted(self, offsets: NDArray[np.integer]) -> "Rig":
+        """Pictures that stand `offsets` ``(picture, 2)`` pixels further right and down on their screens."""
+        if offsets.shape != (len(self), 2):
+            raise InputError(f"offsets of shape {offsets.shape} do not fit the pictures, which want ({len(self)}, 2)")
+        views, own = self.views, offsets[self.sums.picture]
+        origins = views.origins + own[:, :1] * views.column_steps + own[:, 1:] * views.row_steps
+        return replace(self, views=replace(views, origins=origins))
+
+    def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> "Rig":
+        """The same pictures with pixels `ratio` times as large, so many of them around the same middle."""
+        before = (np.multiply(picture_shape, ratio) - self.picture_shape) / 2  # what is added above and to the left
+        windows = np.ceil((self.stops.window + before) / ratio - 1e-9).astype(np.intp)
+        stops = replace(self.stops, window=np.minimum(windows, picture_shape))
+        return replace(self, views=self.views.with_pixels(ratio, picture_shape), stops=stops)
+
+    def whole(self, grid: Grid) -> "Rig":
+        """Pictures as large as the cube's whole shadow, in its middle, on screens without edges; others as they are."""
+        if not np.all(self.screens.endless[self.stops.screen]):
+            return self
+        views = self.views
+        steepest = float(np.max(np.abs(views.elevations)))
+        origins = views.origins.copy()
+        for steps in (views.column_steps, views.row_steps):
+            origins -= (np.sum(origins * steps, axis=1) / np.sum(steps**2, axis=1))[:, None] * steps
+        shape = raster_shape(grid, steepest)
+        stops = replace(self.stops, window=np.tile(shape, (len(self), 1)))
+        return replace(self, views=replace(views, origins=origins, picture_shape=shape), stops=stops)
+
+    @property
+    def elevation_deg(self) -> float | None:
+        """Elevation of the light where all of it is parallel and raised alike, each picture being one view, else None.
+
+        And screens stand upright behind the cube and go round with their lamps, as a turntable's do.
+        """
+        views = self.views
+        raised = np.unique(views.elevations)
+        alike = len(views) == len(self) and np.all(views.lamps[:, 3] == 0) and len(raised) == 1
+        upright = np.all(self.turning.turns) and np.all(np.abs(views.row_steps[:, :2]) < _NONE)
+        along = np.abs(np.sum(views.column_steps * views.lamps[:, :3], axis=1))
+        facing = np.all(along < _NONE * np.linalg.norm(views.column_steps, axis=1))
+        return float(raised[0]) if alike and upright and facing else None
 
 
-def sampled(
-    views: Views, lighting: Lighting, *, lamp_samples: int = 1, pixel_samples: int = 1
-) -> tuple[Views, Lighting]:
-    """Each view as several, whose mean is the light of a lamp's whole disc on a whole pixel.
+def power_bounds(power: float | None, power_max: float | None = None) -> tuple[float, float]:
+    """Least and largest power of a lamp: those that are said, or as usual; `InputError` where they cannot be."""
+    if power is not None and not POWER_MIN <= power <= POWER_MOST:
+        raise InputError(f"a lamp power must lie between {POWER_MIN:g} and 1e6, not {power:g}")
+    if power_max is not None and not 1 <= power_max <= POWER_MOST:
+        raise InputError(f"the largest lamp power must lie between 1 and 1e6, not {power_max:g}")
+    return (POWER_MIN, power_max or POWER_MAX) if power is None else (power, power)
+
+
+def turntable(
+    grid: Grid,
+    angles: ArrayLike,
+    *,
+    elevation: float = 0.0,
+    picture_shape: tuple[int, int] | None = None,
+    power: float | None = None,
+    power_max: float = POWER_MAX,
+    black: float = BLACK,
+) -> Rig:
+    """A cube on a turntable in parallel light, before a vertical screen with rows and columns one voxel apart.
 
     Parameters
     ----------
-    lamp_samples
-        Points that the disc of a lamp with a size is sampled at, spread evenly over it like a sunflower's seeds
-        (H. Vogel, A better way to construct the sunflower head, 1979). The disc faces the cube's middle.
-    pixel_samples
-        Points along each side of a pixel that it is averaged over; 1 = its middle.
+    angles
+        Turntable angles in degrees; a positive angle turns the cube counter-clockwise seen from above.
+    elevation
+        Of the lamp, in degrees: light travels along ``(cos e, 0, -sin e)`` in the room.
+    picture_shape
+        ``(rows, columns)`` of a window in the middle of the screen; default the whole `raster_shape`.
+    power, power_max, black
+        Of the lamp and the screen, as `Rig.of` takes them.
+
+    Notes
+    -----
+    Parallel light casts the same picture on every parallel screen, so the screen's plane is put through the
+    cube's centre. The picture's middle is where the beam through that centre lands.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> rig = lc.turntable(lc.Grid((4, 6, 6)), [0, 90], picture_shape=(4, 2))
+    >>> rig.views.column_steps.round(3) + 0.0
+    array([[ 0., -1.,  0.],
+           [-1.,  0.,  0.]])
     """
-    if not 1 <= lamp_samples <= 1024 or not 1 <= pixel_samples <= 16:
-        raise InputError("take 1 to 1024 samples of a lamp's disc, and 1 to 16 along the side of a pixel")
-    seeds = [_seeds(*each, lamp_samples) for each in zip(views.lamps, lighting.disc_deg, strict=True)]
-    fine = (np.arange(pixel_samples) + 0.5) / pixel_samples - 0.5
-    down, right = (each.ravel() for each in np.meshgrid(fine, fine, indexing="ij"))
-    copies = np.array([len(each) * len(fine) ** 2 for each in seeds])
-    kept = np.repeat(np.arange(len(views)), copies)
-    lamps = np.concatenate([np.repeat(each, len(fine) ** 2, axis=0) for each in seeds])
-    spread = np.concatenate([np.tile(np.stack([right, down], axis=1), (len(each), 1)) for each in seeds])
-    steps = views.column_steps[kept], views.row_steps[kept]
-    origins = views.origins[kept] + spread[:, :1] * steps[0] + spread[:, 1:] * steps[1]
-    copied = {name: getattr(lighting, name)[kept] for name in _PER_VIEW}
-    copied |= {"share": copied["share"] / copies[kept, None], "picture": lighting.picture[kept]}
-    if lamp_samples > 1:
-        copied["disc_deg"] = np.zeros(len(kept))
-    return Views(lamps, origins, *steps, views.picture_shape), replace(lighting, **copied)
+    views = turntable_views(grid, angles, elevation=elevation, picture_shape=picture_shape)
+    return Rig.of(views, power=power, power_max=power_max, black=black)
+
+
+def _taken(part: Any, chosen: Counts) -> Any:
+    """Some rows of all arrays of a part."""
+    return replace(part, **{each.name: getattr(part, each.name)[chosen] for each in fields(part)})
 
 
 def _seeds(lamp: Reals, disc_deg: float, samples: int) -> Reals:
@@ -245,7 +595,3 @@ def _seeds(lamp: Reals, disc_deg: float, samples: int) -> Reals:
     )
     disc -= np.mean(disc, axis=0)  # the mean of a few seeds is not quite the middle
     return np.asarray(lamp + np.column_stack([disc, np.zeros(samples)]))
-
-
-#: The lower bound of the power of a lamp that is not fixed.
-LAMP_MIN = 1e-4

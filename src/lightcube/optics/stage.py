@@ -12,7 +12,19 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Lighting, turned_by
+from lightcube.optics.rig import (
+    POWER_MAX,
+    POWER_MIN,
+    POWER_MOST,
+    Fading,
+    Lamps,
+    Rig,
+    Screens,
+    Stops,
+    Sums,
+    Turning,
+)
+from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import Views, unit
 
 Vector = tuple[float, float, float]
@@ -22,8 +34,6 @@ Reals = NDArray[np.float64]
 MOST_SCREENS, MOST_LAMPS, MOST_PIXELS = 32, 256, 2048
 #: Numbers nearer to 0, or farther from it, are no lengths (mm) and directions: beyond them digits run out.
 _LEAST, _MOST = 1e-9, 1e15
-#: Largest power of a lamp that says none.
-POWER_MAX = 16.0
 
 
 @dataclass(frozen=True)
@@ -93,6 +103,8 @@ class Screen:
         As a lamp's, for all shadows on this screen.
     cosine
         Whether light that falls aslant is spread over more of the screen.
+    black
+        Display value, in [0, 1), that it cannot be darker than; pixels darker than it are wanted at it.
     """
 
     name: str
@@ -106,6 +118,7 @@ class Screen:
     reach_mm: float = math.inf
     falloff_mm: float = 0.0
     cosine: bool = False
+    black: float = BLACK
 
     @property
     def pixels(self) -> tuple[int, int]:
@@ -193,6 +206,44 @@ class Stage:
         """The screen of this name."""
         return next(screen for screen in self.screens if screen.name == name)
 
+    def rig(self) -> Rig:
+        """Views of every picture, one for each of its lamps, and how they make it.
+
+        Pictures are as large as the largest screen; smaller ones keep the upper left of theirs (`Stops.window`).
+        """
+        shots = list(enumerate(self.shots))
+        lit = [(p, self.screen(shot.screen), self.lamp(name)) for p, shot in shots for name in shot.lamps]
+        sizes = [screen.pixels for _, screen, _ in lit]
+        shape = max(rows for rows, _ in sizes), max(columns for _, columns in sizes)
+        lamps, screens = ([each.name for each in things] for things in (self.lamps, self.screens))
+        carried = [[each.turns != self.cube_turns for each in (lamp, screen)] for _, screen, lamp in lit]
+        way = np.full((len(lit), 2), -1.0 if self.cube_turns else 1.0)
+        least, most = (np.array(powers) for powers in zip(*(_powers(lamp) for lamp in self.lamps), strict=True))
+        standing = Rig(
+            _views(lit, shape),
+            Sums(
+                picture=np.array([p for p, _, _ in lit]),
+                lamp=np.array([lamps.index(lamp.name) for _, _, lamp in lit]),
+                share=np.array([lamp.colour for _, _, lamp in lit]),
+                disc_deg=np.array([lamp.size_deg for _, _, lamp in lit]),
+            ),
+            Fading(
+                reach_mm=np.array([(lamp.reach_mm, screen.reach_mm) for _, screen, lamp in lit]),
+                falloff_mm=np.array([(lamp.falloff_mm, screen.falloff_mm) for _, screen, lamp in lit]),
+                full_at_mm=np.array([lamp.full_at_mm for _, _, lamp in lit]),
+                cosine=np.array([screen.cosine for _, screen, _ in lit]),
+            ),
+            Turning(np.array(carried), way, np.array(self.axis)),
+            Stops(
+                angle=np.zeros(len(self.shots)),
+                screen=np.array([screens.index(shot.screen) for shot in self.shots]),
+                window=np.array([self.screen(shot.screen).pixels for shot in self.shots]),
+            ),
+            Lamps(tuple(lamps), least, most),
+            Screens(tuple(screens), np.array([each.black for each in self.screens]), np.zeros(len(screens), np.bool_)),
+        )
+        return standing.turned([self.stops[shot.stop] for shot in self.shots])
+
     def _check_shot(self, shot: Shot) -> None:
         screens, lamps = ([each.name for each in things] for things in (self.screens, self.lamps))
         if shot.screen not in screens:
@@ -212,49 +263,21 @@ class Stage:
             )
 
 
-def exposures(stage: Stage) -> tuple[Views, Lighting]:
-    """Views of every picture, one for each of its lamps, and how they make it.
+def _powers(lamp: Lamp) -> tuple[float, float]:
+    """Least and largest power of a lamp."""
+    return (POWER_MIN, lamp.power_max) if lamp.power is None else (lamp.power, lamp.power)
 
-    Pictures are as large as the largest screen; smaller ones keep the upper left of theirs (`Lighting.window`).
-    """
-    shots = list(enumerate(stage.shots))
-    lit = [(p, stage.screen(shot.screen), stage.lamp(name)) for p, shot in shots for name in shot.lamps]
-    sizes = [screen.pixels for _, screen, _ in lit]
-    shape = max(rows for rows, _ in sizes), max(columns for _, columns in sizes)
-    lamps, screens = ([each.name for each in things] for things in (stage.lamps, stage.screens))
+
+def _views(lit: Sequence[tuple[int, Screen, Lamp]], shape: tuple[int, int]) -> Views:
+    """A view for each picture's lamp, as all stands at angle 0."""
     places = [(lamp.direction, 0.0) if lamp.position is None else (lamp.position, 1.0) for _, _, lamp in lit]
-    views = Views(
+    return Views(
         lamps=np.array([(*place, point) for place, point in places if place is not None]),
         origins=np.array([_middle(screen, shape) for _, screen, _ in lit]),
         column_steps=np.array([screen.steps[0] for _, screen, _ in lit]),
         row_steps=np.array([screen.steps[1] for _, screen, _ in lit]),
         picture_shape=shape,
     )
-    lighting = Lighting(
-        picture=np.array([p for p, _, _ in lit]),
-        lamp=np.array([lamps.index(lamp.name) for _, _, lamp in lit]),
-        share=np.array([lamp.colour for _, _, lamp in lit]),
-        reach_mm=np.array([(lamp.reach_mm, screen.reach_mm) for _, screen, lamp in lit]),
-        falloff_mm=np.array([(lamp.falloff_mm, screen.falloff_mm) for _, screen, lamp in lit]),
-        full_at_mm=np.array([lamp.full_at_mm for _, _, lamp in lit]),
-        disc_deg=np.array([lamp.size_deg for _, _, lamp in lit]),
-        cosine=np.array([screen.cosine for _, screen, _ in lit]),
-        turning=np.array([[each.turns != stage.cube_turns for each in (lamp, screen)] for _, screen, lamp in lit]),
-        way=np.full((len(lit), 2), -1.0 if stage.cube_turns else 1.0),
-        axis=np.array(stage.axis),
-        angle=np.array([stage.stops[shot.stop] for shot in stage.shots]),
-        screen=np.array([screens.index(shot.screen) for shot in stage.shots]),
-        window=np.array([stage.screen(shot.screen).pixels for shot in stage.shots]),
-        least=np.array([lamp.power or _POWER_MIN for lamp in stage.lamps]),
-        most=np.array([lamp.power or lamp.power_max for lamp in stage.lamps]),
-        lamp_names=tuple(lamps),
-        screen_names=tuple(screens),
-    )
-    return turned_by(views, lighting, lighting.angle[lighting.picture]), lighting
-
-
-#: The least power of a lamp that is not fixed.
-_POWER_MIN = 1e-4
 
 
 def _middle(screen: Screen, shape: tuple[int, int]) -> Reals:
@@ -306,8 +329,8 @@ def _check_lamp(lamp: Lamp) -> None:
     if len(lamp.colour) != 3 or not all(0 <= part <= 1e6 for part in lamp.colour) or not any(lamp.colour):
         raise InputError(f"{who}: colour must be three numbers of at least 0, not all 0, not {lamp.colour}")
     for key, power in (("power", lamp.power), ("power_max", lamp.power_max)):
-        if power is not None and not _POWER_MIN <= power <= 1e6:
-            raise InputError(f"{who}: {key} must lie between {_POWER_MIN:g} and 1e6, not {power:g}")
+        if power is not None and not POWER_MIN <= power <= POWER_MOST:
+            raise InputError(f"{who}: {key} must lie between {POWER_MIN:g} and 1e6, not {power:g}")
     if not 0 <= lamp.size_deg < 90:
         raise InputError(f"{who}: size_deg must be at least 0 and below 90, not {lamp.size_deg:g}")
     if lamp.position is None and lamp.full_at_mm < math.inf:
@@ -337,3 +360,7 @@ def _check_screen(screen: Screen) -> None:
         if np.linalg.norm(np.cross(unit(screen.up), screen.facing)) < 1e-6:
             raise InputError(f"{who}: up must not point straight out of the screen, {screen.up}")
     _check_fading(who, screen.reach_mm, screen.falloff_mm)
+    if not BLACK <= screen.black < 1:
+        raise InputError(
+            f"{who}: black must be a display value from {BLACK:.4f}, half a level, to below 1, not {screen.black:g}"
+        )

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lightcube.errors import InputError
-from lightcube.optics.grid import Grid, check_elevation, dense_step, raster_shape
+from lightcube.optics.grid import Grid, check_elevation, raster_shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Views:
 
     On a turntable, where the lamp is parallel, its angles can be asked for, and some of the views be taken:
 
-    >>> views = lc.turntable(lc.Grid((3, 5, 7)), [0, 45, 90], elevation=30)
+    >>> views = lc.turntable(lc.Grid((3, 5, 7)), [0, 45, 90], elevation=30).views
     >>> views.take([2, 0]).angles
     array([90.,  0.])
     """
@@ -106,6 +106,16 @@ class Views:
             self.row_steps[indices],
             self.picture_shape,
         )
+
+    def joined(self, other: "Views") -> "Views":
+        """Return these views and then the others, of the same shape of pictures."""
+        names = ("lamps", "origins", "column_steps", "row_steps")
+        arrays = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
+        return Views(**arrays, picture_shape=self.picture_shape)
+
+    def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> "Views":
+        """Return the same views with pixels `ratio` times as large, so many of them around the same middle."""
+        return Views(self.lamps, self.origins, ratio * self.column_steps, ratio * self.row_steps, picture_shape)
 
 
 def check_angles(angles: ArrayLike) -> NDArray[np.float64]:
@@ -185,37 +195,16 @@ def rotations(axis: ArrayLike, degrees: NDArray[np.float64]) -> NDArray[np.float
     return np.asarray(cos * (np.eye(3) - along) + sin * cross + along, np.float64)
 
 
-def turntable(
+def turntable_views(
     grid: Grid, angles: ArrayLike, *, elevation: float = 0.0, picture_shape: tuple[int, int] | None = None
 ) -> Views:
-    """Views of a cube on a turntable in parallel light, on a vertical screen with rows and columns one voxel apart.
-
-    Parameters
-    ----------
-    angles
-        Turntable angles in degrees; a positive angle turns the cube counter-clockwise seen from above.
-    elevation
-        Of the lamp, in degrees: light travels along ``(cos e, 0, -sin e)`` in the room.
-    picture_shape
-        ``(rows, columns)`` of a window in the middle of the screen; default the whole `raster_shape`.
-
-    Raises
-    ------
-    InputError
-        Where an angle is not finite, the elevation is 90 degrees or more, or the window is larger than the screen.
-
-    Notes
-    -----
-    Parallel light casts the same picture on every parallel screen, so the screen's plane is put through the
-    cube's centre. The picture's middle is where the beam through that centre lands.
+    """The beams of `lightcube.turntable`, which takes and raises the same.
 
     Examples
     --------
     >>> import lightcube as lc
-    >>> views = lc.turntable(lc.Grid((3, 5, 7)), [0, 90], elevation=30, picture_shape=(3, 5))
-    >>> views
-    <2 views of 3 x 5 pixels>
-    >>> views.lamps  # turned by 90 degrees the cube sees the lamp from its other side
+    >>> rig = lc.turntable(lc.Grid((3, 5, 7)), [0, 90], elevation=30, picture_shape=(3, 5))
+    >>> rig.views.lamps  # turned by 90 degrees the cube sees the lamp from its other side
     array([[ 0.866,  0.   , -0.5  ,  0.   ],
            [ 0.   , -0.866, -0.5  ,  0.   ]])
     """
@@ -239,49 +228,20 @@ def turntable(
     )
 
 
-def turned(views: Views, degrees: ArrayLike) -> Views:
-    """Views of the cube turned on by so many degrees, one number for all or one per view."""
-    angles = np.broadcast_to(np.asarray(degrees, dtype=np.float64), len(views))
-    cos, sin = _cos_sin(angles)
-
-    def turn(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-        x, y = vectors[:, 0], vectors[:, 1]
-        return np.concatenate([np.stack([cos * x + sin * y, cos * y - sin * x], axis=1), vectors[:, 2:]], axis=1)
-
-    return Views(
-        turn(views.lamps), turn(views.origins), turn(views.column_steps), turn(views.row_steps), views.picture_shape
+def rotated(views: Views, axis: ArrayLike, lamps: NDArray[np.float64], screens: NDArray[np.float64]) -> Views:
+    """Views whose lamps and screens have gone round the cube, counter-clockwise about `axis`, by degrees per view."""
+    lamp, screen = rotations(axis, lamps), rotations(axis, screens)
+    shone = np.einsum("vij,vj->vi", lamp, views.lamps[:, :3])
+    origins, right, down = (
+        np.einsum("vij,vj->vi", screen, vectors) for vectors in (views.origins, views.column_steps, views.row_steps)
     )
-
-
-def turn_period(views: Views) -> float:
-    """Degrees after which the lamp repeats: 360, or 180 where half a turn shows the mirror image."""
-    level = bool(np.all(views.elevations == 0))
-    return 180.0 if level and len(np.unique(np.round(views.angles % 180, 9))) == len(views) else 360.0
+    return Views(np.column_stack([shone, views.lamps[:, 3]]), origins, right, down, views.picture_shape)
 
 
 def smallest_gap(angles: NDArray[np.float64], period: float) -> float:
     """Degrees between the two nearest of the `angles` that differ, which repeat after `period` degrees."""
     stops = np.unique(np.round(angles % period, 9) % period)
     return float(np.min(np.diff(stops, append=stops[0] + period)))
-
-
-def widest_hold(views: Views) -> float:
-    """Half the way, in degrees, between the two nearest stops; level light shows each again half a turn on."""
-    return smallest_gap(views.angles, 180.0 if np.all(views.elevations == 0) else 360.0) / 2
-
-
-def held(views: Views, hold_deg: float, grid: Grid) -> Views:
-    """Every view at several angles within `hold_deg` degrees of it, itself in the middle, one stop after the other.
-
-    The angles are near enough to each other for the picture to stand in between (`dense_step`).
-
-    Raises
-    ------
-    InputError
-        Where `hold_deg` is negative, or wider than half the way to the nearest other stop.
-    """
-    offsets = hold_offsets(hold_deg, widest_hold(views), dense_step(grid))
-    return turned(views.take(np.repeat(np.arange(len(views)), len(offsets))), np.tile(offsets, len(views)))
 
 
 def hold_offsets(hold_deg: float, most: float, step: float) -> NDArray[np.float64]:

@@ -1,7 +1,5 @@
 """Where on the screen each picture stands."""
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,24 +20,12 @@ def spread_over_screen(frames: Frames, grid: Grid, pixels: int | None = None) ->
         How far at most; default half the shorter side of a picture. Up and down it is no more than keeps the picture
         on the screen, sideways no more than half of what keeps it within the narrowest shadow: measured, more costs.
     """
-    rows, columns = frames.views.picture_shape
+    rows, columns = frames.rig.picture_shape
     far = min(rows, columns) // 2 if pixels is None else pixels
     if far < 0:
         raise InputError(f"pictures cannot be moved by {far} pixels: give a whole number of at least 0")
-    screen = min(raster_shape(grid, elevation)[0] for elevation in frames.views.elevations)
+    screen = min(raster_shape(grid, elevation)[0] for elevation in frames.rig.views.elevations)
     aside = min(far, max(0, (min(grid.shape[1:]) - columns) // 4))
     up = min(far, (screen - rows) // 2)
-    rank = np.argsort(np.argsort(frames.views.angles, kind="stable"), kind="stable")
+    rank = np.argsort(np.argsort(frames.angles, kind="stable"), kind="stable")
     return np.stack([np.array([aside, -aside])[rank % 2], np.array([up, 0, -up])[rank % 3]], axis=1).astype(np.intp)
-
-
-def shifted(frames: Frames, offsets: NDArray[np.integer]) -> Frames:
-    """Return `frames` standing `offsets` ``(view, 2)`` pixels further right and down on their screens.
-
-    The pictures themselves stay as they are: they are shown, and scored, in another place.
-    """
-    views = frames.views
-    if offsets.shape != (len(views), 2):
-        raise InputError(f"offsets of shape {offsets.shape} do not fit the views, which want ({len(views)}, 2)")
-    moved = views.origins + offsets[:, :1] * views.column_steps + offsets[:, 1:] * views.row_steps
-    return replace(frames, views=replace(views, origins=moved))

@@ -12,9 +12,9 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
-from lightcube.optics.rig import Lighting
-from lightcube.optics.transfer import from_uint8, to_uint8
-from lightcube.optics.views import Views, distinct_angles, spread_angles, turntable
+from lightcube.optics.rig import POWER_MAX, Rig, turntable
+from lightcube.optics.transfer import BLACK, from_uint8, to_uint8
+from lightcube.optics.views import distinct_angles, spread_angles
 from lightcube.pictures.frames import Frames, Pictures
 
 Fit = Literal["crop", "pad", "stretch"]
@@ -32,7 +32,7 @@ def check_fit(name: str) -> Fit:
     raise InputError(f"unknown fit {name!r}: use one of {', '.join(get_args(Fit))}")
 
 
-def fit(
+def turntable_for(
     pictures: Pictures,
     grid: Grid,
     *,
@@ -40,9 +40,11 @@ def fit(
     span: float | None = None,
     elevation: float | None = None,
     frame_width: float = 1.0,
-    fit: Fit = "crop",
-) -> Frames:
-    """Fit pictures to the screen of a cube.
+    power: float | None = None,
+    power_max: float = POWER_MAX,
+    black: float = BLACK,
+) -> Rig:
+    """The turntable on which pictures shall be shown, each at a stop of its own, with the aspect of the first.
 
     Parameters
     ----------
@@ -54,17 +56,10 @@ def fit(
     elevation
         Of the lamp, in degrees; default the one that came with the pictures, else 35.
     frame_width
-        Width of the frames as a fraction of the cube's width.
-    fit
-        What happens to a picture of another aspect than the frames': ``"crop"`` cuts its edges off, evenly on
-        both sides; ``"pad"`` keeps all of it, and the rest of the frame is white and don't care (weight 0);
-        ``"stretch"`` changes its aspect.
-
-    Returns
-    -------
-    Frames with the aspect of the first picture, as closely as `lightcube.optics.grid.picture_shape` can.
-    They are resampled in linear light with a Lanczos filter of three lobes, widened where pictures shrink,
-    and never leave the range of values of the picture. A picture that has the frames' size stays as it is.
+        Width of the frames as a fraction of the cube's width; their aspect is the first picture's as closely as
+        `lightcube.optics.grid.picture_shape` can.
+    power, power_max, black
+        Of the lamp and the screen, as `lightcube.turntable` takes them.
 
     Raises
     ------
@@ -72,7 +67,6 @@ def fit(
         Where there are fewer than two pictures, the angles do not fit, or the frames would be wider than
         the cube's screen.
     """
-    mode = check_fit(fit)
     if len(pictures) < 2:
         raise InputError(
             f"{len(pictures)} picture{'s' if not pictures.images else ''} cannot fill a cube: give at least two"
@@ -82,47 +76,45 @@ def fit(
     turned = _angles(pictures, angles, span, lamp)
     rows, columns = pictures.images[0].shape[:2]
     shape = picture_shape(grid, frame_width, columns / rows, lamp)
-    views = turntable(grid, turned, elevation=lamp, picture_shape=shape)
-    return fit_to_views(pictures, views, mode)
+    return turntable(grid, turned, elevation=lamp, picture_shape=shape, power=power, power_max=power_max, black=black)
 
 
-def fit_to_views(pictures: Pictures, views: Views, fit: Fit = "crop") -> Frames:
-    """Fit pictures to views that are there already, one each, as `fit` does; `InputError` where the counts differ."""
-    if len(pictures) != len(views):
-        raise InputError(f"{len(pictures)} pictures for {len(views)} views: give one picture per view")
-    mode, shape = check_fit(fit), views.picture_shape
-    fitted = np.ones((len(pictures), *shape, 3), np.float32)
-    weights = np.zeros((len(pictures), *shape), np.float32)
-    for image, frame, weight in zip(pictures.images, fitted, weights, strict=True):
-        _fill(frame, weight, image, mode)
-    return Frames(fitted, views, weights, pictures.names, pictures.transfer)
+def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Frames:
+    """Fit pictures to the screens of a rig, one each.
 
+    Parameters
+    ----------
+    ways
+        What happens to a picture of another aspect than its screen's, of all or of each: ``"crop"`` cuts its edges off,
+        evenly on both sides; ``"pad"`` keeps all of it, and the rest is white and don't care (weight 0); ``"stretch"``
+        changes its aspect.
 
-def fit_to_stage(pictures: Pictures, views: Views, lighting: Lighting, fits: Sequence[Fit]) -> Frames:
-    """Fit pictures to the screens of a stage, each in the way of its own, as `fit` does.
-
-    What lies beside a picture's screen (`Lighting.window`) is white and don't care (weight 0).
+    Returns
+    -------
+    Frames as large as the rig's pictures; what lies beside a screen is white and don't care. They are resampled in
+    linear light with a Lanczos filter of three lobes, widened where pictures shrink, and never leave the range of
+    values of the picture. A picture that has the frames' size stays as it is.
 
     Raises
     ------
     InputError
-        Where there is not one picture, and one way to fit it, for each picture of the lighting.
+        Where there is not one picture, and one way to fit it, for each picture of the rig.
     """
-    if not len(pictures) == len(fits) == lighting.pictures:
+    fits = [ways] * len(pictures) if isinstance(ways, str) else list(ways)
+    if not len(pictures) == len(fits) == len(rig):
         raise InputError(
-            f"{len(pictures)} pictures and {len(fits)} ways to fit them for {lighting.pictures} on the stage: "
-            "give one of each"
+            f"{len(pictures)} pictures and {len(fits)} ways to fit them for {len(rig)} on the screens: give one of each"
         )
-    fitted = np.ones((len(pictures), *views.picture_shape, 3), np.float32)
+    fitted = np.ones((len(pictures), *rig.picture_shape, 3), np.float32)
     weights = np.zeros(fitted.shape[:3], np.float32)
-    for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, lighting.window, fits, strict=True)):
+    for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, rig.stops.window, fits, strict=True)):
         _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way))
-    return Frames(fitted, views, weights, pictures.names, pictures.transfer, lighting)
+    return Frames(fitted, rig, weights, pictures.names, pictures.transfer)
 
 
 def fit_report(pictures: Pictures, frames: Frames, fit: Fit = "crop") -> str:
     """Say in one line, without a full stop, what `fit` did to the pictures; sizes are width x height."""
-    target = frames.views.picture_shape
+    target = frames.rig.picture_shape
     sizes = Counter((image.shape[0], image.shape[1]) for image in pictures.images)
     first = (pictures.images[0].shape[0], pictures.images[0].shape[1])
     count = f"{len(pictures)} pictures"
@@ -156,7 +148,7 @@ def frames_from_targets(cube: Cube) -> Frames:
         raise InputError("this cube was not made from pictures, so it has no targets: give the frames themselves")
     pictures = from_uint8(cube.targets[..., :-1], cube.transfer)
     weights = cube.targets[..., -1].astype(np.float32) / np.float32(255)
-    return Frames(pictures, cube.views, weights, cube.names, cube.transfer, cube.lighting)
+    return Frames(pictures, cube.rig, weights, cube.names, cube.transfer)
 
 
 def _angles(pictures: Pictures, angles: ArrayLike | None, span: float | None, elevation: float) -> NDArray[np.float64]:

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.optics.rig import Lighting
+from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
-from lightcube.optics.views import Views, check_angles
+from lightcube.optics.views import check_angles
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,22 +50,20 @@ class Pictures:
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """Pictures wanted on the screen: one per view, or as a stage's lighting puts views together.
+    """Pictures wanted on the screens of a rig.
 
     Parameters
     ----------
     pictures
-        ``(view, row, column, channel)`` float32 in linear light; 1 = what the white lamp of power 1 shows.
-    views
-        Lamp and screen of each picture.
+        ``(picture, row, column, channel)`` float32 in linear light; 1 = what the white lamp of power 1 shows.
+    rig
+        Lamps and screens of each picture.
     weights
-        ``(view, row, column)`` float32 of at least 0, 0 = don't care; default all 1.
+        ``(picture, row, column)`` float32 of at least 0, 0 = don't care; default 1 where the screen is.
     names
         One name per picture; default ``"1"``, ``"2"``, …
     transfer
         How display values follow from linear light, for whoever shows or scores the pictures.
-    lighting
-        Which views make which picture, where they do not do so one by one.
 
     Raises
     ------
@@ -74,28 +72,24 @@ class Frames:
     """
 
     pictures: NDArray[np.float32]
-    views: Views
+    rig: Rig
     weights: NDArray[np.float32] | None = None
     names: tuple[str, ...] = ()
     transfer: Transfer = "srgb"
-    lighting: Lighting | None = None
 
     def __post_init__(self) -> None:
         pictures = np.ascontiguousarray(self.pictures, dtype=np.float32)
-        if self.lighting is not None and len(self.lighting.picture) != len(self.views):
-            raise InputError(f"a lighting of {len(self.lighting.picture)} views does not fit {len(self.views)}")
-        count = len(self.views) if self.lighting is None else self.lighting.pictures
-        expected = (count, *self.views.picture_shape)
+        expected = (len(self.rig), *self.rig.picture_shape)
         if pictures.ndim != 4 or pictures.shape[:3] != expected:
             raise InputError(
-                f"pictures of shape {pictures.shape} do not fit the views, which want {expected} and a channel"
+                f"pictures of shape {pictures.shape} do not fit the rig, which wants {expected} and a channel"
             )
-        if self.lighting is not None and self.lighting.share.shape[1] != pictures.shape[3]:
-            raise InputError(f"a lighting of {self.lighting.share.shape[1]} colours does not fit {pictures.shape[3]}")
+        if self.rig.sums.share.shape[1] not in (1, pictures.shape[3]):
+            raise InputError(f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {pictures.shape[3]}")
         names = self.names or tuple(str(i + 1) for i in range(len(pictures)))
         if len(names) != len(pictures):
             raise InputError(f"{len(pictures)} pictures have {len(names)} names: give one name per picture")
-        weights = np.ones(expected, np.float32) if self.weights is None else np.asarray(self.weights, np.float32)
+        weights = np.asarray(self.rig.inside if self.weights is None else self.weights, np.float32)
         if weights.shape != expected:
             raise InputError(f"weights have shape {weights.shape}, not {expected}")
         for what, array in (("picture", pictures), ("weights of picture", weights)):
@@ -117,30 +111,22 @@ class Frames:
 
     @property
     def weight(self) -> NDArray[np.float32]:
-        """The weights, ``(view, row, column)``, never None."""
+        """The weights, ``(picture, row, column)``, never None."""
         assert self.weights is not None  # noqa: S101 - __post_init__ filled it
         return self.weights
 
     @property
     def angles(self) -> NDArray[np.float64]:
         """Turntable angle of each picture's stop, degrees."""
-        return self.views.angles if self.lighting is None else self.lighting.angle
+        return self.rig.stops.angle
 
     def take(self, indices: list[int] | NDArray[np.integer] | slice) -> "Frames":
         """Return some of the frames, in the order of `indices`."""
         chosen = list(range(len(self))[indices] if isinstance(indices, slice) else indices)
-        lighting, views = (None, chosen) if self.lighting is None else self.lighting.take(chosen)
         return replace(
             self,
             pictures=self.pictures[chosen],
-            views=self.views.take(views),
+            rig=self.rig.take(chosen),
             weights=self.weight[chosen],
             names=tuple(self.names[i] for i in chosen),
-            lighting=lighting,
         )
-
-
-def check_turntable(frames: Frames) -> None:
-    """Raise `InputError` where frames are a stage's: what is true of a turntable is not of its lamps and screens."""
-    if frames.lighting is not None:
-        raise InputError("these frames are a stage's, and this is for a turntable with one lamp and one screen")

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import Views
 from lightcube.pictures.frames import Frames
 
 Array = NDArray[np.floating[Any]]
@@ -26,9 +25,8 @@ def coarser(frames: Frames, grid: Grid, ratio: float) -> tuple[Frames, Grid]:
     """
     nz, ny, nx = (_parts(count, ratio) for count in grid.shape)
     small = Grid((nz, ny, nx), ratio * grid.voxel_mm)
-    rows, columns = frames.views.picture_shape
+    rows, columns = frames.rig.picture_shape
     down, across = _covered(rows, ratio), _covered(columns, ratio)
-    views = frames.views
     shape = (len(down), len(across))
     weight = np.empty((len(frames), *shape), np.float32)
     pictures = np.ones((*weight.shape, frames.pictures.shape[-1]), np.float32)
@@ -37,13 +35,7 @@ def coarser(frames: Frames, grid: Grid, ratio: float) -> tuple[Frames, Grid]:
         light = np.einsum("ir,rck,jc->ijk", down, picture * frames.weight[view, ..., None], across, optimize=True)
         part = weight[view, ..., None]
         np.divide(light, part, out=pictures[view], where=part > 0)
-    larger = Views(views.lamps, views.origins, ratio * views.column_steps, ratio * views.row_steps, shape)
-    lighting = frames.lighting
-    if lighting is not None:
-        before = (np.multiply(shape, ratio) - views.picture_shape) / 2  # what is added above and to the left
-        windows = np.ceil((lighting.window + before) / ratio - 1e-9).astype(int)
-        lighting = replace(lighting, window=np.minimum(windows, shape))
-    return replace(frames, pictures=pictures, views=larger, weights=weight, lighting=lighting), small
+    return replace(frames, pictures=pictures, rig=frames.rig.with_pixels(ratio, shape), weights=weight), small
 
 
 def enlarged(volume: Array, shape: tuple[int, int, int], slices: slice | None = None) -> Array:

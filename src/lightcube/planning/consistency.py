@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.recipe import LAMP_MAX
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import POWER_MAX
 from lightcube.optics.transfer import BLACK, decode, encode
 from lightcube.optics.views import Views
-from lightcube.pictures.frames import Frames, check_turntable
+from lightcube.pictures.frames import Frames
+from lightcube.planning.measured import raised
 
 Floats = NDArray[np.float64]
 
@@ -26,7 +27,7 @@ _LOAD_LEVEL, _LOAD_RAISED = 4.5, 5.0
 _SOLID = 0.1
 
 
-def check(frames: Frames, grid: Grid, lamp_max: float = LAMP_MAX) -> dict[str, Any]:
+def check(frames: Frames, grid: Grid) -> dict[str, Any]:
     """Find out about pictures, all under lamps of one elevation, what can be known before solving.
 
     Returns
@@ -48,23 +49,23 @@ def check(frames: Frames, grid: Grid, lamp_max: float = LAMP_MAX) -> dict[str, A
     ``moments``
         See there.
     """
-    check_turntable(frames)
-    rows, columns = frames.views.picture_shape
+    elevation, lamp_max = raised(frames.rig), float(frames.rig.lamps.most.max())
+    rows, columns = frames.rig.views.picture_shape
     white, blank = plain_rows(frames)
     return {
         "pictures": len(frames),
         "columns": columns,
         "rows": rows,
-        "elevation": float(frames.views.elevations[0]),
-        "lamp_max": float(lamp_max),
-        "load": load(frames.views, grid),
-        "load_limit": _LOAD_LEVEL if _is_level(frames.views) else _LOAD_RAISED,
+        "elevation": elevation,
+        "lamp_max": lamp_max,
+        "load": load(frames.rig.views, grid),
+        "load_limit": _LOAD_LEVEL if _is_level(frames.rig.views) else _LOAD_RAISED,
         "mirrored": [[frames.names[view] for view in pair] for pair in mirror_conflicts(frames)],
         "duplicates": [[frames.names[view] for view in pair] for pair in duplicates(frames)],
         "white_rows": {frames.names[view]: runs for view, runs in white.items()},
         "blank_rows": {frames.names[view]: runs for view, runs in blank.items()},
         "row_conflicts": row_conflicts(frames, grid, lamp_max),
-        "whole_shadow": bool(np.all(_holds_shadow(frames.views, grid))),
+        "whole_shadow": bool(np.all(_holds_shadow(frames.rig.views, grid))),
         "moments": moments(frames),
     }
 
@@ -86,8 +87,8 @@ def mirror_conflicts(frames: Frames) -> list[tuple[int, int]]:
     With level light every beam runs through the same voxels in both, so the later picture is the mirror
     image of the earlier one whatever the cube.
     """
-    level = frames.views.elevations == 0
-    angles = frames.views.angles
+    level = frames.rig.views.elevations == 0
+    angles = frames.rig.views.angles
     conflicts = []
     for first in range(len(frames)):
         half_turn = np.abs(np.remainder(angles[first] + 180 - angles + 180, 360) - 180) < 1e-6
@@ -137,7 +138,7 @@ def plain_rows(frames: Frames) -> tuple[dict[int, list[list[int]]], dict[int, li
     return {v: runs for v, runs in whites.items() if runs}, {v: runs for v, runs in blanks.items() if runs}
 
 
-def row_conflicts(frames: Frames, grid: Grid, lamp_max: float = LAMP_MAX) -> list[dict[str, Any]]:
+def row_conflicts(frames: Frames, grid: Grid, lamp_max: float = POWER_MAX) -> list[dict[str, Any]]:
     """Rows in which one picture is so bright that another cannot be as dark as it wants, whatever the cube.
 
     Level lamps only; with a raised lamp every row draws on many slices, and the list is empty.
@@ -164,7 +165,7 @@ def row_conflicts(frames: Frames, grid: Grid, lamp_max: float = LAMP_MAX) -> lis
     seen there. So totals bound each other, up to the factor ``1 / (2 - sqrt(2))`` by which sums over beams a voxel
     apart can differ for one and the same voxel: what is listed is certain, and less goes unnoticed.
     """
-    if not _is_level(frames.views):
+    if not _is_level(frames.rig.views):
         return []
     light = _log_light(frames)
     matters = frames.weight[..., None] > 0
@@ -177,7 +178,7 @@ def row_conflicts(frames: Frames, grid: Grid, lamp_max: float = LAMP_MAX) -> lis
     allowed = np.sum(np.where(bound, np.maximum(strongest - light, 0), np.inf), axis=2)
     found: dict[tuple[int, int], dict[str, Any]] = {}
     for dark in range(len(frames)):
-        inside = _inside(frames.views, grid, dark)
+        inside = _inside(frames.rig.views, grid, dark)
         totals = np.tensordot(inside.astype(np.float64), wanted[dark], axes=(0, 1))
         at = np.argwhere(totals > _SAMPLING * allowed)
         bright, row, channel = at.T
@@ -231,12 +232,12 @@ def moments(frames: Frames) -> dict[str, float]:
     """
     absorbance = _absorbance(frames)
     _, rows, columns, channels = absorbance.shape
-    theta = np.radians(frames.views.angles)
+    theta = np.radians(frames.rig.views.angles)
     turning = np.stack([np.cos(theta), np.sin(theta)], axis=1)
     totals = absorbance.sum(axis=2)
     across = absorbance.transpose(0, 1, 3, 2) @ _offsets(columns)
     down = np.zeros((len(frames), channels))
-    if not _is_level(frames.views):
+    if not _is_level(frames.rig.views):
         down = totals.transpose(0, 2, 1) @ _offsets(rows)
         totals, across = (moment.sum(axis=1, keepdims=True) for moment in (totals, across))
     scale = float(np.abs(np.mean(totals))) or 1.0

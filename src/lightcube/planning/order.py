@@ -16,8 +16,9 @@ from lightcube.optics.absorption import absorbance
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.material import Material
 from lightcube.optics.views import Views
-from lightcube.pictures.frames import Frames, check_turntable
+from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import shares
+from lightcube.planning.measured import raised
 from lightcube.projection.projector import Projector
 from lightcube.scoring.metrics import mean_psnr
 
@@ -82,20 +83,20 @@ def best_order(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Orde
     ``pictures^3`` numbers per tile and colour: from 139 pictures on there is no room for two tiles a side, and the
     tour is all there is beside the given order.
     """
-    check_turntable(frames)
+    raised(frames.rig)
     recipe = recipe or Recipe()
     bound = Material(recipe.material.most(grid))
     drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0)
     draft, small = _draft(frames, grid)
-    seen = _features(draft, _tiles(1, draft.views.picture_shape)).reshape(len(frames), -1)
+    seen = _features(draft, _tiles(1, draft.rig.picture_shape)).reshape(len(frames), -1)
     canonical = np.lexsort(seen.T[::-1])
-    along = np.argsort(frames.views.angles, kind="stable")
+    along = np.argsort(frames.angles, kind="stable")
     tour = np.empty(len(frames), np.int64)
     tour[along] = ordering.shortest_tour(scipy.spatial.distance.cdist(seen[canonical], seen[canonical]))
     candidates = [np.arange(len(frames)), canonical[tour]]
-    tiles = _tiles(len(frames), draft.views.picture_shape)
+    tiles = _tiles(len(frames), draft.rig.picture_shape)
     if len(frames) > 1 and max(tiles) > 1:
-        parts = _parts(draft.views, small, _features(draft, tiles)[canonical], tiles)
+        parts = _parts(draft.rig.views, small, _features(draft, tiles)[canonical], tiles)
         candidates += [canonical[order] for order in _walks(parts, tour)]
     scores = [_draft_db(draft, small, candidate, drafted) for candidate in candidates]
     best = int(np.argmax(scores))
@@ -107,12 +108,12 @@ def _draft(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
     scale = max(1.0, max(grid.shape) / _DRAFT)
     nz, ny, nx = (max(1, round(side / scale)) for side in grid.shape)
     small = Grid((nz, ny, nx), grid.voxel_mm * scale)
-    wide = frames.views
-    most = raster_shape(small, float(np.min(np.abs(wide.elevations))))
-    rows, columns = (min(max(1, round(side / scale)), end) for side, end in zip(wide.picture_shape, most, strict=True))
-    views = Views(wide.lamps, wide.origins, wide.column_steps * scale, wide.row_steps * scale, (rows, columns))
+    rig = frames.rig
+    most = raster_shape(small, float(np.min(np.abs(rig.views.elevations))))
+    rows, columns = (min(max(1, round(side / scale)), end) for side, end in zip(rig.picture_shape, most, strict=True))
+    draft = rig.with_pixels(scale, (rows, columns))
     pictures, weights = _tiled(frames.pictures, frames.weight, (rows, columns))
-    smaller = replace(frames, pictures=pictures.astype(np.float32), views=views, weights=weights.astype(np.float32))
+    smaller = replace(frames, pictures=pictures.astype(np.float32), rig=draft, weights=weights.astype(np.float32))
     return smaller, small
 
 
@@ -182,4 +183,4 @@ def _draft_db(draft: Frames, grid: Grid, order: NDArray[np.integer], recipe: Rec
     """Mean PSNR in dB of the draft cube with the pictures in this order."""
     frames = Order(order.astype(np.intp), 0.0, 0.0)(draft)
     cube = solving.solve(frames, grid, recipe).cube
-    return mean_psnr(np.stack(list(cast(cube, cube.views, cube.powers))), frames)
+    return mean_psnr(np.stack(list(cast(cube))), frames)

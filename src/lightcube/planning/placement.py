@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.optics.grid import PARALLEL
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 
 Reals = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -166,10 +166,11 @@ def _thin(half: Reals) -> float:
 
 def _beams(stage: Stage) -> list[_Beams]:
     """One for every lamp of every picture, in this order."""
-    views, lighting = exposures(stage)
+    rig = stage.rig()
+    views = rig.views
     made = []
     for v, (p, name) in enumerate((p, name) for p, shot in enumerate(stage.shots) for name in shot.lamps):
-        spare = (np.array(views.picture_shape) - lighting.window[p]) / 2
+        spare = (np.array(views.picture_shape) - rig.stops.window[p]) / 2
         right, down = views.column_steps[v], views.row_steps[v]
         middle = views.origins[v] - spare[0] * down - spare[1] * right
         shot = stage.shots[p]

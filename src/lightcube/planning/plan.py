@@ -3,16 +3,17 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 from numpy.typing import ArrayLike
 
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, dense_step
-from lightcube.optics.views import widest_hold
-from lightcube.pictures.arranging import shifted, spread_over_screen
-from lightcube.pictures.fitting import RAISED, Fit
+from lightcube.optics.rig import POWER_MAX
+from lightcube.optics.transfer import BLACK
+from lightcube.pictures.arranging import spread_over_screen
+from lightcube.pictures.fitting import RAISED, Fit, turntable_for
 from lightcube.pictures.fitting import fit as fitted
 from lightcube.pictures.frames import Frames, Pictures
 from lightcube.planning.order import Order, best_order
@@ -75,6 +76,9 @@ def plan(
     angles: ArrayLike | None = None,
     span: float | None = None,
     elevation: float | None = None,
+    power: float | None = None,
+    power_max: float = POWER_MAX,
+    black: float = BLACK,
     fit: Fit = "crop",
     longest_hold: bool = False,
     shift: int = 0,
@@ -96,8 +100,10 @@ def plan(
     frame_width
         Width of the pictures as a fraction of the cube's; default the largest in `WIDTHS` with a predicted mean PSNR
         of at least 40 dB, or the smallest.
-    angles, span, elevation, fit
-        As `lightcube.fit` takes them.
+    angles, span, elevation, power, power_max, black
+        As `lightcube.pictures.fitting.turntable_for` takes them.
+    fit
+        What happens to pictures of another aspect, as `lightcube.fit` takes it.
     longest_hold
         Hold pictures as long as is predicted to cost less than 1 dB (of what lies below 45 dB), at most half the way
         to the next stop, instead of as long as the recipe says; not at all where less than 40 dB are predicted.
@@ -119,6 +125,7 @@ def plan(
             "0 and at most 1.41"
         )
     asked = recipe or Recipe()
+    lamp: dict[str, Any] = {"power": power, "power_max": power_max, "black": black}
     rows, columns = pictures.images[0].shape[:2]
     height = pictures.elevation if elevation is None else elevation
     level = (RAISED if height is None else height) == 0
@@ -127,10 +134,12 @@ def plan(
         voxels = shape or proportions(n, columns / rows, width, level=level)
         while True:
             grid = Grid(voxels, size_mm / max(voxels))
-            frames = fitted(pictures, grid, angles=angles, span=span, elevation=elevation, frame_width=width, fit=fit)
-            high = frames.views.picture_shape[0]
+            rig = turntable_for(
+                pictures, grid, angles=angles, span=span, elevation=elevation, frame_width=width, **lamp
+            )
+            high = rig.picture_shape[0]
             if shape is not None or not level or high == voxels[0] or max(voxels[1:]) < n:
-                return frames, grid
+                return fitted(pictures, rig, fit), grid
             voxels = (high, *voxels[1:])  # no slices above and below the pictures
 
     def predicted(width: float) -> Plan:
@@ -149,7 +158,7 @@ def plan(
 
 def spread(planned: Plan, frames: Frames, shift: int) -> Frames:
     """Frames in the plan's cube, standing up to so many pixels higher, lower or aside in turn."""
-    return shifted(frames, spread_over_screen(frames, planned.grid, shift))
+    return replace(frames, rig=frames.rig.shifted(spread_over_screen(frames, planned.grid, shift)))
 
 
 def _widest(predicted: Callable[[float], Plan]) -> Plan:
@@ -180,7 +189,7 @@ def held_longest(without: Plan) -> Plan:
     """Find the longest hold that costs less than 1 dB of what is predicted for the plan `without`."""
     if without.prediction.psnr_mean < GOOD_DB:  # where pictures drown in each other hold costs nothing, and is worth it
         return without
-    step, most = dense_step(without.grid), widest_hold(without.frames.views)
+    step, most = dense_step(without.grid), without.frames.rig.widest_hold
     enough = min(without.prediction.psnr_mean, BEST_SEEN_DB) - HOLD_COSTS_DB
     best = without
     for steps in _HOLDS:
@@ -197,11 +206,11 @@ def held_longest(without: Plan) -> Plan:
 
 def narrower(planned: Plan, width: float) -> Frames:
     """The frames of a plan as they would be at another width, at the same stops."""
-    views = planned.frames.views
-    elevation = float(views.elevations[0])
-    frames = fitted(
-        planned.pictures, planned.grid, angles=views.angles, elevation=elevation, frame_width=width, fit=planned.fit
+    rig = planned.frames.rig
+    narrow = turntable_for(
+        planned.pictures, planned.grid, angles=rig.stops.angle, elevation=rig.elevation_deg, frame_width=width
     )
+    frames = fitted(planned.pictures, replace(narrow, lamps=rig.lamps, screens=rig.screens), planned.fit)
     if planned.shift:
         frames = spread(planned, frames, planned.shift)
     return frames if planned.order is None else planned.order(frames)

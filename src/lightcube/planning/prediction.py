@@ -32,14 +32,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.backward import solving
+from lightcube.backward.problem import held
 from lightcube.backward.recipe import Recipe
 from lightcube.forward.casting import cast
-from lightcube.optics.grid import Grid, nearest, raster_shape
+from lightcube.optics.grid import Grid, dense_step, nearest, raster_shape
 from lightcube.optics.material import Material
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import Views, held, widest_hold
-from lightcube.pictures.frames import Frames, check_turntable
+from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import shares
+from lightcube.planning.measured import raised
 from lightcube.scoring.metrics import BEST_DB, psnr
 
 #: Passes of a rehearsal, and its work: pictures times pixels times the cube's width, in voxels.
@@ -93,7 +94,7 @@ def predict(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Predict
     InputError
         Where `solve` would refuse them.
     """
-    check_turntable(frames)
+    raised(frames.rig)
     reached, width = rehearse(frames, grid, recipe or Recipe())
     return Prediction(law(reached, max(grid.shape[1:]) / width), width)
 
@@ -107,13 +108,13 @@ def rehearse(frames: Frames, grid: Grid, recipe: Recipe) -> tuple[Array, int]:
     """PSNR of each picture in a small cube, dB, and the width of that in voxels; takes what `predict` does."""
     solving.check_frames(frames, grid)
     hold = recipe.hold_deg
-    held(frames.views, hold, grid)
+    held(frames.rig, recipe, grid)
     small, small_grid = reduced(frames, grid, _width(frames, grid, hold))
     width = max(small_grid.shape[1:])
     bound = Material(recipe.material.most(grid))
     rehearsed = replace(recipe.by_display(PASSES), material=bound, hold_deg=_small_hold(frames, grid, hold, width))
     cube = solving.solve(small, small_grid, rehearsed).cube
-    shown = encode(np.stack(list(cast(cube, small.views, cube.powers))), small.transfer)
+    shown = encode(np.stack(list(cast(cube))), small.transfer)
     wanted = encode(small.pictures, small.transfer)
     reached = [psnr(*each) for each in zip(shown, wanted, small.weight, strict=True)]
     return np.array(reached), width
@@ -127,35 +128,32 @@ def reduced(frames: Frames, grid: Grid, width: int) -> tuple[Frames, Grid]:
     """
     if max(grid.shape[1:]) <= width:
         return frames, grid
-    level = bool(np.all(frames.views.elevations == 0))
-    elevation = float(np.max(np.abs(frames.views.elevations)))
-    shape, picture_shape = _proportioned(grid, frames.views.picture_shape, elevation, width, level=level)
+    elevation = float(np.max(np.abs(frames.rig.views.elevations)))
+    shape, picture_shape = _proportioned(grid, frames.rig.picture_shape, elevation, width, level=elevation == 0)
     ratio = max(grid.shape[1:]) / max(shape[1:])
-    views = frames.views
-    small_views = Views(views.lamps, views.origins, views.column_steps * ratio, views.row_steps * ratio, picture_shape)
     pairs = [_shrunk(*each, picture_shape) for each in zip(frames.pictures, frames.weight, strict=True)]
     pictures, weights = (np.stack(arrays).astype(np.float32) for arrays in zip(*pairs, strict=True))
-    small = Frames(pictures, small_views, weights, frames.names, frames.transfer)
+    small = Frames(pictures, frames.rig.with_pixels(ratio, picture_shape), weights, frames.names, frames.transfer)
     return small, Grid(shape, grid.voxel_mm * ratio)
 
 
 def _width(frames: Frames, grid: Grid, hold: float) -> int:
     """Width of the small cube: what takes the work of a rehearsal, or somewhat more where pictures are held."""
     across = max(grid.shape[1:])
-    rows, columns = frames.views.picture_shape
+    rows, columns = frames.rig.picture_shape
 
     def affordable(angles: float) -> int:
         work = len(frames) * angles * rows * columns * across
         return min(across, max(_LEAST, round(across * (WORK / work) ** (1 / 3))))
 
     width = affordable(1.0)
-    views = held(frames.views, _small_hold(frames, grid, hold, width), Grid((1, width, width)))
-    return affordable(math.sqrt(len(views) / len(frames)))
+    small = frames.rig.held(_small_hold(frames, grid, hold, width), dense_step(Grid((1, width, width))))
+    return affordable(math.sqrt(len(small) / len(frames)))
 
 
 def _small_hold(frames: Frames, grid: Grid, hold: float, width: int) -> float:
     """Degrees over which a cube of that `width` must hold its pictures to find it as hard as the large one."""
-    return min(hold * (max(grid.shape[1:]) / width) ** HOLD, widest_hold(frames.views))
+    return min(hold * (max(grid.shape[1:]) / width) ** HOLD, frames.rig.widest_hold)
 
 
 def _proportioned(

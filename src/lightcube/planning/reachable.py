@@ -26,17 +26,18 @@ def least_light(frames: Frames) -> NDArray[np.float64]:
     ``D = sum_v share g (1 - a)`` over that lamp's views (`lightcube.optics.rig`); several lamps show no less than the
     one with the least such quotient.
     """
-    lighting = frames.lighting
+    rig = frames.rig
     least = np.zeros(frames.pictures.shape)
-    if lighting is None or np.all(np.isinf(lighting.reach_mm)):
+    if np.all(np.isinf(rig.fading.reach_mm)):
         return least
-    light, shadow = falling_light(frames.views, lighting)
+    light, shadow = falling_light(rig)
+    share_of = rig.sums.of_colours(frames.pictures.shape[-1])
     for picture, wanted in enumerate(frames.pictures):
         heard = frames.weight[picture] > 0
-        views = np.flatnonzero(lighting.picture == picture)
-        groups = [views[lighting.lamp[views] == lamp] for lamp in np.unique(lighting.lamp[views])]
+        views = np.flatnonzero(rig.sums.picture == picture)
+        groups = [views[rig.sums.lamp[views] == lamp] for lamp in np.unique(rig.sums.lamp[views])]
         for channel in range(wanted.shape[-1]):
-            shares = [lighting.share[own, channel][:, None, None] for own in groups]
+            shares = [share_of[own, channel][:, None, None] for own in groups]
             full = [np.sum(share * light[own], axis=0) for share, own in zip(shares, groups, strict=True)]
             dark = [
                 np.sum(share * light[own] * (1 - shadow[own]), axis=0)
@@ -65,13 +66,11 @@ def out_of_reach(frames: Frames) -> NDArray[np.float64]:
 
 def too_bright(frames: Frames) -> NDArray[np.float64]:
     """``(pictures,)``: the part of each picture's colours that all its lamps at their largest power fall short of."""
-    lighting = frames.lighting
-    if lighting is None:
-        return np.zeros(len(frames))
-    light, _ = falling_light(frames.views, lighting)
+    rig = frames.rig
+    light, _ = falling_light(rig)
     most = np.zeros(frames.pictures.shape)
-    for view, picture in enumerate(lighting.picture):
-        most[picture] += lighting.most[lighting.lamp[view]] * lighting.share[view] * light[view][..., None]
+    for view, picture in enumerate(rig.sums.picture):
+        most[picture] += rig.lamps.most[rig.sums.lamp[view]] * rig.sums.share[view] * light[view][..., None]
     certain = (frames.pictures > most / _SURE) & (frames.weight[..., None] > 0)
     return np.asarray(np.sum(certain, axis=(1, 2, 3)) / _counted(frames))
 

@@ -1,13 +1,26 @@
 """The matrix as scipy's iterative solvers want it. Importing this imports ``scipy.sparse.linalg``, which takes long."""
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator
 
 from lightcube.errors import InputError
-from lightcube.solvers.contract import Floats, Operator
+
+Floats = NDArray[np.floating[Any]]
+
+
+class Matrix(Protocol):
+    """What multiplies blocks of columns."""
+
+    shape: tuple[int, int]
+
+    def forward(self, x: Floats) -> Floats:
+        """``A @ x``."""
+
+    def adjoint(self, b: Floats) -> Floats:
+        """``A.T @ b``."""
 
 
 class MatrixOperator(LinearOperator):
@@ -21,7 +34,7 @@ class MatrixOperator(LinearOperator):
         Where a product is asked for with complex numbers.
     """
 
-    def __init__(self, matrix: Operator, dtype: np.dtype[np.floating[Any]]) -> None:
+    def __init__(self, matrix: Matrix, dtype: np.dtype[np.floating[Any]]) -> None:
         super().__init__(dtype, matrix.shape)  # type: ignore[call-arg] # the stubs know the functions' way only
         self._matrix = matrix
 

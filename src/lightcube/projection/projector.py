@@ -17,6 +17,7 @@ from lightcube.kernels.layout import (
     volume_from_columns,
 )
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Rig
 from lightcube.optics.views import Views
 from lightcube.projection.rays import Rays
 from lightcube.projection.stacked import StackedBeams, is_stacked
@@ -98,7 +99,8 @@ class Projector:
     ((6, 12), (12, 2), (6, 2))
     """
 
-    def __init__(self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None) -> None:
+    def __init__(self, grid: Grid, rig: Rig | Views, heard: NDArray[np.bool_] | None = None) -> None:
+        views = rig if isinstance(rig, Views) else rig.views
         self.grid, self.views = grid, views
         self.domain_shape, self.range_shape = grid.shape, (len(views), *views.picture_shape)
         if heard is not None and heard.shape != self.range_shape:

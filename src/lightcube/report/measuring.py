@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.recipe import recipe_of
 from lightcube.drawing.sheet import triple
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
@@ -42,11 +41,11 @@ class Findings:
     pictures
         By their number: wanted, shown and difference, 8-bit RGB; evenly chosen ones where there are too many.
     curve
-        What is seen between the stops; None where nothing is between them.
+        What is seen between the stops; None where nothing turns.
     robust
         As `lightcube.scoring.robust.robust`.
     preflight
-        As `lightcube.check`; None on a stage, or with lamps at several elevations.
+        As `lightcube.check`; None in rooms that it was not measured for.
     advice
         What is wrong with the pictures, a sentence each.
     apart
@@ -86,15 +85,15 @@ def measure(
     check_same_views(cube, frames)
     tell = callback or (lambda done, of: None)
     rest = (len(DISTURBANCES) + 1) * len(frames)
-    turned = cube.lighting is None and len(np.unique(cube.views.elevations)) == 1
-    between = curve(cube, frames, callback=lambda done, of: tell(done, of + rest)) if turned else None
+    turns = bool(np.any(cube.rig.turning.turns))
+    between = curve(cube, frames, callback=lambda done, of: tell(done, of + rest)) if turns else None
     of = rest + (0 if between is None else len(between.angles))
     left = robust(cube, frames, callback=lambda done, _: tell(of - rest + done, of))
     pictures: dict[int, list[Levels]] = {number: [] for number in chosen(frames)}
-    shown = cast(cube, cube.views, cube.powers, cube.lighting)
+    shown = cast(cube)
     scores = score_pictures(_kept(shown, frames, pictures), frames)
     tell(of, of)
-    facts = check(frames, cube.grid, recipe_of(cube).lamp_bounds[1]) if turned else None
+    facts = check(frames, cube.grid) if cube.rig.is_thin and cube.rig.elevation_deg is not None else None
     said = sentences(frames) if facts is None else advice(facts)
     if stage is not None:
         said = [*doubtful(stage), *said]
@@ -103,7 +102,7 @@ def measure(
 
 def chosen(frames: Frames, most: int = MOST) -> list[int]:
     """Numbers of the pictures that a page has room for, evenly chosen: those of at most so many pixels together."""
-    rows, columns = frames.views.picture_shape
+    rows, columns = frames.rig.picture_shape
     room = min(len(frames), max(1, most // (rows * columns)))
     return [int(number) for number in np.unique(np.linspace(0, len(frames) - 1, room).round())]
 
@@ -114,7 +113,7 @@ def _kept(
     """Yield pictures as they come, and keep those to be looked at."""
     for number, picture in enumerate(shown):
         if number in pictures:
-            rows, columns = picture.shape[:2] if frames.lighting is None else frames.lighting.window[number]
+            rows, columns = frames.rig.stops.window[number]
             pictures[number] = [each[:rows, :columns] for each in triple(picture, frames, number)]
         yield picture
 

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.recipe import recipe_of
 from lightcube.drawing import charts
 from lightcube.drawing.stage import drawing
 from lightcube.optics.cube import Cube
@@ -73,8 +72,7 @@ def _predicted(cube: Cube, name: str) -> str:
 
 def _size(cube: Cube) -> tuple[str, str]:
     """Width and height of the pictures, from the least to the largest where they differ."""
-    windows = [cube.views.picture_shape] if cube.lighting is None else cube.lighting.window
-    rows, columns = np.array(windows).T
+    rows, columns = cube.rig.stops.window.T
     return _range(columns), _range(rows)
 
 
@@ -86,13 +84,12 @@ def _range(values: NDArray[Any], form: str = "g") -> str:
 def settings(found: Findings) -> str:
     """What cube, lamp and solver were set to."""
     cube, made = found.cube, found.cube.provenance
-    where = _turntable(cube) if cube.lighting is None else _stage(cube)
     kinds = {"per-picture": "one per picture and colour", "shared": "one per colour"}
     kinds |= {"coarse": "one per picture and colour, found at half the size"}
-    recipe = recipe_of(cube)
-    fixed = recipe.is_lamp_fixed and "powers" in made
+    lamps = cube.rig.lamps
+    fixed = lamps.are_fixed and "powers" in made
     kind = "fixed" if fixed else kinds.get(str(made.get("powers")), "–")
-    most = "" if cube.lighting is not None or fixed else f", at most {recipe.lamp_bounds[1]:g}"
+    most = "" if fixed else f", at most {lamps.most.max():g}"
     reasons = {
         "enough": "the pictures were good enough",
         "converged": "nothing was left to gain",
@@ -105,7 +102,7 @@ def settings(found: Findings) -> str:
     return pairs(
         {
             "Voxels": f"{nx} × {ny} × {nz} of {cube.grid.voxel_mm:.6g} mm",
-            **where,
+            **_placed(cube),
             "Lamp power": f"{_range(cube.powers, '.4g')} ({kind}{most})",
             "Hold": f"{cube.hold_deg:g}° on either side of a stop" if cube.hold_deg else "none",
             "Method": str(made.get("method", "–")),
@@ -116,28 +113,20 @@ def settings(found: Findings) -> str:
     )
 
 
-def _turntable(cube: Cube) -> dict[str, str]:
-    """Stops and lamp of a turntable."""
-    return {
-        "Stops": _stops(cube.angles),
-        "Lamp elevation": f"{_range(cube.views.elevations)}°",
+def _placed(cube: Cube) -> dict[str, str]:
+    """Stops, lamps and screens."""
+    rig = cube.rig
+    said = {
+        "Stops": _stops(np.unique(cube.angles)),
+        "Lamps": ", ".join(rig.lamps.names),
+        "Screens": ", ".join(rig.screens.names),
     }
+    return said if rig.elevation_deg is None else said | {"Lamp elevation": f"{rig.elevation_deg:g}°"}
 
 
 def _stops(angles: NDArray[np.float64]) -> str:
     """How many stops, and where the first and the last one are."""
     return f"{len(angles)}, from {angles.min():.6g}° to {angles.max():.6g}°" if len(angles) > 1 else f"{angles[0]:.6g}°"
-
-
-def _stage(cube: Cube) -> dict[str, str]:
-    """Lamps and screens of a stage."""
-    lighting = cube.lighting
-    assert lighting is not None  # noqa: S101 - a stage's
-    return {
-        "Stops": _stops(np.unique(cube.angles)),
-        "Lamps": ", ".join(lighting.lamp_names),
-        "Screens": ", ".join(lighting.screen_names),
-    }
 
 
 def pictures(found: Findings) -> str:
@@ -176,18 +165,18 @@ def _table(found: Findings) -> str:
     heads = ["no.", "picture", "angle", "PSNR, dB", "SSIM", "CIEDE2000"]
     heads += ["predicted, dB"] * (expected is not None)
     heads += [f"{LOBE_DB:g} dB over"] * (found.curve is not None)
-    heads += ["screen"] * (cube.lighting is not None)
+    heads += ["screen"] * (len(cube.rig.screens.names) > 1)
     return table("Every picture", heads, list(_rows(found, expected)), "figures")
 
 
 def _rows(found: Findings, expected: list[float] | None) -> Iterator[list[object]]:
-    lighting = found.cube.lighting
+    rig = found.cube.rig
     for index, view in enumerate(found.scores["views"]):
         row: list[object] = [index + 1, view["name"], f"{view['angle']:.3f}°", number(view["psnr"])]
         row += [number(view["ssim"], 4), number(view["delta_e"])]
         row += [] if expected is None else [number(expected[index], 1)]
         row += [] if found.curve is None else [f"{found.curve.lobes[index]:.2f}°"]
-        row += [] if lighting is None else [lighting.screen_names[lighting.screen[index]]]
+        row += [rig.screens.names[rig.stops.screen[index]]] if len(rig.screens.names) > 1 else []
         yield row
 
 
@@ -219,8 +208,7 @@ def _between(found: Findings) -> Iterator[str]:
     """What is seen between the stops."""
     curve = found.curve
     if curve is None:
-        reason = "a stage" if found.cube.lighting is not None else "lamps at several elevations"
-        yield text("p", f"What is seen between the stops is not measured for {reason}: play the cube to see it.")
+        yield text("p", "Nothing turns: there is nothing to be seen between the stops.")
         return
     lobes = f"{curve.lobes.min():.2f}° to {curve.lobes.max():.2f}°, {curve.lobes.mean():.2f}° on average"
     stands = f"A picture stays above {LOBE_DB:g} dB over {lobes}."
@@ -231,9 +219,7 @@ def _between(found: Findings) -> Iterator[str]:
 
 def _powers(cube: Cube) -> str:
     """The lamp's powers over the pictures."""
-    lighting = cube.lighting
-    places = np.arange(1.0, len(cube.powers) + 1) if lighting is None else (lighting.pairs[:, 0] + 1).astype(np.float64)
-    most = recipe_of(cube).lamp_bounds[1] if lighting is None else float(lighting.most.max())
+    places, most = (cube.rig.pairs[:, 0] + 1).astype(np.float64), float(cube.rig.lamps.most.max())
     return charts.lamp_powers(
         places, cube.powers, most, f"Lamp powers from {_range(cube.powers, '.4g')}, at most {most:g}"
     )
@@ -242,7 +228,7 @@ def _powers(cube: Cube) -> str:
 def _powers_said(cube: Cube) -> str:
     """What the drawing of powers shows."""
     colours = "; red discs, green squares, blue triangles" if cube.powers.shape[1] == 3 else ""
-    lamps = "" if cube.lighting is None else ", of each of its lamps"
+    lamps = ", of each of its lamps" if len(cube.rig.lamps.names) > 1 else ""
     return (
         f"Power of the lamp for each picture and colour{lamps}; 1 shows white past the cube{colours}. "
         "The dashed line is the largest that was allowed."
@@ -280,7 +266,7 @@ def before(found: Findings) -> str:
         parts += _room(found)
     elif found.preflight is not None:
         parts.append(pairs(_checked(found.preflight)))
-    elif found.cube.lighting is not None:
+    else:
         parts.append(text("p", "The stage's file says more of its room: give it as the pictures of this report."))
     if found.advice:
         parts.append(sentences(found.advice))

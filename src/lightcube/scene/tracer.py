@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
-from lightcube.optics.views import Views, spread_angles, turntable
+from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.views import Views, spread_angles
 from lightcube.pictures.frames import Frames
 from lightcube.scene.compiled import compiled, sight
 from lightcube.scene.description import ShadowCamera
@@ -120,14 +121,14 @@ def shadows(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None
     return pictures
 
 
-def scene_views(
+def scene_rig(
     scene: Scene,
     count: int | None = None,
     size: tuple[int, int] | None = None,
     span: float | None = None,
     elevation: float | None = None,
-) -> tuple[Grid, Views]:
-    """Cube and views that a scene is made for, unless something else is wanted.
+) -> tuple[Grid, Rig]:
+    """Cube and turntable that a scene is made for, unless something else is wanted.
 
     Parameters
     ----------
@@ -140,8 +141,8 @@ def scene_views(
 
     Returns
     -------
-    A grid as wide and as high as the pictures with voxels of 1 mm, and a turntable's views of it at angles spread
-    evenly over the scene's ``frames.span`` at its ``frames.elevation``.
+    A grid as wide and as high as the pictures with voxels of 1 mm, and a turntable of it with stops spread evenly over
+    the scene's ``frames.span`` at its ``frames.elevation``.
     """
     table = scene.description.frames
     width, height = size or table.size
@@ -153,10 +154,10 @@ def scene_views(
     return grid, turntable(grid, angles, elevation=raised, picture_shape=(height, width))
 
 
-def scene_frames(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None = None) -> Frames:
-    """Pictures of a scene for `views` of the cube `grid`, one per view: by its camera, or its `shadows`."""
+def scene_frames(scene: Scene, rig: Rig, grid: Grid, *, callback: Callback | None = None) -> Frames:
+    """Pictures of a scene for a turntable with the cube `grid`, one per stop: by its camera, or its `shadows`."""
     if casts_shadows(scene):
-        pictures = shadows(scene, views, grid, callback=callback)
+        pictures = shadows(scene, rig.views, grid, callback=callback)
     else:
-        pictures = trace(scene, len(views), views.picture_shape, callback=callback)
-    return Frames(pictures, views)
+        pictures = trace(scene, len(rig), rig.picture_shape, callback=callback)
+    return Frames(pictures, rig)

@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
-from lightcube.forward.turning import lamp_at
+from lightcube.forward.turning import powers_of
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import turn_period, turned
 from lightcube.pictures.frames import Frames
 from lightcube.scoring.metrics import check_same_views, psnr, ssim
 
@@ -72,24 +71,20 @@ def curve(cube: Cube, frames: Frames, steps: int = 8, *, callback: Callable[[int
     Raises
     ------
     InputError
-        Where the frames do not fit the cube's views, or these stand at several elevations.
+        Where the frames do not fit the cube's pictures.
 
     Notes
     -----
-    The lamp's power between the stops is that of `lightcube.lamp_at`. With a level lamp half a turn shows the
-    mirror image, so the curve has a period of 180 degrees and the last stop's neighbour is the mirrored first
-    one, unless two stops are half a turn apart.
+    Lamps' powers between the stops are those of `lightcube.forward.turning.powers_of`. Where half a turn shows the
+    mirror image the curve has a period of 180 degrees and the last stop's neighbour is the mirrored first one, unless
+    two stops are half a turn apart. Several screens each have their own stops.
     """
     if steps < 1:
         raise InputError(f"a curve needs at least 1 step from one frame to the next, not {steps}")
     check_same_views(cube, frames)
-    if cube.lighting is not None:
-        raise InputError("this cube was made on a stage: leave out --between and --plot, and play it to see in between")
-    if len(np.unique(cube.views.elevations)) > 1:
-        raise InputError("this cube was made with lamps at several elevations: there is nothing between its stops")
-    period = turn_period(cube.views)
-    places = cube.views.angles % period
-    reach = _reach(places, period)
+    period = cube.rig.period
+    places = cube.angles % period
+    reach = _reach(places, period, cube.rig.stops.screen)
     samples = [(view, offset) for view in range(len(frames)) for offset in _offsets(reach[:, view], steps)]
     found = np.empty((0, 4))
     while samples:
@@ -114,12 +109,14 @@ def curve(cube: Cube, frames: Frames, steps: int = 8, *, callback: Callable[[int
     return Curve(places[nearest] + offsets, nearest, offsets, quality, likeness, lobes, period)
 
 
-def _reach(places: Floats, period: float) -> Floats:
-    """``(2, views)``: degrees from each stop to halfway to the one before it and to the one after it."""
-    order = np.argsort(places, kind="stable")
-    gaps = np.diff(places[order], append=places[order[0]] + period)
+def _reach(places: Floats, period: float, screens: NDArray[np.intp]) -> Floats:
+    """``(2, pictures)``: degrees from each stop to halfway to the one before and to the one after it on its screen."""
     reach = np.empty((2, len(places)))
-    reach[:, order] = np.roll(gaps, 1) / 2, gaps / 2
+    for screen in np.unique(screens):
+        own = np.flatnonzero(screens == screen)
+        own = own[np.argsort(places[own], kind="stable")]
+        gaps = np.diff(places[own], append=places[own[0]] + period)
+        reach[:, own] = np.roll(gaps, 1) / 2, gaps / 2
     return reach
 
 
@@ -136,9 +133,9 @@ def _offsets(reach: Floats, steps: int) -> Floats:
 def _compared(cube: Cube, frames: Frames, view: Floats, offset: Floats) -> Iterator[tuple[float, float, float, float]]:
     """View, offset in degrees, PSNR and SSIM of what is cast there against that view's frame, sample by sample."""
     index = view.astype(np.intp)
-    views = turned(cube.views.take(index), offset)
     wanted = encode(frames.pictures, frames.transfer)
-    shown = cast(cube, views, lamp_at(cube, views.angles))
+    now = cube.rig.take(index).turned(offset)
+    shown = cast(cube, now, powers_of(cube, now))
     for place, degrees, picture in zip(index, offset, shown, strict=True):
         pair = encode(picture, frames.transfer), wanted[place], frames.weight[place]
         yield float(place), float(degrees), psnr(*pair), ssim(*pair)

@@ -78,7 +78,7 @@ def score(cube: Cube, frames: Frames | None = None) -> dict[str, Any]:
     """
     wanted = frames_from_targets(cube) if frames is None else frames
     check_same_views(cube, wanted)
-    return score_pictures(cast(cube, cube.views, cube.powers, cube.lighting), wanted)
+    return score_pictures(cast(cube), wanted)
 
 
 def score_pictures(shown: Iterable[NDArray[np.float32]], frames: Frames) -> dict[str, Any]:
@@ -123,10 +123,7 @@ def mean_psnr(
 
 def check_same_views(cube: Cube, frames: Frames) -> None:
     """Raise `InputError` unless the frames are as many and as large as the cube's own pictures."""
-    given, made_for = (
-        f"{count} of {'{} x {}'.format(*views.picture_shape)}"
-        for count, views in ((len(frames), frames.views), (len(cube.names), cube.views))
-    )
+    given, made_for = (f"{len(rig)} of {'{} x {}'.format(*rig.picture_shape)}" for rig in (frames.rig, cube.rig))
     if given != made_for:
         raise InputError(
             f"frames ({given} pixels) do not fit the cube, which was made for {made_for}: give those it was made from"
@@ -136,13 +133,13 @@ def check_same_views(cube: Cube, frames: Frames) -> None:
 def facts(cube: Cube) -> dict[str, Any]:
     """What is worth knowing of a cube, by name, for people and JSON."""
     nz, ny, nx = cube.grid.shape
-    rows, columns = cube.views.picture_shape
+    rows, columns = cube.rig.picture_shape
     return {
         "status": cube.status,
         "voxels": f"{nz} x {ny} x {nx} (z, y, x)",
         "size_mm": " x ".join(f"{length:g}" for length in cube.grid.size_mm),
         "voxel_mm": cube.grid.voxel_mm,
-        "views": len(cube.views),
+        "views": len(cube.rig.views),
         "pictures": len(cube.names),
         "picture": f"{columns} x {rows} pixels",
         **_where(cube),
@@ -159,8 +156,10 @@ def facts(cube: Cube) -> dict[str, Any]:
 
 def _where(cube: Cube) -> dict[str, Any]:
     """Where a cube's lamps and screens stand, by name."""
-    angles = {"angles": [float(angle) for angle in cube.angles]}
-    if cube.lighting is None:
-        return angles | {"elevation": sorted({float(elevation) for elevation in cube.views.elevations})}
-    screens = [cube.lighting.screen_names[screen] for screen in cube.lighting.screen]
-    return angles | {"lamps": list(cube.lighting.lamp_names), "screens": screens}
+    rig = cube.rig
+    return {
+        "angles": [float(angle) for angle in cube.angles],
+        "elevation": sorted({float(elevation) for elevation in rig.views.elevations[rig.views.lamps[:, 3] == 0]}),
+        "lamps": list(rig.lamps.names),
+        "screens": [rig.screens.names[screen] for screen in rig.stops.screen],
+    }

@@ -10,25 +10,21 @@ from numpy.typing import NDArray
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
-from lightcube.optics.rig import turned_by
 from lightcube.optics.transfer import encode
-from lightcube.optics.views import turned
 from lightcube.pictures.frames import Frames
 from lightcube.scoring.metrics import check_same_views, psnr
 
 
 def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float32]]:
     """Yield what the screen shows at each stop of a disturbed set-up, ``(row, column, channel)``, linear light."""
-    if cube.lighting is None:
-        views = turned(cube.views, disturbance.turn_deg)
-    else:
-        views = turned_by(cube.views, cube.lighting, disturbance.turn_deg)
+    rig = cube.rig.turned(disturbance.turn_deg)
+    views = rig.views
     # In the cube's own frame it is the screen that moves, the other way; its columns and rows are one voxel apart.
     shift = disturbance.up_voxels * views.row_steps - disturbance.right_voxels * views.column_steps
-    views = replace(views, origins=views.origins + shift)
+    rig = replace(rig, views=replace(views, origins=views.origins + shift))
     if disturbance.levels:
         cube = replace(cube, extinction=_rounded(cube.extinction, disturbance.levels))
-    for picture in cast(cube, views, cube.powers * (1 + disturbance.lamp), cube.lighting):
+    for picture in cast(cube, rig, cube.powers * (1 + disturbance.lamp)):
         yield picture + np.float32(disturbance.black)
 
 

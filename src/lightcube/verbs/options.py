@@ -8,6 +8,7 @@ import numpy as np
 from lightcube.backward.recipe import Powers, Quality, Recipe
 from lightcube.errors import InputError
 from lightcube.optics.material import Material
+from lightcube.optics.rig import power_bounds
 from lightcube.optics.transfer import Transfer
 from lightcube.pictures.fitting import Fit
 from lightcube.planning.plan import Arrangement
@@ -80,6 +81,26 @@ class Options:
         return nz, ny, nx
 
     @property
+    def lamp(self) -> dict[str, float]:
+        """Power of a turntable's lamp and black of its screen as `lightcube.plan` takes them, where they are said.
+
+        Methods that cannot choose powers take 1 where nothing is. `InputError` where options contradict each other.
+        """
+        if self.lamp_power is not None and self.lamp_max is not None:
+            raise InputError("a lamp of one given power has no largest one: leave --lamp-power or --lamp-max out")
+        if self.lamp_power is not None and self.powers not in (None, "per-picture"):
+            raise InputError(f"a lamp of one given power has none that are {self.powers}: leave out one of the two")
+        if not self.recipe.chooses_powers and self.lamp_max is not None:
+            raise InputError(
+                f"method {self.method} cannot choose lamp powers: give --lamp-power, or use method display"
+            )
+        power_bounds(self.lamp_power, self.lamp_max)
+        said = {"power": self.lamp_power, "power_max": self.lamp_max, "black": self.black}
+        if not self.recipe.chooses_powers:
+            said["power"] = self.lamp_power or 1.0
+        return {name: value for name, value in said.items() if value is not None}
+
+    @property
     def recipe(self) -> Recipe:
         """How the cube is solved, held where that is said; `InputError` where options contradict each other."""
         if self.quality is not None and self.iterations is not None:
@@ -89,10 +110,7 @@ class Options:
         said: dict[str, Any] = {
             "method": self.method,
             "powers": self.powers,
-            "lamp_power": self.lamp_power,
-            "lamp_max": self.lamp_max,
             "hold_deg": self.hold,
-            "black": self.black,
             "material": None if self.max_extinction is None else Material(self.max_extinction),
             "passes": self.iterations,
         }

@@ -11,7 +11,7 @@ from lightcube.drawing.sheet import beside_each_other, beside_targets
 from lightcube.errors import InputError
 from lightcube.forward import casting, turning
 from lightcube.optics.cube import Cube
-from lightcube.optics.rig import sampled
+from lightcube.optics.rig import Rig
 from lightcube.optics.views import Views
 from lightcube.pictures.fitting import frames_from_targets
 
@@ -41,31 +41,43 @@ class Show:
     names: tuple[str, ...] | None = None
 
 
-def of_turntable(cube: Cube, angles: NDArray[np.float64], *, stops: bool, target: bool, whole_screen: bool) -> Show:
-    """The one screen of a turntable's cube at some angles, which are its own `stops`, or not."""
-    views = cube.views if stops and not whole_screen else turning.views_at(cube, angles, whole_screen=whole_screen)
-    powers = cube.powers if stops else turning.lamp_at(cube, angles)
-    pictures, names = casting.cast(cube, views, powers), cube.names if stops else None
-    rows = views.picture_shape[0]
+def of_stops(cube: Cube, *, target: bool, whole_screen: bool) -> Show:
+    """The pictures that a cube was made for, one by one."""
+    rig = cube.rig.whole(cube.grid) if whole_screen else cube.rig
+    return _shown(cube, rig, cube.powers, cube.angles, cube.names, target=target)
+
+
+def of_turn(cube: Cube, angles: NDArray[np.float64], *, target: bool, whole_screen: bool) -> Show:
+    """The one screen of a cube at some angles."""
+    rig, powers = turning.moment(cube, angles, whole_screen=whole_screen)
+    return _shown(cube, rig, powers, angles, None, target=target)
+
+
+def _shown(
+    cube: Cube,
+    rig: Rig,
+    powers: NDArray[np.float64],
+    angles: NDArray[np.float64],
+    names: tuple[str, ...] | None,
+    *,
+    target: bool,
+) -> Show:
+    """Pictures of a rig, each beside the wanted one if asked for."""
+    pictures, rows = casting.cast(cube, rig, powers), rig.picture_shape[0]
     if target:
-        return Show(beside_targets(pictures, frames_from_targets(cube), angles), len(views), rows, None, names)
-    return Show(pictures, len(views), rows, views, names)
+        return Show(beside_targets(pictures, frames_from_targets(cube), angles), len(rig), rows, None, names)
+    return Show(pictures, len(rig), rows, None if rig.elevation_deg is None else rig.views, names)
 
 
-def of_stage(cube: Cube, angles: NDArray[np.float64], *, stops: bool, side_by_side: bool) -> Show:
-    """The screens of a stage's cube: each wanted picture by itself, or all screens of each angle side by side."""
-    lighting = turning.stage_of(cube)
-    if stops and not side_by_side:
-        pictures = casting.cast(cube, cube.views, cube.powers, lighting)
-        return Show(pictures, lighting.pictures, cube.views.picture_shape[0], None, cube.names)
-    angles = np.unique(angles) if stops else angles
+def of_screens(cube: Cube, angles: NDArray[np.float64]) -> Show:
+    """All screens of each angle side by side."""
 
     def beside() -> Iterator[Picture]:
         for angle in angles:
-            views, shown, powers = turning.exposures_at(cube, [angle])
-            yield beside_each_other(list(casting.cast(cube, views, powers, shown)), shown.window)
+            rig, powers = turning.moment(cube, [angle])
+            yield beside_each_other(list(casting.cast(cube, rig, powers)), rig.stops.window)
 
-    return Show(beside(), len(angles), int(lighting.window[:, 0].max()))
+    return Show(beside(), len(angles), int(cube.rig.stops.window[:, 0].max()))
 
 
 def of_room(cube: Cube, angles: NDArray[np.float64]) -> Show:
@@ -76,12 +88,10 @@ def of_room(cube: Cube, angles: NDArray[np.float64]) -> Show:
 
 
 def with_samples(cube: Cube, lamp_samples: int, pixel_samples: int) -> Cube:
-    """A stage's cube whose lamps' discs and pixels are sampled at so many points; `InputError` where they are."""
+    """A cube whose lamps' discs and pixels are sampled at so many points; `InputError` where they are."""
     if lamp_samples == pixel_samples == 1:
         return cube
-    lighting = turning.stage_of(cube)
     for name, count in (("lamp_samples", lamp_samples), ("pixel_samples", pixel_samples)):
         if count > 1 and cube.provenance.get(name, 1) > 1:
             raise InputError(f"this cube was made with --{name.replace('_', '-')} and is played so: leave it out")
-    views, finer = sampled(cube.views, lighting, lamp_samples=lamp_samples, pixel_samples=pixel_samples)
-    return replace(cube, views=views, lighting=finer)
+    return replace(cube, rig=cube.rig.sampled(lamp=lamp_samples, pixel=pixel_samples))

@@ -16,7 +16,9 @@ from lightcube.backward.job import Job
 from lightcube.backward.needs import MEMORY, fewest_units
 from lightcube.backward.recipe import QUALITIES, Recipe, recipe_of
 from lightcube.optics.cube import Cube
-from lightcube.optics.views import spread_angles, turntable
+from lightcube.optics.rig import POWER_MAX, turntable
+from lightcube.optics.transfer import BLACK
+from lightcube.optics.views import spread_angles
 from lightcube.pictures.frames import Frames
 from lightcube.report.page import Command, Origin
 
@@ -39,11 +41,11 @@ def reproducing(cube: Cube, frames: Frames, source: str | None, target: str) -> 
         What the command reads and writes; without a source there is a word in its place.
     """
     command, provenance = Command(), cube.provenance
-    place = _stage_options(cube) if cube.lighting is not None else _turntable_options(cube, command)
+    place = _turntable_options(cube, command) if _is_planned(cube) else _stage_options(cube)
     words = [*place, *_solver_options(cube, command)]
     if cube.transfer != "srgb":
         words += ["--transfer", cube.transfer]
-    asked = ["lightcube", "solve", source or ("FRAMES" if cube.lighting is None else "STAGE.toml"), "-o", target]
+    asked = ["lightcube", "solve", source or ("FRAMES" if _is_planned(cube) else "STAGE.toml"), "-o", target]
     solve = [shlex.join(asked), *(shlex.join(pair) for pair in zip(words[::2], words[1::2], strict=True))]
     _doubt_origin(cube, command, source)
     units = int(provenance.get("units", 1))
@@ -55,9 +57,14 @@ def reproducing(cube: Cube, frames: Frames, source: str | None, target: str) -> 
     return command
 
 
+def _is_planned(cube: Cube) -> bool:
+    """Whether a cube was planned for pictures, and not made on a stage, whose screens have edges."""
+    return bool(np.all(cube.rig.screens.endless))
+
+
 def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
     """Cube, pictures, angles and lamp's elevation of a turntable."""
-    views, provenance = cube.views, cube.provenance
+    views, provenance = cube.rig.views, cube.provenance
     yield from ("--shape", ",".join(map(str, cube.grid.shape)))
     size = _size(cube.grid.voxel_mm, max(cube.grid.shape))
     if size is None:
@@ -78,6 +85,20 @@ def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
     if "shift" in provenance:
         yield from ("--shift", str(provenance["shift"]))
     yield from ("--hold", _number(cube.hold_deg))
+    yield from _lamp(cube)
+
+
+def _lamp(cube: Cube) -> Iterator[str]:
+    """Power of the lamp and black of the screen."""
+    least, most, black = (
+        float(part[0]) for part in (cube.rig.lamps.least, cube.rig.lamps.most, cube.rig.screens.black)
+    )
+    if least == most and (recipe_of(cube).chooses_powers or most != 1):
+        yield from ("--lamp-power", _number(most))
+    elif least != most and most != POWER_MAX:
+        yield from ("--lamp-max", _number(most))
+    if black != BLACK:
+        yield from ("--black", _number(black))
 
 
 def _stage_options(cube: Cube) -> Iterator[str]:
@@ -96,12 +117,6 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from ("--method", made.method)
     if made.powers != usual.powers:
         yield from ("--powers", made.powers)
-    if made.lamp_power is not None:
-        yield from ("--lamp-power", _number(made.lamp_power))
-    if made.lamp_max is not None and "powers" in cube.provenance:
-        yield from ("--lamp-max", _number(made.lamp_max))
-    if made.black != usual.black:
-        yield from ("--black", _number(made.black))
     if made.material != usual.material:
         yield from ("--max-extinction", _number(made.material.most(cube.grid)))
     yield from _passes(cube.provenance, made.method, command)
@@ -137,7 +152,7 @@ def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
     made, doubts = cube.provenance, command.doubts
     if source is None:
         doubts.insert(0, "The pictures are not recorded with the cube: put the name of theirs into the command.")
-    if cube.lighting is None and "fit" not in made:
+    if _is_planned(cube) and "fit" not in made:
         doubts.append("How the pictures were fitted is not recorded: the cube was not made by `lightcube solve`.")
     if made.get("dtype", "float32") != "float32":
         doubts.append(f"It was computed in {made['dtype']}, the command line computes in float32.")
@@ -156,7 +171,7 @@ def _usual_units(cube: Cube, frames: Frames) -> int:
 
 def _angles(cube: Cube) -> list[str] | None:
     """The option that gives exactly the cube's views, or None."""
-    views = cube.views
+    views = cube.rig.views
     angles = views.angles
     for offset in (1 / 2, 1 / 3):  # as `lightcube.optics.views.spread_angles` begins
         span = round(float(angles[0]) / offset * len(views), 6)
@@ -167,8 +182,8 @@ def _angles(cube: Cube) -> list[str] | None:
 
 def _same(cube: Cube, angles: NDArray[np.float64]) -> bool:
     """Whether views at these angles have the cube's lamps and screens, bit for bit."""
-    views = cube.views
-    made = turntable(cube.grid, angles, elevation=float(views.elevations[0]), picture_shape=views.picture_shape)
+    views = cube.rig.views
+    made = turntable(cube.grid, angles, elevation=float(views.elevations[0]), picture_shape=views.picture_shape).views
     names = ["lamps", "column_steps", "row_steps"] + ["origins"] * ("shift" not in cube.provenance)
     return all(np.array_equal(getattr(made, name), getattr(views, name)) for name in names)
 

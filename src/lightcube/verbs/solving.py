@@ -26,7 +26,7 @@ def settled(options: Options) -> Options:
         options = _as_in_the_paper(options)
     if max(options.lamp_samples, options.pixel_samples) > 1:
         raise InputError("--lamp-samples and --pixel-samples are for a stage: describe lamp and screen in a stage file")
-    _ = options.recipe  # refuses what cannot be
+    _ = options.lamp  # refuses what cannot be
     return options
 
 
@@ -67,6 +67,7 @@ def prepare(path: str, options: Options) -> Plan:
         angles=options.angles,
         span=options.span,
         elevation=options.elevation,
+        **options.lamp,
         fit=options.fit,
         longest_hold=options.hold is None and recipe.chooses_powers,
         shift=options.shift,

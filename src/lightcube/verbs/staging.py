@@ -9,7 +9,7 @@ from lightcube.backward.job import Job
 from lightcube.backward.needs import job_memory
 from lightcube.backward.solving import make_job
 from lightcube.errors import InputError
-from lightcube.optics.rig import Lighting
+from lightcube.optics.rig import Rig
 from lightcube.optics.stage import Stage
 from lightcube.pictures.frames import Frames
 from lightcube.planning.placement import doubtful, facts, impossible
@@ -20,7 +20,7 @@ from lightcube.verbs.solving import check_memory, too_much
 #: Options that a stage file leaves no room for.
 _SAID = (
     *("n", "shape", "size_mm", "frame_width", "fit", "angles", "span", "elevation", "paper", "order", "shift"),
-    *("lamp_power", "lamp_max"),
+    *("lamp_power", "lamp_max", "black"),
 )
 
 
@@ -59,16 +59,17 @@ def in_short(stage: Stage, frames: Frames) -> list[str]:
         "stop": len(stage.stops),
     }
     said = ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items())
-    views = f", {len(frames.views)} views" if len(frames.views) != len(frames) else ""
+    count = len(frames.rig.views)
+    views = f", {count} views" if count != len(frames) else ""
     first = f"{said}{views}; cube of {nx} x {ny} x {nz} voxels"
-    return [first, *doubtful(stage), *sentences(frames), *unsampled(frames.lighting)]
+    return [first, *doubtful(stage), *sentences(frames), *unsampled(frames.rig)]
 
 
-def unsampled(lighting: Lighting | None) -> list[str]:
+def unsampled(rig: Rig) -> list[str]:
     """A sentence where lamps have a size that is not minded."""
-    if lighting is None or not np.any(lighting.disc_deg):
+    if not np.any(rig.sums.disc_deg):
         return []
-    names = dict.fromkeys(lighting.lamp_names[lamp] for lamp in lighting.lamp[lighting.disc_deg > 0])
+    names = dict.fromkeys(rig.lamps.names[lamp] for lamp in rig.sums.lamp[rig.sums.disc_deg > 0])
     return [f"the size of lamp {', '.join(map(repr, names))} is not minded: --lamp-samples 16 does"]
 
 

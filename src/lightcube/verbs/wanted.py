@@ -7,7 +7,7 @@ import numpy as np
 from lightcube import io
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
-from lightcube.pictures.fitting import check_fit, fit_to_views
+from lightcube.pictures.fitting import check_fit, fit
 from lightcube.pictures.frames import Frames
 
 
@@ -15,31 +15,28 @@ def _of_stage(path: str, cube: Cube) -> Frames:
     """The pictures of a stage file, as wanted of a cube that was made on it; `InputError` where it was on another."""
     made = {name: int(cube.provenance.get(name, 1)) for name in ("lamp_samples", "pixel_samples")}
     _, frames = io.read_stage_frames(path, transfer=cube.transfer, **made)
-    same = (
-        cube.lighting is not None
-        and frames.lighting is not None
-        and frames.views.picture_shape == (cube.views.picture_shape)
-    )
-    if not (same and len(frames.views) == len(cube.views) and np.allclose(frames.views.lamps, cube.views.lamps)):
+    rig = frames.rig
+    same = rig.picture_shape == cube.rig.picture_shape and len(rig.views) == len(cube.rig.views)
+    if not (same and np.allclose(rig.views.lamps, cube.rig.views.lamps)):
         raise InputError(f"the cube was not made on the stage {path}: give the one it was made on")
-    return replace(frames, views=cube.views, lighting=cube.lighting)
+    return replace(frames, rig=cube.rig)
 
 
 def refitted(cube: Cube, frames: str) -> Frames:
     """Pictures as `solve` fitted them to the cube, in its order; `InputError` where they cannot be those it is for."""
     if io.is_stage(frames):
         return _of_stage(frames, cube)
-    if cube.lighting is not None:
+    if not np.all(cube.rig.screens.endless):
         raise InputError(f"the cube was made on a stage: give its file instead of {frames}, or nothing")
     pictures = io.read_pictures(frames, transfer=cube.transfer)
     order = cube.provenance.get("order", range(len(pictures)))
     if len(order) == len(pictures):
         images, names = (tuple(each[picture] for picture in order) for each in (pictures.images, pictures.names))
         pictures = replace(pictures, images=images, names=names)
-    if pictures.angles is not None and len(pictures) == len(cube.views):
-        apart = np.abs(np.remainder(pictures.angles - cube.views.angles + 180, 360) - 180)
+    if pictures.angles is not None and len(pictures) == len(cube.rig):
+        apart = np.abs(np.remainder(pictures.angles - cube.angles + 180, 360) - 180)
         if np.max(apart) > 1e-6:
             raise InputError(
                 f"{frames} says other angles than the cube was made for: give the pictures it was made from"
             )
-    return fit_to_views(pictures, cube.views, check_fit(cube.provenance.get("fit", "crop")))
+    return fit(pictures, cube.rig, check_fit(cube.provenance.get("fit", "crop")))

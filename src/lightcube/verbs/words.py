@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from lightcube.backward.recipe import LAMP_MOST, Recipe
-from lightcube.optics.views import held
+from lightcube.backward.problem import held
+from lightcube.optics.rig import POWER_MOST
 from lightcube.pictures.fitting import fit_report
 from lightcube.pictures.frames import Frames
 from lightcube.planning.consistency import advice, check
@@ -37,12 +37,12 @@ def table(facts: dict[str, Any]) -> list[str]:
 
 def facts(planned: Plan, order: Order | None) -> dict[str, Any]:
     """What can be known before solving, for JSON; `order` is the best one, if it was looked for."""
-    found = check(planned.frames, planned.grid, planned.recipe.lamp_bounds[1])
+    found = check(planned.frames, planned.grid)
     return {
         "names": list(planned.frames.names),
-        "angles": [float(angle) for angle in planned.frames.views.angles],
+        "angles": [float(angle) for angle in planned.frames.angles],
         "voxels": list(planned.grid.shape),
-        "frame_width": planned.frames.views.picture_shape[1] / planned.grid.shape[1],
+        "frame_width": planned.frames.rig.picture_shape[1] / planned.grid.shape[1],
         "hold": planned.recipe.hold_deg,
         **found,
         "predicted": as_json(planned.prediction),
@@ -63,7 +63,7 @@ def in_short(planned: Plan, order: Order | None) -> list[str]:
         + " by method display" * (planned.recipe.method != "display"),
     ]
     if hold:
-        angles = len(held(planned.frames.views, hold, planned.grid)) // len(planned.frames)
+        angles = len(held(planned.frames.rig, planned.recipe, planned.grid)) // len(planned.frames)
         lines.append(f"held {hold:g} degrees either way: {angles} angles a picture, and as many times the work")
     return lines + gain(planned, order)
 
@@ -87,7 +87,7 @@ def gain(planned: Plan, order: Order | None) -> list[str]:
 
 def what_to_change(planned: Plan) -> list[str]:
     """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much."""
-    found = advice(check(planned.frames, planned.grid, planned.recipe.lamp_bounds[1]))
+    found = advice(check(planned.frames, planned.grid))
     if planned.prediction.psnr_mean >= POOR_DB:
         return [sentence for sentence in found if not sentence.startswith("The load")]
     return [*found, *_remedies(planned)]
@@ -95,20 +95,22 @@ def what_to_change(planned: Plan) -> list[str]:
 
 def _remedies(planned: Plan) -> list[str]:
     """What three changes would bring, predicted."""
-    recipe, power = planned.recipe, planned.recipe.lamp_bounds[1]
-    now = planned.frames.views.picture_shape[1] / planned.grid.shape[1]
+    rig, lamps = planned.frames.rig, planned.frames.rig.lamps
+    power = float(lamps.most.max())
+    now = planned.frames.rig.picture_shape[1] / planned.grid.shape[1]
     tried: list[str] = []
 
-    def tell(change: str, frames: Frames, recipe: Recipe) -> None:
-        tried.append(f"{change}: {predict(frames, planned.grid, recipe).psnr_mean:.0f} dB")
+    def tell(change: str, frames: Frames) -> None:
+        tried.append(f"{change}: {predict(frames, planned.grid, planned.recipe).psnr_mean:.0f} dB")
 
     every_second = np.arange(0, len(planned.frames), 2)
     if len(every_second) > 1:
-        tell(f"{len(every_second)} of the pictures", planned.frames.take(every_second), recipe)
-    tell(f"--frame-width {0.7 * now:.2g}", narrower(planned, 0.7 * now), recipe)
-    most = min(16 * power, LAMP_MOST)
-    if not recipe.is_lamp_fixed and most > power:
-        tell(f"--lamp-max {most:g}", planned.frames, replace(recipe, lamp_max=most))
+        tell(f"{len(every_second)} of the pictures", planned.frames.take(every_second))
+    tell(f"--frame-width {0.7 * now:.2g}", narrower(planned, 0.7 * now))
+    most = min(16 * power, POWER_MOST)
+    if not lamps.are_fixed and most > power:
+        stronger = replace(rig, lamps=replace(lamps, most=np.full(len(lamps.names), most)))
+        tell(f"--lamp-max {most:g}", replace(planned.frames, rig=stronger))
     return [f"Hardly recognisable pictures are expected; what would come of {'; of '.join(tried)}."] if tried else []
 
 

@@ -1,4 +1,4 @@
-"""What a page is told of a cube: one description for turntables and stages, in plain JSON."""
+"""What a page is told of a cube, in plain JSON."""
 
 import base64
 import gzip
@@ -11,10 +11,9 @@ import numpy as np
 from PIL import Image
 
 from lightcube.drawing.room import camera_for
-from lightcube.drawing.standing import as_stage
+from lightcube.drawing.standing import carries_cube, drawn
 from lightcube.optics.cube import Cube
-from lightcube.optics.grid import raster_shape
-from lightcube.optics.rig import Lighting
+from lightcube.optics.rig import Rig
 from lightcube.scoring import metrics
 from lightcube.viewer.packing import Packed, lost
 
@@ -38,16 +37,10 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
         What the page holds of it, or of a `smaller` one.
     title
         For people.
-
-    Raises
-    ------
-    InputError
-        Where the lamps of a turntable stand at several elevations.
     """
-    staged = as_stage(packed.cube)
-    lighting = staged.lighting
-    assert lighting is not None  # noqa: S101 - a stage's
-    camera = camera_for(staged, _WIDE)
+    shown = drawn(packed.cube)
+    rig = shown.rig
+    camera = camera_for(packed.cube, _WIDE)
     same = packed.cube.grid.shape == cube.grid.shape
     worst, mean = packed.lost if same else lost(cube, packed.cube)
     wanted = _wanted(cube)
@@ -65,23 +58,23 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
         "kept": {"full": cube.grid.shape, "worst_levels": worst, "rms_levels": mean},
         "transfer": cube.transfer,
         "hold": cube.hold_deg,
-        "axis": lighting.axis.tolist(),
-        "turns": bool(np.any(lighting.turning) or len(np.unique(lighting.angle)) > 1),
-        "carried": bool(np.any(lighting.turning & (lighting.way < 0))),
-        "raster": staged.views.picture_shape,
+        "axis": rig.turning.axis.tolist(),
+        "turns": bool(np.any(rig.turning.turns) or len(np.unique(rig.stops.angle)) > 1),
+        "carried": carries_cube(rig),
+        "raster": rig.picture_shape,
         "whole": _whole(packed.cube),
-        "screens": lighting.screen_names,
-        "lamps": lighting.lamp_names,
+        "screens": rig.screens.names,
+        "lamps": rig.lamps.names,
         "camera": {
             "eye": [float(each) for each in camera.eye],
             "target": [float(each) for each in camera.target],
             "field": camera.field_deg,
         },
-        "pictures": _pictures(cube if same else packed.cube, staged.names, lighting, bool(wanted)),
-        "views": _views(staged, lighting),
+        "pictures": _pictures(cube if same else packed.cube, shown.names, rig, bool(wanted)),
+        "views": _views(rig, len(packed.codes)),
         "pairs": [
             {"picture": int(picture), "lamp": int(lamp), "power": power.tolist()}
-            for (picture, lamp), power in zip(lighting.pairs, staged.powers, strict=True)
+            for (picture, lamp), power in zip(rig.pairs, shown.powers, strict=True)
         ],
         "wanted": wanted,
     }
@@ -93,13 +86,11 @@ def zipped(description: dict[str, Any]) -> bytes:
 
 
 def _whole(cube: Cube) -> tuple[int, int] | None:
-    """Rows and columns of the whole shadow; None on a stage, whose screens are whole anyway."""
-    if cube.lighting is not None:
-        return None
-    return raster_shape(cube.grid, float(cube.views.elevations[0]))
+    """Rows and columns of the whole shadow; None where screens have edges and are shown whole anyway."""
+    return cube.rig.whole(cube.grid).picture_shape if np.all(cube.rig.screens.endless) else None
 
 
-def _pictures(cube: Cube, names: tuple[str, ...], lighting: Lighting, wanted: bool) -> list[dict[str, Any]]:
+def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> list[dict[str, Any]]:
     """One for each stop and screen; those after the cube's own are their mirror images."""
     own = len(cube.names)
     scores = cube.scores.get("views", [])
@@ -108,9 +99,9 @@ def _pictures(cube: Cube, names: tuple[str, ...], lighting: Lighting, wanted: bo
     return [
         {
             "name": name,
-            "angle": float(lighting.angle[i]),
-            "screen": int(lighting.screen[i]),
-            "window": lighting.window[i].tolist(),
+            "angle": float(rig.stops.angle[i]),
+            "screen": int(rig.stops.screen[i]),
+            "window": rig.stops.window[i].tolist(),
             "wanted": i % own if wanted else None,
             "mirrored": i >= own,
             "psnr": scores[i % own]["psnr"],
@@ -119,23 +110,23 @@ def _pictures(cube: Cube, names: tuple[str, ...], lighting: Lighting, wanted: bo
     ]
 
 
-def _views(cube: Cube, lighting: Lighting) -> list[dict[str, Any]]:
-    views = cube.views
+def _views(rig: Rig, channels: int) -> list[dict[str, Any]]:
+    views = rig.views
     columns = {
-        "picture": lighting.picture,
-        "lamp": lighting.lamp,
-        "pair": lighting.pair,
+        "picture": rig.sums.picture,
+        "lamp": rig.sums.lamp,
+        "pair": rig.pair,
         "light": views.lamps,
         "origin": views.origins,
         "right": views.column_steps,
         "down": views.row_steps,
-        "share": lighting.share,
-        "reach": lighting.reach_mm,
-        "falloff": lighting.falloff_mm,
-        "full_at": lighting.full_at_mm,
-        "cosine": lighting.cosine,
-        "turning": lighting.turning,
-        "way": lighting.way,
+        "share": rig.sums.of_colours(channels),
+        "reach": rig.fading.reach_mm,
+        "falloff": rig.fading.falloff_mm,
+        "full_at": rig.fading.full_at_mm,
+        "cosine": rig.fading.cosine,
+        "turning": rig.turning.turns,
+        "way": rig.turning.way,
     }
     return [{name: _plain(column[view].tolist()) for name, column in columns.items()} for view in range(len(views))]
 
@@ -149,8 +140,7 @@ def _plain(value: Any) -> Any:
 def _wanted(cube: Cube) -> list[str]:
     """The wanted pictures as data URIs, clear where nothing is wanted: exact ones, or where these are large, WebP."""
     images = []
-    whole = np.tile(cube.views.picture_shape, (len(cube.names), 1))
-    windows = whole if cube.lighting is None else cube.lighting.window
+    windows = cube.rig.stops.window
     for levels, (rows, columns) in zip([] if cube.targets is None else cube.targets, windows, strict=False):
         picture = levels[:rows, :columns]
         colours = np.broadcast_to(picture[..., :-1], (*picture.shape[:2], 3))

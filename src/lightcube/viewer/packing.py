@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
-from lightcube.forward.turning import exposures_at, lamp_at, views_at
+from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import encode
 from lightcube.viewer.smaller import shown_coarsely
@@ -108,7 +108,7 @@ def lost(cube: Cube, kept: Cube) -> tuple[float, float]:
         angles = np.sort(np.concatenate([stops, stops + np.diff(stops, append=stops[0] + 360) / 2]))
         pairs = zip(_shadows(cube, angles), _shadows(kept, angles), strict=True)
     else:
-        shown = cast(kept, kept.views, kept.powers, kept.lighting)
+        shown = cast(kept)
         pairs = zip(shown_coarsely(cube, kept), shown, strict=True)
     worst, squares, count = 0.0, 0.0, 0
     for pair in pairs:
@@ -120,7 +120,4 @@ def lost(cube: Cube, kept: Cube) -> tuple[float, float]:
 
 
 def _shadows(cube: Cube, angles: NDArray[np.float64]) -> Iterator[NDArray[np.float32]]:
-    if cube.lighting is None:
-        return cast(cube, views_at(cube, angles), lamp_at(cube, angles))
-    views, lighting, powers = exposures_at(cube, angles)
-    return cast(cube, views, powers, lighting)
+    return cast(cube, *moment(cube, angles))

@@ -53,6 +53,4 @@ def shown_coarsely(cube: Cube, small: Cube) -> NDArray[np.float32]:
 
 def _cast(cube: Cube) -> Frames:
     """The pictures that a cube casts at its stops."""
-    pictures = np.stack(list(cast(cube, cube.views, cube.powers, cube.lighting)))
-    inside = None if cube.lighting is None else cube.lighting.inside(cube.views.picture_shape).astype(np.float32)
-    return Frames(pictures, cube.views, inside, cube.names, cube.transfer, cube.lighting)
+    return Frames(np.stack(list(cast(cube))), cube.rig, None, cube.names, cube.transfer)

@@ -1,0 +1,144 @@
+"""A rig as plain JSON, in cubes and in what is kept of an unfinished one."""
+
+import math
+from dataclasses import fields
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from lightcube.errors import InputError
+from lightcube.optics.rig import Fading, Lamps, Rig, Screens, Stops, Sums, Turning
+from lightcube.optics.views import Views
+
+_Number = Annotated[float, Field(allow_inf_nan=False)]
+_Pair = Annotated[list[_Number | None], Field(min_length=2, max_length=2)]
+_Three = Annotated[list[_Number], Field(min_length=3, max_length=3)]
+_Count = Annotated[int, Field(ge=0)]
+_STRICT = ConfigDict(extra="forbid", strict=True)
+
+
+class _ViewsJson(BaseModel):
+    """`lightcube.optics.views.Views`, one list per view."""
+
+    model_config = _STRICT
+
+    lamps: list[Annotated[list[_Number], Field(min_length=4, max_length=4)]]
+    origins: list[_Three]
+    column_steps: list[_Three]
+    row_steps: list[_Three]
+    picture_shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=2, max_length=2)]
+
+
+class _SumsJson(BaseModel):
+    model_config = _STRICT
+
+    picture: list[_Count]
+    lamp: list[_Count]
+    share: list[list[Annotated[_Number, Field(ge=0)]]]
+    disc_deg: list[_Number]
+
+
+class _FadingJson(BaseModel):
+    model_config = _STRICT
+
+    reach_mm: list[_Pair]
+    falloff_mm: list[_Pair]
+    full_at_mm: list[_Number | None]
+    cosine: list[bool]
+
+
+class _TurningJson(BaseModel):
+    model_config = _STRICT
+
+    turns: list[Annotated[list[bool], Field(min_length=2, max_length=2)]]
+    way: list[_Pair]
+    axis: _Three
+
+
+class _StopsJson(BaseModel):
+    model_config = _STRICT
+
+    angle: list[_Number]
+    screen: list[_Count]
+    window: list[Annotated[list[_Count], Field(min_length=2, max_length=2)]]
+
+
+class _LampsJson(BaseModel):
+    model_config = _STRICT
+
+    names: list[str]
+    least: list[_Number]
+    most: list[_Number]
+
+
+class _ScreensJson(BaseModel):
+    model_config = _STRICT
+
+    names: list[str]
+    black: list[_Number]
+    endless: list[bool]
+
+
+class RigJson(BaseModel):
+    """`lightcube.optics.rig.Rig`, one list per array; infinity, which JSON has not, is null."""
+
+    model_config = _STRICT
+
+    views: _ViewsJson
+    sums: _SumsJson
+    fading: _FadingJson
+    turning: _TurningJson
+    stops: _StopsJson
+    lamps: _LampsJson
+    screens: _ScreensJson
+
+    def rig(self) -> Rig:
+        """Return the same as arrays; `InputError` where they do not fit each other."""
+        said = {name: _infinite(part) for name, part in self.model_dump().items()}
+        views = said["views"]
+        made = Views(**{**views, "picture_shape": tuple(views["picture_shape"])})
+        _check_light(made)
+        return Rig(
+            made,
+            Sums(**said["sums"]),
+            Fading(**said["fading"]),
+            Turning(**said["turning"]),
+            Stops(**said["stops"]),
+            Lamps(**said["lamps"]),
+            Screens(**said["screens"]),
+        )
+
+
+def rig_to_json(rig: Rig) -> dict[str, Any]:
+    """`rig` as plain JSON values; every number comes back bit for bit."""
+    return {each.name: _plain(getattr(rig, each.name)) for each in fields(rig)}
+
+
+def _plain(part: Any) -> dict[str, Any]:
+    return {each.name: _finite(np.asarray(getattr(part, each.name)).tolist()) for each in fields(part)}
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and math.isinf(value) else value
+
+
+def _infinite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _infinite(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_infinite(item) for item in value]
+    return math.inf if value is None else value
+
+
+def _check_light(views: Views) -> None:
+    """Raise `InputError` where a lamp shines nowhere or a screen has no size."""
+    lamps = views.lamps
+    if not np.all(np.isin(lamps[:, 3], (0.0, 1.0))):
+        raise InputError("lamps: the fourth number of a lamp is 0 or 1")
+    if not np.all((lamps[:, 3] == 1) | np.any(lamps[:, :3] != 0, axis=1)):
+        raise InputError("lamps: a direction of light is zero")
+    if not np.all(np.any(np.cross(views.column_steps, views.row_steps) != 0, axis=1)):
+        raise InputError("column_steps: a screen's columns and rows run along one line")
