@@ -1,9 +1,4 @@
-"""The fast paths of the kernels against plain ones: any tiles, vectors that are not full, any number of threads."""
-
-import hashlib
-import os
-import subprocess
-import sys
+"""The fast paths of the kernels against plain ones: any tiles, vectors that are not full."""
 
 import numpy as np
 import pytest
@@ -13,7 +8,7 @@ from numba import njit
 
 from lightcube import layout
 from lightcube.geometry import Grid, turntable
-from lightcube.kernels import exponential, rows, threads
+from lightcube.kernels import exponential, rows
 from lightcube.kernels.projection import GROUP, TILE
 from lightcube.projector import Projector, dot_test
 from tests import plain
@@ -119,74 +114,3 @@ def test_products_begin_at_whole_cache_lines() -> None:
     for array in (b, matrix.adjoint(b), layout.copied(b[1:], np.float64)):
         assert array.ctypes.data % 64 == 0
         assert array.flags.c_contiguous
-
-
-_HASHES = """
-import hashlib, numba, numpy as np
-from lightcube.geometry import Grid, turntable
-from lightcube.projector import Projector
-from lightcube.solvers import METHODS
-grid = Grid((2, 19, 18))
-total = hashlib.sha256()
-for elevation, views in ((0.0, 1), (0.0, 9), (35.0, 4)):
-    matrix = Projector(grid, turntable(grid, np.arange(views) * 17.0 + 3, elevation=elevation))
-    columns = 6 if elevation == 0 else 3
-    x = np.random.default_rng(0).random((matrix.shape[1], columns), dtype=np.float32)
-    b = matrix.forward(x)
-    light = np.exp(-b).clip(1e-3)
-    bounds = (np.full((views, 3), 1e-3), np.full((views, 3), 4.0))
-    result = METHODS["display"](matrix, light, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=4)
-    for array in (b, matrix.adjoint(b), result.x, result.lamp_powers, result.residuals):
-        total.update(np.ascontiguousarray(array).tobytes())
-print(total.hexdigest())
-"""
-
-
-def test_results_are_the_same_for_any_number_of_threads() -> None:
-    """Seven threads on any machine: numba takes as many as it is told to."""
-    found = set()
-    for count in (1, 2, 7):
-        told = {**os.environ, "NUMBA_NUM_THREADS": str(count)}
-        run = subprocess.run([sys.executable, "-c", _HASHES], env=told, capture_output=True, text=True, check=True)
-        found.add(run.stdout)
-    assert len(found) == 1
-    assert len(found.pop().strip()) == len(hashlib.sha256().hexdigest())
-
-
-_AT_ONCE = """
-import concurrent.futures, numpy as np
-from lightcube import backward
-from lightcube.frames import Frames
-from lightcube.geometry import Grid, turntable
-
-def cube(number):
-    grid = Grid((2, 6, 7))
-    views = turntable(grid, [10.0, 70.0, 200.0], elevation=35.0, picture_shape=(2, 3))
-    pictures = np.random.default_rng(number).random((3, 2, 3, 3), dtype=np.float32)
-    return backward.solve(Frames(pictures, views), grid, iterations=20).cube.extinction
-
-alone = [cube(number) for number in range(4)]
-with concurrent.futures.ThreadPoolExecutor(4) as pool:
-    together = list(pool.map(cube, [*range(4)] * 3))
-print(all(np.array_equal(alone[index % 4], found) for index, found in enumerate(together)))
-"""
-
-
-def test_cubes_may_be_solved_at_the_same_time_in_one_process() -> None:
-    """Numba's simplest threading layer, the one that is always there, ends the program where two calls meet in it."""
-    told = {**os.environ, "NUMBA_THREADING_LAYER": "workqueue", "NUMBA_NUM_THREADS": "2"}
-    run = subprocess.run([sys.executable, "-c", _AT_ONCE], env=told, capture_output=True, text=True, check=False)
-    assert run.stdout == "True\n", run.stderr
-
-
-def test_ctrl_c_in_a_kernel_is_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In compiled code it comes out as a `SystemError` of a `SystemError` of it."""
-
-    def interrupted() -> None:
-        inner = SystemError("returned a result with an exception set")
-        inner.__cause__ = KeyboardInterrupt()
-        raise SystemError("returned a result with an exception set") from inner
-
-    monkeypatch.setattr(threads, "njit", lambda **options: lambda kernel: kernel)
-    with pytest.raises(KeyboardInterrupt):
-        threads.parallel(interrupted)()

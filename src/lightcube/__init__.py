@@ -3,6 +3,7 @@
 from lightcube.backward import solve
 from lightcube.conditioning import best_order
 from lightcube.consistency import check
+from lightcube.cores import threads
 from lightcube.cube import Cube
 from lightcube.errors import InputError
 from lightcube.fitting import fit, fit_to_stage
@@ -81,6 +82,7 @@ __all__ = [
     "show",
     "solve",
     "spread_angles",
+    "threads",
     "turntable",
     "views_at",
     "write_page",

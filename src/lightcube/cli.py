@@ -27,7 +27,7 @@ from lightcube import (
     solving,
     staging,
 )
-from lightcube.cli_options import FPS, FRAMES, JSON, OUT, OVERWRITE, Options, one_by_one
+from lightcube.cli_options import FPS, FRAMES, JSON, OUT, OVERWRITE, Options, one_by_one, threaded
 from lightcube.console import done, err, json_document, json_line, out, plain_warnings, prepare, progress
 from lightcube.errors import InputError
 from lightcube.fitting import frames_from_targets
@@ -48,6 +48,7 @@ app = typer.Typer(
 
 
 @app.command()
+@threaded
 def trace(
     scene: Annotated[
         str, typer.Argument(help="A scene file (TOML), or the name of a scene that comes with lightcube.")
@@ -80,6 +81,7 @@ def trace(
 
 
 @app.command()
+@threaded
 @one_by_one
 def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
     """Say before solving what can be known: what contradicts itself, how full the cube is, how good it will be."""
@@ -99,6 +101,7 @@ def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = Fal
 
 
 @app.command()
+@threaded
 @one_by_one
 def solve(
     frames: FRAMES,
@@ -162,6 +165,7 @@ def solve(
 
 
 @app.command()
+@threaded
 def merge(
     partial: Annotated[str, typer.Argument(help="The unfinished cube, NAME.zarr.partial, with all its units.")],
     overwrite: Annotated[bool, OVERWRITE] = False,
@@ -180,12 +184,12 @@ def merge(
     _finish(job, store, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
 
 
-app.command()(cli_play.play)
-app.command()(cli_view.view)
-app.command()(cli_report.report)
+for _command in (cli_play.play, cli_view.view, cli_report.report):
+    app.command()(threaded(_command))
 
 
 @app.command()
+@threaded
 def score(
     cube: Annotated[str, typer.Argument(help="A cube.")],
     frames: Annotated[
@@ -256,6 +260,7 @@ def publish(
 
 
 @app.command()
+@threaded
 def bench(
     n: Annotated[int, typer.Option("--n", min=2, max=2000, help="Voxels along each side of the cube.")] = 300,
     views: Annotated[
@@ -281,6 +286,7 @@ app.add_typer(cli_stage.app, name="stage")
 
 
 @app.command("demo")
+@threaded
 def demo_command(
     output: Annotated[Path, typer.Option("-o", "--out", help="Folder for what the demo makes.")] = Path("out"),
     paper: Annotated[bool, typer.Option("--paper", help="Redo the paper: a 3x3x3 cube, there and back.")] = False,

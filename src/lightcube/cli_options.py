@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 import typer
 
-from lightcube import backward
+from lightcube import arguments, backward, cores
 from lightcube.fitting import Fit
 from lightcube.problem import BLACK, Lamp
 from lightcube.transfer import Transfer
@@ -24,6 +24,10 @@ JSON = typer.Option("--json", help="Print JSON for machines.")
 LAMP_SAMPLES = typer.Option(help="Points at which a stage's lamps of a size are sampled, for soft shadows.", min=1)
 PIXEL_SAMPLES = typer.Option(help="Points along a side that a stage's pixels are averaged over.", min=1)
 FPS = typer.Option("--fps", help="Pictures per second of a movie.")
+THREADS = Annotated[
+    str | None,
+    typer.Option(help="Compute with so many threads; results are the same.  [default: the cores that are free]"),
+]
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,21 @@ class Options:
             "max_extinction": most,
             "black": BLACK if self.black is None else self.black,
         }
+
+
+def threaded(command: Callable[..., None]) -> Callable[..., None]:
+    """Let the command line say with how many threads a command computes."""
+
+    @wraps(command)
+    def told(*, threads: str | None, **given: Any) -> None:
+        cores.threads(None if threads is None else arguments.threads(threads))
+        command(**given)
+
+    signature, by_name = inspect.signature(command), inspect.Parameter.KEYWORD_ONLY
+    parameters = [parameter.replace(kind=by_name) for parameter in signature.parameters.values()]
+    said = inspect.Parameter("threads", by_name, default=None, annotation=THREADS)
+    told.__signature__ = signature.replace(parameters=[*parameters, said])  # type: ignore[attr-defined]
+    return told
 
 
 def one_by_one(command: Callable[..., None]) -> Callable[..., None]:

@@ -17,12 +17,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-import numba
-
 from lightcube.console import ctrl_c, err, progress
 from lightcube.errors import InputError
 from lightcube.io import DiskStore, load_job
 from lightcube.job import Job, shares
+from lightcube.kernels import tasks
 from lightcube.pieces import Step, solve_piece
 
 if TYPE_CHECKING:
@@ -129,7 +128,7 @@ def solve_there(place: str, name: str, written_by: str, topic: str, after: objec
     with _TURN:
         if _is_unwanted(worker, key):
             return
-        numba.set_num_threads(min(worker.state.nthreads, numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
+        tasks.set_threads(min(worker.state.nthreads, tasks.default()))
         try:
             if version("lightcube") != written_by:
                 raise InputError(f"lightcube is {version('lightcube')} there, and {written_by} here")

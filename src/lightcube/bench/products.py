@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.bench.clock import seconds, threads
+from lightcube.bench.clock import seconds
 from lightcube.geometry import Grid, spread_angles, turntable
-from lightcube.kernels import projection
+from lightcube.kernels import projection, tasks
 from lightcube.projector import Projector
 from lightcube.stacked import StackedBeams
 
@@ -32,7 +32,7 @@ def product(matrix: Projector, count: int, ceiling: float, repeats: int) -> dict
     """Time `forward` and `adjoint` with `count` threads; `ceiling` is the rate that shares are of."""
     x = np.random.default_rng(0).random((matrix.shape[1], columns_of(matrix)), dtype=np.float32)
     products = multiply_adds(matrix)
-    with threads(count):
+    with tasks.using(count):
         b = matrix.forward(x)
         there = seconds(lambda: matrix.forward(x), repeats)
         matrix.adjoint(b)
