@@ -24,7 +24,7 @@ def step(
     and ``stride`` one number per column; unknowns with a step of 0 stay where they are.
     """
     sums = np.zeros((_PARTS, x.shape[1]))
-    tasks.run(_step, _PARTS, x.size, x, before, ahead, slopes, steps, stride, lower, upper, sums)
+    tasks.run(_step, _PARTS, 2 * x.size, x, before, ahead, slopes, steps, stride, lower, upper, sums)
     return added(sums)
 
 
@@ -69,10 +69,10 @@ def expect(x: Array, share: float, out: Array) -> None:
     Where all of a column is 0, it is 1.
     """
     sums = np.zeros((_PARTS, x.shape[1]))
-    tasks.run(_add, _PARTS, x.size // 2, x, sums)
+    tasks.run(_add, _PARTS, x.size, x, sums)
     more = (share * added(sums) / len(x)).astype(x.dtype)
     more[more == 0] = 1
-    tasks.run(_expect, len(x), x.size // 2, x, more, out)
+    tasks.run(_expect, len(x), x.size, x, more, out)
 
 
 @compiled
@@ -93,7 +93,7 @@ def _expect(first: int, last: int, x: Array, more: Array, out: Array) -> None:
 
 def divide(numerators: Array, denominators: Array) -> None:
     """Replace positive `denominators` by the quotients, all others by 0."""
-    tasks.run(_divide, len(numerators), numerators.size // 2, numerators, denominators)
+    tasks.run(_divide, len(numerators), numerators.size, numerators, denominators)
 
 
 @compiled

@@ -124,7 +124,7 @@ def _run(kernel: Any, mixture: Mixture, shape: tuple[int, ...], columns: int, *a
     """Run a loop whose tasks are the parts of all pictures; `shape` is ``(pictures, entries)``."""
     pictures, entries = shape
     parts = _runs(mixture, entries, columns)[2]
-    tasks.run(kernel, pictures * parts, 6 * len(mixture.light) * entries, *arguments)
+    tasks.run(kernel, pictures * parts, 8 * len(mixture.light) * entries, *arguments)
 
 
 def shine(mixture: Mixture, absorbance: Array, columns: int, logs: Array) -> None:

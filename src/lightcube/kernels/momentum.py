@@ -12,7 +12,7 @@ Array = NDArray[Any]
 
 def run_ahead(last: Array, now: Array, ahead: Array) -> None:
     """Replace `last` by ``now + ahead (now - last)``, with one number of `ahead` per column."""
-    tasks.run(_run_ahead, len(now), now.size // 2, last, now, ahead)
+    tasks.run(_run_ahead, len(now), now.size, last, now, ahead)
 
 
 @compiled

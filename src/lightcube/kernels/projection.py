@@ -128,7 +128,7 @@ def forward(
 
 def _work(beams: Array, width: int, nx: int, ny: int, columns: int) -> int:
     """Nanoseconds that a product takes, roughly: the pieces of all beams, traced once and added up in vectors."""
-    return len(beams) * width * (nx + ny) * (4 + columns // LANES)
+    return len(beams) * width * (nx + ny) * (8 + 2 * columns // LANES)
 
 
 @compiled

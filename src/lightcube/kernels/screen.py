@@ -57,10 +57,11 @@ def _next_run(lamp: Array, view_of_row: Array, weights: Array, row: int, last: i
 
 
 @compiled
-def _descend_run(bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve, slopes: Array) -> None:
+def _descend_run(bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve) -> None:
+    """Write the slopes over `bright`: where they go may be `absorbance`, which would make these no vectors."""
     for i in range(len(absorbance)):
         value, slope = residual(bright[i] - absorbance[i], wanted[i], curve)
-        slopes[i] = -weights[i] * value * slope
+        bright[i] = -weights[i] * value * slope
 
 
 def descend(
@@ -71,7 +72,7 @@ def descend(
     The objective is half the weighted sum of squared residuals.
     """
     data = absorbance, lamp, view_of_row, wanted, weights, curve, slopes
-    tasks.run(_descend, _PARTS, 2 * absorbance.size, *data)
+    tasks.run(_descend, _PARTS, 3 * absorbance.size, *data)
 
 
 @compiled
@@ -95,7 +96,8 @@ def _descend(
         while row < last:
             end = _next_run(lamp, view_of_row, weights, row, last, bright, heavy)
             here = slice(row * columns, end * columns)
-            _descend_run(bright, now[here], aim[here], heavy, curve, out[here])
+            _descend_run(bright, now[here], aim[here], heavy, curve)
+            out[here] = bright[: (end - row) * columns]
             row = end
 
 
@@ -119,8 +121,11 @@ def arrive(
     rows, columns = now.shape
     room = _PARTS, _run(rows // _PARTS + 1, columns) * columns
     sums, least = np.zeros(room), np.full(room, np.inf, now.dtype)
-    tasks.run(_arrive, _PARTS, 2 * now.size, last, now, lamp, view_of_row, wanted, weights, curve, sums, least)
-    return _of_columns(sums, least, columns)
+    tasks.run(_arrive, _PARTS, 4 * now.size, last, now, lamp, view_of_row, wanted, weights, curve, sums, least)
+    total, lowest = np.zeros(columns), np.full(columns, np.inf)
+    data = sums.reshape(-1, columns), least.reshape(-1, columns), total, lowest
+    tasks.run(_of_columns, columns, sums.size, *data)
+    return 0.5 * total, lowest
 
 
 @compiled
@@ -151,13 +156,12 @@ def _arrive(
 
 
 @compiled
-def _of_columns(sums: Array, least: Array, columns: int) -> tuple[Array, Array]:
-    """Half of the sum, and the least, of what all parts have found for each column."""
-    total = 0.5 * sums.reshape(-1, columns).sum(axis=0)
-    lowest = least.reshape(-1, columns)[0].astype(np.float64)
-    for line in least.reshape(-1, columns):
-        lowest = np.minimum(lowest, line)
-    return total, lowest
+def _of_columns(first: int, last: int, sums: Array, least: Array, total: Array, lowest: Array) -> None:
+    """Write the sum of all lines, in their order, and the least number for each column."""
+    for line in range(len(sums)):
+        for column in range(first, last):
+            total[column] += sums[line, column]
+            lowest[column] = min(lowest[column], least[line, column])
 
 
 @compiled
@@ -182,7 +186,7 @@ def curvatures(
 ) -> None:
     """Multiply `values` by the weighted `curvature` that holds while ln light rises by no more than `room`."""
     data = absorbance, lamp, view_of_row, wanted, weights, curve, room, values
-    tasks.run(_curvatures, _PARTS, 2 * absorbance.size, *data)
+    tasks.run(_curvatures, _PARTS, 3 * absorbance.size, *data)
 
 
 @compiled
@@ -241,8 +245,11 @@ def _pulls(
         here = slice(row * columns, (row + end - k) * columns)
         _pull_run(bright, now[here], aim[here], heavy, curve, slopes, bends)
         k = end
-    sums[0] = slopes.reshape(-1, len(lamp)).sum(axis=0)
-    sums[1] = bends.reshape(-1, len(lamp)).sum(axis=0)
+    sums[:] = 0
+    for i in range(len(slopes) // len(lamp)):
+        for channel in range(len(lamp)):
+            sums[0, channel] += slopes[i * len(lamp) + channel]
+            sums[1, channel] += bends[i * len(lamp) + channel]
 
 
 def fit_lamp(
@@ -262,7 +269,7 @@ def fit_lamp(
     kept inside a shrinking bracket by bisection; it ends with a step so small that its square no longer counts.
     """
     data = absorbance, rows, starts, wanted, weights, curve, low, high, lamp
-    tasks.run(_fit_lamp, len(lamp), 6 * absorbance.size, *data)
+    tasks.run(_fit_lamp, len(lamp), 10 * absorbance.size, *data)
 
 
 @compiled

@@ -18,7 +18,7 @@ from numba import config
 from lightcube.kernels.compiled import say_what_is_forgotten
 
 #: Steps of work, about a nanosecond each, that a part of a loop has at least: it is worth waking a thread for.
-LEAST_WORK = 100_000
+LEAST_WORK = 50_000
 #: Parts of a loop for each thread at most: what is left of one when the others have ended is short, and so is the time
 #: that Ctrl-C takes.
 _PARTS = 64
