@@ -1,6 +1,6 @@
 # make demo   set everything up and run the demonstration, into out/
 # make test   set everything up and run the tests, compiled and interpreted
-#             (one thread for each of the processes that run side by side; tests of threads start their own)
+#             (one thread for each of the processes that run side by side; tests of threads take more)
 # make check  lint, format and types
 # Use another Python with: make demo PYTHON=python3.12
 

@@ -19,7 +19,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -248,7 +247,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--picture", type=Path, default=Path("out/peers.png"))
     asked = parser.parse_args(arguments)
-    numba.set_num_threads(1)
+    lc.threads(1)
     draw(compare(slice_of(asked.n, asked.views), sorted(asked.passes), asked.repeats), asked.picture)
 
 

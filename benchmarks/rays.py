@@ -11,17 +11,21 @@ near.
 import argparse
 import time
 from collections.abc import Callable, Iterator
+from typing import Any
 
-import numba
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
+from lightcube.kernels import tasks
+from lightcube.kernels.compiled import compiled
 from lightcube.kernels.ray import most_pieces
 from lightcube.kernels.rays import _trace_rows
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views
 from lightcube.projection.rays import Rays
+
+#: Work that is worth all threads, however little it is.
+_LONG = 1 << 40
 
 
 def views(n: int, count: int, pixels: int, *, point: bool) -> Views:
@@ -43,12 +47,17 @@ def views(n: int, count: int, pixels: int, *, point: bool) -> Views:
     return Views(np.array(lamps), np.array(origins), np.array(right), np.array(down), (pixels, pixels))
 
 
-@njit(parallel=True)
-def traversal(lamps, screens, shape, heard, grid):  # type: ignore[no-untyped-def]
+def traversal(*data: Any) -> int:
     """Number of all pieces, found by tracing them."""
+    found = np.zeros(len(data[0]) * data[2][0], np.int64)
+    tasks.run(_traversal, len(found), _LONG, *data, found)
+    return int(found.sum())
+
+
+@compiled
+def _traversal(first_line, last_line, lamps, screens, shape, heard, grid, found):  # type: ignore[no-untyped-def]
     nz, ny, nx = grid
-    found = np.zeros(len(lamps) * shape[0], np.int64)
-    for line in prange(len(found)):
+    for line in range(first_line, last_line):
         places = np.empty((2, most_pieces(nx, ny, nz)), np.int64)
         weights = np.empty(places.shape, np.float32)
         for row in range(0, shape[1], 2):
@@ -67,14 +76,12 @@ def traversal(lamps, screens, shape, heard, grid):  # type: ignore[no-untyped-de
                 weights,
             )
             found[line] += first + second
-    return found.sum()
 
 
-@njit(parallel=True)
-def from_l2(x, places, weights, times):  # type: ignore[no-untyped-def]
+@compiled
+def from_l2(first, last, x, places, weights, times, sums):  # type: ignore[no-untyped-def]
     """Weighted sums of rows of three, again and again."""
-    sums = np.zeros((64, 3))
-    for part in prange(64):
+    for part in range(first, last):
         red = green = blue = np.float32(0)
         for _ in range(times):
             for k in range(len(places)):
@@ -82,7 +89,6 @@ def from_l2(x, places, weights, times):  # type: ignore[no-untyped-def]
                 green += weights[k] * x[places[k], 1]
                 blue += weights[k] * x[places[k], 2]
         sums[part] = red, green, blue
-    return sums
 
 
 def best(call: Callable[[], object]) -> float:
@@ -98,11 +104,12 @@ def best(call: Callable[[], object]) -> float:
 
 def near(threads: int) -> float:
     """Nanoseconds that a thread needs for a piece whose row is in L2."""
-    numba.set_num_threads(threads)
+    tasks.set_threads(threads)
     random = np.random.default_rng(0)
     x: NDArray[np.float32] = random.random((20_000, 3), dtype=np.float32)
     places, weights = random.permutation(len(x)), random.random(len(x), dtype=np.float32)
-    return best(lambda: from_l2(x, places, weights, 200)) / (64 * 200 * len(x)) * 1e9 * threads
+    data = x, places, weights, 200, np.zeros((64, 3))
+    return best(lambda: tasks.run(from_l2, 64, _LONG, *data)) / (64 * 200 * len(x)) * 1e9 * threads
 
 
 def rows(kind: str, matrix: Rays) -> Iterator[str]:
@@ -111,8 +118,8 @@ def rows(kind: str, matrix: Rays) -> Iterator[str]:
     b = matrix.forward(x)
     data = matrix._lamps, matrix._screens, matrix._picture, matrix._heard, matrix.grid.shape
     pieces = traversal(*data)
-    for threads in sorted({1, numba.get_num_threads()}):
-        numba.set_num_threads(threads)
+    for threads in sorted({1, tasks.threads()}):
+        tasks.set_threads(threads)
         took = [best(lambda: traversal(*data)), best(lambda: matrix.forward(x)), best(lambda: matrix.adjoint(b))]
         each = (took[1] + took[2]) / 2 / pieces * 1e9 * threads
         figures = " | ".join(f"{seconds:.2f}" for seconds in (*took, took[1] + took[2]))

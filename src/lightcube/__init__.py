@@ -3,6 +3,7 @@
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution
 from lightcube.backward.solving import solve
+from lightcube.cores import threads
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
 from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save, write_page, write_pictures
@@ -72,6 +73,7 @@ __all__ = [
     "show",
     "solve",
     "spread_angles",
+    "threads",
     "turntable",
     "turntable_for",
     "write_page",

@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 
@@ -16,6 +15,7 @@ from lightcube import bench
 from lightcube.bench import clock, limits, loops, others, playing, products, starting
 from lightcube.bench.report import markdown
 from lightcube.cli.main import main
+from lightcube.kernels import tasks
 from tests.conftest import INTERPRETED
 
 N = 4 if INTERPRETED else 24
@@ -59,9 +59,9 @@ def test_all_is_measured_and_all_is_in_the_tables(peer_installed: bool, monkeypa
     else:
         pytest.importorskip("astra")
     said: list[str] = []
-    before = numba.get_num_threads()
+    before = tasks.threads()
     found = bench.measure(N, 3, said.append, quick=True)
-    assert numba.get_num_threads() == before
+    assert tasks.threads() == before
     assert finite(found)
     assert {(each["elevation"], each["threads"]) for each in found["kernels"]} == {
         (elevation, threads) for elevation in (0, 35) for threads in (1, before)

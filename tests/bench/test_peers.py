@@ -45,7 +45,7 @@ def table(printed: str) -> dict[str, list[str]]:
 def compared(
     peers: ModuleType, picture: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> str:
-    monkeypatch.setattr("numba.set_num_threads", lambda _: None)
+    monkeypatch.setattr("lightcube.threads", lambda _: None)
     peers.main(["--n", "15", "--views", "16", "--passes", "2", "12", "--repeats", "1", "--picture", str(picture)])
     assert picture.stat().st_size > 5000
     return capsys.readouterr().out

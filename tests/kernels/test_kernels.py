@@ -1,9 +1,4 @@
-"""The fast paths of the kernels against plain ones: any tiles, vectors that are not full, any number of threads."""
-
-import hashlib
-import os
-import subprocess
-import sys
+"""The fast paths of the kernels against plain ones: any tiles, vectors that are not full."""
 
 import numpy as np
 import pytest
@@ -11,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from lightcube.kernels import exponential, layout, rows, threads
+from lightcube.kernels import exponential, layout, rows
 from lightcube.kernels.stacked import GROUP, TILE
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import turntable_views
@@ -121,75 +116,3 @@ def test_products_begin_at_whole_cache_lines() -> None:
     for array in (b, matrix.adjoint(b), layout.copied(b[1:], np.float64)):
         assert array.ctypes.data % 64 == 0
         assert array.flags.c_contiguous
-
-
-_HASHES = """
-import hashlib, numba, numpy as np
-from lightcube.optics.views import Grid, turntable_views
-from lightcube.projection.projector import Projector
-from lightcube.solvers import METHODS
-grid = Grid((2, 19, 18))
-total = hashlib.sha256()
-for elevation, rig in ((0.0, 1), (0.0, 9), (35.0, 4)):
-    matrix = Projector(grid, turntable_views(grid, np.arange(rig) * 17.0 + 3, elevation=elevation))
-    columns = 6 if elevation == 0 else 3
-    x = np.random.default_rng(0).random((matrix.shape[1], columns), dtype=np.float32)
-    b = matrix.forward(x)
-    light = np.exp(-b).clip(1e-3)
-    bounds = (np.full((rig, 3), 1e-3), np.full((rig, 3), 4.0))
-    result = METHODS["display"](matrix, light, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=4)
-    for array in (b, matrix.adjoint(b), result.x, result.lamp_powers, result.residuals):
-        total.update(np.ascontiguousarray(array).tobytes())
-print(total.hexdigest())
-"""
-
-
-def test_results_are_the_same_for_any_number_of_threads() -> None:
-    """Seven threads on any machine: numba takes as many as it is told to."""
-    found = set()
-    for count in (1, 2, 7):
-        told = {**os.environ, "NUMBA_NUM_THREADS": str(count)}
-        run = subprocess.run([sys.executable, "-c", _HASHES], env=told, capture_output=True, text=True, check=True)
-        found.add(run.stdout)
-    assert len(found) == 1
-    assert len(found.pop().strip()) == len(hashlib.sha256().hexdigest())
-
-
-_AT_ONCE = """
-import concurrent.futures, numpy as np
-from lightcube import Recipe, solve
-from lightcube.pictures.frames import Frames
-from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
-
-def cube(number):
-    grid = Grid((2, 6, 7))
-    rig = turntable(grid, [10.0, 70.0, 200.0], elevation=35.0, picture_shape=(2, 3))
-    pictures = np.random.default_rng(number).random((3, 2, 3, 3), dtype=np.float32)
-    return solve(Frames(pictures, rig), grid, Recipe(passes=20)).cube.extinction
-
-alone = [cube(number) for number in range(4)]
-with concurrent.futures.ThreadPoolExecutor(4) as pool:
-    together = list(pool.map(cube, [*range(4)] * 3))
-print(all(np.array_equal(alone[index % 4], found) for index, found in enumerate(together)))
-"""
-
-
-def test_cubes_may_be_solved_at_the_same_time_in_one_process() -> None:
-    """Numba's simplest threading layer, the one that is always there, ends the program where two calls meet in it."""
-    told = {**os.environ, "NUMBA_THREADING_LAYER": "workqueue", "NUMBA_NUM_THREADS": "2"}
-    run = subprocess.run([sys.executable, "-c", _AT_ONCE], env=told, capture_output=True, text=True, check=False)
-    assert run.stdout == "True\n", run.stderr
-
-
-def test_ctrl_c_in_a_kernel_is_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
-    """In compiled code it comes out as a `SystemError` of a `SystemError` of it."""
-
-    def interrupted() -> None:
-        inner = SystemError("returned a result with an exception set")
-        inner.__cause__ = KeyboardInterrupt()
-        raise SystemError("returned a result with an exception set") from inner
-
-    monkeypatch.setattr(threads, "njit", lambda **options: lambda kernel: kernel)
-    with pytest.raises(KeyboardInterrupt):
-        threads.parallel(interrupted)()

@@ -1,8 +1,5 @@
 """The laws that the matrix of any rays keeps: parallel and from points, screens in any position, bricks of voxels."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Sequence
 from itertools import product
 from pathlib import Path
@@ -348,33 +345,3 @@ def test_shadow_matrices_agree_with_plain_intersection(seed: int) -> None:
             assert shadow[:2] / shadow[2] == pytest.approx([column, row], rel=1e-9, abs=1e-9)
             in_front = lamp[3] == 0 or (way @ normal) * ((corner - lamp[:3]) @ normal) > 0
             assert (shadow[2] > 0) == in_front
-
-
-_HASHES = """
-import hashlib, numpy as np
-from lightcube.optics.views import Grid
-from lightcube.projection.rays import Rays
-from tests.test_rays import BRICKS, lamps_for, lit, screens_for
-total = hashlib.sha256()
-for shape in BRICKS:
-    grid = Grid(shape)
-    lamps = [lamps_for(shape)[name] for name in ("-y", "aslant", "near", "inside")]
-    matrix = Rays(grid, lit(grid, lamps, list(screens_for(shape).values()), (2, 3)))
-    for columns in (3, 5):
-        x = np.random.default_rng(0).random((matrix.shape[1], columns), dtype=np.float32)
-        b = matrix.forward(x)
-        for array in (b, matrix.adjoint(b)):
-            total.update(array.tobytes())
-print(total.hexdigest())
-"""
-
-
-def test_results_are_the_same_for_any_number_of_threads() -> None:
-    found = set()
-    for count in (1, 2, 7):
-        told = {**os.environ, "NUMBA_NUM_THREADS": str(count)}
-        command = [sys.executable, "-c", _HASHES]
-        run = subprocess.run(command, cwd=ROOT, env=told, capture_output=True, text=True, check=True)
-        found.add(run.stdout)
-    assert len(found) == 1
-    assert len(found.pop()) == 65

@@ -1,9 +1,5 @@
 """The display solver where light of several views adds up: its objective and the bounds on it."""
 
-import hashlib
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from typing import Any
 
@@ -238,37 +234,6 @@ def test_pictures_of_many_views_and_pixels_leave_no_seam() -> None:
     np.testing.assert_allclose(
         screen.descend(absorbance, np.log(powers)).reshape(slopes.shape), slopes, rtol=1e-5, atol=1e-9
     )
-
-
-_HASHES = """
-import hashlib, numpy as np
-from lightcube.solvers.contract import Mixture
-from lightcube.solvers.display import display_values
-from tests.solver_problems import DenseOperator
-random = np.random.default_rng(0)
-views, pixels = 60, 300
-mixture = Mixture(np.array([0, 50, 60]), np.arange(views) // 25, random.random((views, 3)),
-    *random.random((2, views, pixels), dtype=np.float32))
-A = DenseOperator(random.random((views * pixels, 4)).astype(np.float32))
-wanted = random.uniform(0.1, 9, (2 * pixels, 3)).astype(np.float32)
-lamps = np.full((3, 3), 0.01), np.full((3, 3), 4.0)
-result = display_values(A, wanted, lamp_bounds=lamps, mixture=mixture, iterations=6)
-total = hashlib.sha256()
-for array in (result.x, result.lamp_powers, result.residuals):
-    total.update(np.ascontiguousarray(array).tobytes())
-print(total.hexdigest())
-"""
-
-
-@pytest.mark.skipif(INTERPRETED, reason="there are no threads")
-def test_results_are_the_same_for_any_number_of_threads() -> None:
-    found = set()
-    for count in (1, 3):
-        told = {**os.environ, "NUMBA_NUM_THREADS": str(count), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-        run = subprocess.run([sys.executable, "-c", _HASHES], env=told, capture_output=True, text=True, check=True)
-        found.add(run.stdout)
-    assert len(found) == 1
-    assert len(found.pop().strip()) == len(hashlib.sha256().hexdigest())
 
 
 def test_what_no_light_reaches_is_not_asked_for() -> None:

@@ -3,14 +3,13 @@
 from collections.abc import Callable
 from typing import Any
 
-import numba
-
 from lightcube.bench.host import machine
 from lightcube.bench.limits import ceilings
 from lightcube.bench.others import peers
 from lightcube.bench.playing import playback
 from lightcube.bench.products import CHANNELS, product, projector
 from lightcube.bench.starting import starts
+from lightcube.kernels import tasks
 from lightcube.optics.grid import Grid, raster_shape
 
 #: Elevations of the lamp that are measured: the two at which cubes are made.
@@ -41,7 +40,7 @@ def measure(n: int, views: int, say: Callable[[str], None], *, quick: bool = Fal
         Time everything once only, and briefly.
     """
     repeats, lasting = (1, _QUICK_LASTING) if quick else (_REPEATS, _LASTING)
-    counts = sorted({1, numba.get_num_threads()}, reverse=True)
+    counts = sorted({1, tasks.threads()}, reverse=True)
     limits, kernels, played = {}, [], []
     for threads in counts:
         say(f"ceilings, threads: {threads}")

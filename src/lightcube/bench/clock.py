@@ -1,23 +1,10 @@
-"""Timing: how long work takes, with how many threads."""
+"""Timing: how long work takes, and how often it can be done."""
 
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import partial
 
-import numba
 import numpy as np
-
-
-@contextmanager
-def threads(count: int) -> Iterator[None]:
-    """Let numba use so many threads."""
-    before = numba.get_num_threads()
-    numba.set_num_threads(count)
-    try:
-        yield
-    finally:
-        numba.set_num_threads(before)
 
 
 def seconds(work: Callable[[], object], repeats: int) -> dict[str, float]:

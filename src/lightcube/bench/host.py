@@ -1,6 +1,5 @@
 """What the machine and its software are called."""
 
-import os
 import platform
 from pathlib import Path
 from typing import Any
@@ -8,6 +7,9 @@ from typing import Any
 import llvmlite.binding
 import numba
 import numpy as np
+
+from lightcube.cores import free_cores
+from lightcube.kernels import tasks
 
 _CACHES = Path("/sys/devices/system/cpu/cpu0/cache")
 
@@ -18,8 +20,8 @@ def machine() -> dict[str, Any]:
         "processor": _processor(),
         "architecture": platform.machine(),
         "llvm_name": llvmlite.binding.get_host_cpu_name(),
-        "cores": _cores(),
-        "threads": numba.get_num_threads(),
+        "cores": free_cores(),
+        "threads": tasks.threads(),
         "caches": _caches(),
         "system": platform.system(),
         "python": platform.python_version(),
@@ -36,11 +38,6 @@ def _processor() -> str:
         lines = []
     names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
     return names[0] if names else platform.processor() or "unknown"
-
-
-def _cores() -> int:
-    allowed = getattr(os, "sched_getaffinity", None)  # of Linux
-    return len(allowed(0)) if allowed else os.cpu_count() or 1
 
 
 def _caches() -> list[str]:

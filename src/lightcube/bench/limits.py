@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.bench import loops
-from lightcube.bench.clock import rate, threads
+from lightcube.bench.clock import rate
+from lightcube.kernels import tasks
 from lightcube.kernels.rows import LANES
 
 #: Bytes of the blocks that rows are taken from: in the first cache, in the second, in none.
@@ -19,7 +20,7 @@ def ceilings(count: int, lasting: float, repeats: int) -> dict[str, float]:
     Rows are 64 float32 numbers in random order, each from a multiple of 64 bytes on, added up by the projections' own
     vector kernel. The blocks that fit into a cache are each thread's own; one that fits into none is shared.
     """
-    with threads(count):
+    with tasks.using(count):
         return {
             "registers": _registers(count, lasting, repeats),
             "l1": _rows(L1, count, count, lasting, repeats),

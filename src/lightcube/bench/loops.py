@@ -4,12 +4,14 @@ from typing import Any
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, prange, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 from numpy.typing import NDArray
 
+from lightcube.kernels.compiled import compiled
 from lightcube.kernels.rows import LANES, add_rows
+from lightcube.kernels.tasks import run
 
 Array = NDArray[Any]
 
@@ -17,6 +19,8 @@ Array = NDArray[Any]
 ROW = 64
 #: Chains of multiply-adds that do not wait for each other: one of these keeps all units of a processor at work.
 CHAINS = (4, 6, 10)
+#: Work that is worth all threads, however little it is.
+_LONG = 1 << 40
 
 
 def multiply_adds(times: int, chains: int) -> float:
@@ -67,19 +71,29 @@ def _chained(chains: int) -> Any:
 _chains_4, _chains_6, _chains_10 = (_chained(chains) for chains in CHAINS)
 
 
-@njit(cache=True, parallel=True)
 def from_registers(times: int, chains: int, threads: int) -> Array:
     """`multiply_adds` in every thread."""
     results = np.zeros(threads, np.float64)
-    for thread in prange(threads):
-        results[thread] = multiply_adds(times, chains)
+    run(_from_registers, threads, _LONG, times, chains, results)
     return results
 
 
-@njit(cache=True, parallel=True)
+@compiled
+def _from_registers(first: int, last: int, times: int, chains: int, results: Array) -> None:
+    for thread in range(first, last):
+        results[thread] = multiply_adds(times, chains)
+
+
 def from_rows(times: int, sums: Array, blocks: Array, places: Array, shifts: Array, weights: Array) -> None:
     """Add the rows of `ROW` numbers at ``places[thread]`` of ``blocks[thread]``, weighted, to the thread's `sums`."""
-    for thread in prange(len(sums)):
+    run(_from_rows, len(sums), _LONG, times, sums, blocks, places, shifts, weights)
+
+
+@compiled
+def _from_rows(
+    first: int, last: int, times: int, sums: Array, blocks: Array, places: Array, shifts: Array, weights: Array
+) -> None:
+    for thread in range(first, last):
         for _ in range(times):
             add_rows(
                 sums[thread],
@@ -97,17 +111,21 @@ def from_rows(times: int, sums: Array, blocks: Array, places: Array, shifts: Arr
             )
 
 
-@njit(cache=True, parallel=True, fastmath=True)
 def read(a: Array, threads: int) -> Array:
     """Sum all numbers."""
     results = np.zeros(threads, np.float32)
-    part = (len(a) + threads - 1) // threads
-    for thread in prange(threads):
-        results[thread] = _total(a[thread * part : (thread + 1) * part])
+    run(_read, threads, _LONG, a, results)
     return results
 
 
-@njit(cache=True, fastmath=True)
+@compiled
+def _read(first: int, last: int, a: Array, results: Array) -> None:
+    part = (len(a) + len(results) - 1) // len(results)
+    for thread in range(first, last):
+        results[thread] = _total(a[thread * part : (thread + 1) * part])
+
+
+@compiled(fastmath=True)
 def _total(a: Array) -> Any:
     total = np.float32(0)
     for i in range(len(a)):  # over the numbers themselves, numba takes one at a time
@@ -115,15 +133,19 @@ def _total(a: Array) -> Any:
     return total
 
 
-@njit(cache=True, parallel=True)
 def triad(a: Array, b: Array, c: Array, threads: int) -> None:
     """``a = b + c / 2``."""
+    run(_triad_parts, threads, _LONG, a, b, c, threads)
+
+
+@compiled
+def _triad_parts(first: int, last: int, a: Array, b: Array, c: Array, threads: int) -> None:
     part = (len(a) + threads - 1) // threads
-    for thread in prange(threads):
+    for thread in range(first, last):
         _triad(a[thread * part : (thread + 1) * part], b[thread * part :], c[thread * part :])
 
 
-@njit(cache=True)
+@compiled
 def _triad(a: Array, b: Array, c: Array) -> None:
     for i in range(len(a)):
         a[i] = b[i] + np.float32(0.5) * c[i]

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.bench.clock import seconds, threads
-from lightcube.kernels import stacked as kernels
+from lightcube.bench.clock import seconds
+from lightcube.kernels import stacked, tasks
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
@@ -33,7 +33,7 @@ def product(matrix: Projector, count: int, ceiling: float, repeats: int) -> dict
     """Time `forward` and `adjoint` with `count` threads; `ceiling` is the rate that shares are of."""
     x = np.random.default_rng(0).random((matrix.shape[1], columns_of(matrix)), dtype=np.float32)
     products = multiply_adds(matrix)
-    with threads(count):
+    with tasks.using(count):
         b = matrix.forward(x)
         there = seconds(lambda: matrix.forward(x), repeats)
         matrix.adjoint(b)
@@ -66,8 +66,8 @@ def traced(
     where = (beams.beams, width, nx, ny, matrix.grid.voxel_mm, beams.rise)
     offsets = np.zeros(len(beams.beams) * width + 1, np.int64)
     none = np.empty(0, np.int32)
-    kernels.trace_all(*where, offsets, none, none, np.empty(0, np.float32))
+    stacked.trace_all(*where, offsets, none, none, np.empty(0, np.float32))
     pieces = int(offsets[-1])
     voxels, levels, lengths = np.empty(pieces, np.int32), np.empty(pieces, np.int32), np.empty(pieces, np.float32)
-    kernels.trace_all(*where, offsets, voxels, levels, lengths)
+    stacked.trace_all(*where, offsets, voxels, levels, lengths)
     return offsets, voxels, levels, lengths

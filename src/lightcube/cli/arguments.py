@@ -40,6 +40,13 @@ def memory(text: str) -> int:
     return int(size)
 
 
+def threads(text: str) -> int:
+    """Number of threads that a text means."""
+    if not (text.strip().isascii() and text.strip().isdigit() and int(text)):
+        raise InputError(f"--threads {text}: give a whole number of at least 1")
+    return int(text)
+
+
 def unit(text: str) -> tuple[int, int]:
     """``(I, N)`` of a text I/N with 1 <= I <= N."""
     which, of = whole_numbers(text, "/", "--unit", 2)

@@ -6,6 +6,7 @@ import typer
 
 from lightcube.cli import bench, check, demo, play, report, score, solve, stage, trace, view
 from lightcube.cli.console import Stopped, err, plain_warnings, prepare
+from lightcube.cli.options import threaded
 from lightcube.errors import InputError
 
 app = typer.Typer(
@@ -19,11 +20,12 @@ app = typer.Typer(
 
 for command in (
     *(trace.trace, check.check, solve.solve, solve.merge, play.play, view.view, report.report),
-    *(score.score, score.info, solve.publish, bench.bench),
+    *(score.score, bench.bench, demo.demo),
 ):
+    app.command()(threaded(command))
+for command in (score.info, solve.publish):  # that compute nothing
     app.command()(command)
 app.add_typer(stage.app, name="stage")
-app.command()(demo.demo)
 
 #: The exit code after Ctrl-C.
 _INTERRUPTED = 130

@@ -8,6 +8,7 @@ from typing import Annotated, Any, get_args
 
 import typer
 
+from lightcube import cores
 from lightcube.cli import arguments
 from lightcube.verbs.options import Option, Options
 
@@ -17,6 +18,10 @@ OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
 OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
 JSON = typer.Option("--json", help="Print JSON for machines.")
 FPS = typer.Option("--fps", help="Pictures per second of a movie.")
+THREADS = Annotated[
+    str | None,
+    typer.Option(help="Compute with so many threads; results are the same.  [default: the cores that are free]"),
+]
 
 _FIELDS = {each.name: each for each in fields(Options)}
 #: Options that are written as a text of several numbers: what such a text means.
@@ -24,6 +29,21 @@ _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "shape": lambda text: arguments.whole_numbers(text, ",", "--shape", 3),
     "angles": lambda text: arguments.numbers(text, "--angles"),
 }
+
+
+def threaded(command: Callable[..., None]) -> Callable[..., None]:
+    """Let the command line say with how many threads a command computes."""
+
+    @wraps(command)
+    def told(*, threads: str | None, **given: Any) -> None:
+        cores.threads(None if threads is None else arguments.threads(threads))
+        command(**given)
+
+    signature, by_name = inspect.signature(command), inspect.Parameter.KEYWORD_ONLY
+    parameters = [parameter.replace(kind=by_name) for parameter in signature.parameters.values()]
+    said = inspect.Parameter("threads", by_name, default=None, annotation=THREADS)
+    told.__signature__ = signature.replace(parameters=[*parameters, said])  # type: ignore[attr-defined]
+    return told
 
 
 def one_by_one(command: Callable[..., None]) -> Callable[..., None]:

@@ -17,13 +17,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-import numba
-
 from lightcube.backward.job import Job, shares
 from lightcube.backward.pieces import Step, solve_piece
 from lightcube.errors import InputError
 from lightcube.events import Progress, Said, Tell
 from lightcube.jobs.partial import DiskStore, load_job
+from lightcube.kernels import tasks
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster, Worker
@@ -131,7 +130,7 @@ def solve_there(place: str, name: str, written_by: str, topic: str, after: objec
     with _TURN:
         if _is_unwanted(worker, key):
             return
-        numba.set_num_threads(min(worker.state.nthreads, numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
+        tasks.set_threads(min(worker.state.nthreads, tasks.default()))
         try:
             if version("lightcube") != written_by:
                 raise InputError(f"lightcube is {version('lightcube')} there, and {written_by} here")

@@ -1,1 +1,12 @@
 """Numba loops; they import numpy and numba only."""
+
+import os
+
+# Of a number of threads that is none, numba makes an error that says nothing to anybody; `lightcube.cores` has words.
+_said = os.environ.get("NUMBA_NUM_THREADS", "1")
+if not (_said.isdigit() and int(_said)):
+    del os.environ["NUMBA_NUM_THREADS"]
+    try:
+        import numba  # noqa: F401
+    finally:
+        os.environ["NUMBA_NUM_THREADS"] = _said

@@ -14,8 +14,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from lightcube.kernels.compiled import compiled
 
 #: A direction component below this is zero.
 PARALLEL = 1e-12
@@ -23,13 +24,13 @@ PARALLEL = 1e-12
 ON_FACE = 1e-9
 
 
-@njit(cache=True)
+@compiled
 def max_pieces(nx: int, ny: int, rise: int) -> int:
     """Upper bound on the pieces of one beam that crosses at most `rise` z faces, ties included."""
     return 4 * (nx + ny + rise + 5)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def crossings(p: float, d: float, n: int) -> tuple[float, float]:
     """Path parameters at which ``p + t d`` enters and leaves ``[0, n]``; empty (inf, -inf) where it misses."""
     if abs(d) < PARALLEL:
@@ -42,7 +43,7 @@ def crossings(p: float, d: float, n: int) -> tuple[float, float]:
     return last, first
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def faces(p: float, d: float, i: int) -> tuple[int, float, float]:
     """Which way a beam in cell `i` of one axis goes on, the path parameter of the next face, and from face to face."""
     if abs(d) < PARALLEL:
@@ -52,7 +53,7 @@ def faces(p: float, d: float, i: int) -> tuple[int, float, float]:
     return -1, (i - p) / d, -1 / d
 
 
-@njit(cache=True)
+@compiled
 def _trace_off_faces(
     px: float,
     py: float,
@@ -102,19 +103,19 @@ def _trace_off_faces(
     return count
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def on_face(p: float, d: float) -> bool:
     """Whether a beam runs along a face of this axis."""
     return abs(d) < PARALLEL and abs(p - round(p)) <= ON_FACE
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def beside(p: float, on: bool, side: int) -> float:
     """Half a voxel to either `side`, 0 or 1, of the face that a beam runs on; where it runs on none, `p`."""
     return round(p) + side - 0.5 if on else p
 
 
-@njit(cache=True)
+@compiled
 def trace_beam(
     px: float,
     py: float,

@@ -8,11 +8,11 @@ not depend on the number of threads.
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
+from lightcube.kernels import tasks
+from lightcube.kernels.compiled import compiled
 from lightcube.kernels.display import Curve, curvature, pull, residual
-from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
@@ -22,19 +22,19 @@ _RUN, _PARTS = 1024, 64
 _SMALL, _TINY = 3e-4, 1e-6
 
 
-@njit(cache=True)
+@compiled
 def _run(rows: int, columns: int) -> int:
     """Rows of a run at most, where a part has so many of so many columns."""
     return max(1, min(_RUN // columns, rows))
 
 
-@njit(cache=True)
+@compiled
 def _repeat(few: Array, many: Array) -> None:
     """Fill `many` with copies of `few`."""
     many.reshape(-1, len(few))[:] = few
 
 
-@njit(cache=True)
+@compiled
 def _flatten(weights: Array, row: int, end: int, heavy: Array) -> None:
     """Write rows of `weights`, in whatever memory they lie, to `heavy`, one after the other."""
     columns = weights.shape[1]
@@ -42,7 +42,7 @@ def _flatten(weights: Array, row: int, end: int, heavy: Array) -> None:
         heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
 
 
-@njit(cache=True)
+@compiled
 def _next_run(lamp: Array, view_of_row: Array, weights: Array, row: int, last: int, bright: Array, heavy: Array) -> int:
     """Prepare the run of rows from `row` on, of one view and before `last`, that fits; return the row after it.
 
@@ -56,14 +56,14 @@ def _next_run(lamp: Array, view_of_row: Array, weights: Array, row: int, last: i
     return end
 
 
-@njit(cache=True)
-def _descend_run(bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve, slopes: Array) -> None:
+@compiled
+def _descend_run(bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve) -> None:
+    """Write the slopes over `bright`: where they go may be `absorbance`, which would make these no vectors."""
     for i in range(len(absorbance)):
         value, slope = residual(bright[i] - absorbance[i], wanted[i], curve)
-        slopes[i] = -weights[i] * value * slope
+        bright[i] = -weights[i] * value * slope
 
 
-@parallel
 def descend(
     absorbance: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, curve: Curve, slopes: Array
 ) -> None:
@@ -71,20 +71,37 @@ def descend(
 
     The objective is half the weighted sum of squared residuals.
     """
+    data = absorbance, lamp, view_of_row, wanted, weights, curve, slopes
+    tasks.run(_descend, _PARTS, 3 * absorbance.size, *data)
+
+
+@compiled
+def _descend(
+    first_part: int,
+    last_part: int,
+    absorbance: Array,
+    lamp: Array,
+    view_of_row: Array,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    slopes: Array,
+) -> None:
     rows, columns = absorbance.shape
     now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), slopes.reshape(-1)
     run = _run(rows // _PARTS + 1, columns)
-    for part in prange(_PARTS):
+    for part in range(first_part, last_part):
         bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < last:
             end = _next_run(lamp, view_of_row, weights, row, last, bright, heavy)
             here = slice(row * columns, end * columns)
-            _descend_run(bright, now[here], aim[here], heavy, curve, out[here])
+            _descend_run(bright, now[here], aim[here], heavy, curve)
+            out[here] = bright[: (end - row) * columns]
             row = end
 
 
-@njit(cache=True)
+@compiled
 def _arrive_run(
     bright: Array, last: Array, now: Array, wanted: Array, weights: Array, curve: Curve, sums: Array, least: Array
 ) -> None:
@@ -94,7 +111,6 @@ def _arrive_run(
         least[i] = min(least[i], now[i] + (now[i] - last[i]))
 
 
-@parallel
 def arrive(
     last: Array, now: Array, lamp: Array, view_of_row: Array, wanted: Array, weights: Array, curve: Curve
 ) -> tuple[Array, Array]:
@@ -103,10 +119,33 @@ def arrive(
     The objective is half the weighted sum of squared residuals; the change was from absorbance `last`.
     """
     rows, columns = now.shape
+    room = _PARTS, _run(rows // _PARTS + 1, columns) * columns
+    sums, least = np.zeros(room), np.full(room, np.inf, now.dtype)
+    tasks.run(_arrive, _PARTS, 4 * now.size, last, now, lamp, view_of_row, wanted, weights, curve, sums, least)
+    total, lowest = np.zeros(columns), np.full(columns, np.inf)
+    data = sums.reshape(-1, columns), least.reshape(-1, columns), total, lowest
+    tasks.run(_of_columns, columns, sums.size, *data)
+    return 0.5 * total, lowest
+
+
+@compiled
+def _arrive(
+    first_part: int,
+    last_part: int,
+    last: Array,
+    now: Array,
+    lamp: Array,
+    view_of_row: Array,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    sums: Array,
+    least: Array,
+) -> None:
+    rows, columns = now.shape
     before, after, aim = last.reshape(-1), now.reshape(-1), wanted.reshape(-1)
     run = _run(rows // _PARTS + 1, columns)
-    sums, least = np.zeros((_PARTS, run * columns)), np.full((_PARTS, run * columns), np.inf, now.dtype)
-    for part in prange(_PARTS):
+    for part in range(first_part, last_part):
         bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, stop = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < stop:
@@ -114,14 +153,18 @@ def arrive(
             here = slice(row * columns, end * columns)
             _arrive_run(bright, before[here], after[here], aim[here], heavy, curve, sums[part], least[part])
             row = end
-    total = 0.5 * sums.reshape(-1, columns).sum(axis=0)
-    lowest = least.reshape(-1, columns)[0].astype(np.float64)
-    for line in least.reshape(-1, columns):
-        lowest = np.minimum(lowest, line)
-    return total, lowest
 
 
-@njit(cache=True)
+@compiled
+def _of_columns(first: int, last: int, sums: Array, least: Array, total: Array, lowest: Array) -> None:
+    """Write the sum of all lines, in their order, and the least number for each column."""
+    for line in range(len(sums)):
+        for column in range(first, last):
+            total[column] += sums[line, column]
+            lowest[column] = min(lowest[column], least[line, column])
+
+
+@compiled
 def _curve_run(
     bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve, room: Any, values: Array
 ) -> None:
@@ -131,7 +174,6 @@ def _curve_run(
         values[i] *= weights[i] * curvature(u, wanted[i], curve)
 
 
-@parallel
 def curvatures(
     absorbance: Array,
     lamp: Array,
@@ -143,10 +185,27 @@ def curvatures(
     values: Array,
 ) -> None:
     """Multiply `values` by the weighted `curvature` that holds while ln light rises by no more than `room`."""
+    data = absorbance, lamp, view_of_row, wanted, weights, curve, room, values
+    tasks.run(_curvatures, _PARTS, 3 * absorbance.size, *data)
+
+
+@compiled
+def _curvatures(
+    first_part: int,
+    last_part: int,
+    absorbance: Array,
+    lamp: Array,
+    view_of_row: Array,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    room: Any,
+    values: Array,
+) -> None:
     rows, columns = absorbance.shape
     now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), values.reshape(-1)
     run = _run(rows // _PARTS + 1, columns)
-    for part in prange(_PARTS):
+    for part in range(first_part, last_part):
         bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
         row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
         while row < last:
@@ -156,7 +215,7 @@ def curvatures(
             row = end
 
 
-@njit(cache=True)
+@compiled
 def _pull_run(
     bright: Array, absorbance: Array, wanted: Array, weights: Array, curve: Curve, slopes: Array, bends: Array
 ) -> None:
@@ -166,7 +225,7 @@ def _pull_run(
         bends[i] += weights[i] * second
 
 
-@njit(cache=True)
+@compiled
 def _pulls(
     absorbance: Array, rows: Array, wanted: Array, weights: Array, curve: Curve, lamp: Array, sums: Array
 ) -> None:
@@ -186,11 +245,13 @@ def _pulls(
         here = slice(row * columns, (row + end - k) * columns)
         _pull_run(bright, now[here], aim[here], heavy, curve, slopes, bends)
         k = end
-    sums[0] = slopes.reshape(-1, len(lamp)).sum(axis=0)
-    sums[1] = bends.reshape(-1, len(lamp)).sum(axis=0)
+    sums[:] = 0
+    for i in range(len(slopes) // len(lamp)):
+        for channel in range(len(lamp)):
+            sums[0, channel] += slopes[i * len(lamp) + channel]
+            sums[1, channel] += bends[i * len(lamp) + channel]
 
 
-@parallel
 def fit_lamp(
     absorbance: Array,
     rows: Array,
@@ -207,8 +268,26 @@ def fit_lamp(
     The rows of view v are ``rows[starts[v]:starts[v + 1]]``. Newton's method on a convex function of one number,
     kept inside a shrinking bracket by bisection; it ends with a step so small that its square no longer counts.
     """
-    views, channels = lamp.shape
-    for view in prange(views):
+    data = absorbance, rows, starts, wanted, weights, curve, low, high, lamp
+    tasks.run(_fit_lamp, len(lamp), 10 * absorbance.size, *data)
+
+
+@compiled
+def _fit_lamp(
+    first: int,
+    last: int,
+    absorbance: Array,
+    rows: Array,
+    starts: Array,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    low: Array,
+    high: Array,
+    lamp: Array,
+) -> None:
+    channels = lamp.shape[1]
+    for view in range(first, last):
         below, above = low[view].copy(), high[view].copy()
         u = np.minimum(np.maximum(lamp[view], below), above)
         tried_low, tried_high = u == below, u == above

@@ -3,15 +3,17 @@
 from typing import Any
 
 import numpy as np
-from numba import prange
 from numpy.typing import NDArray
 
-from lightcube.kernels.threads import parallel
+from lightcube.kernels import tasks
+from lightcube.kernels.compiled import compiled
 
 Array = NDArray[Any]
 
+#: Parts that rows are divided into where they are summed.
+_PARTS = 64
 
-@parallel
+
 def step(
     x: Array, before: Array, ahead: Array, slopes: Array, steps: Array, stride: Array, lower: float, upper: float
 ) -> Array:
@@ -21,11 +23,28 @@ def step(
     what is returned is the sum of ``(y - new) (new - x) / steps``. Arrays are ``(unknowns, columns)``, but ``ahead``
     and ``stride`` one number per column; unknowns with a step of 0 stay where they are.
     """
+    sums = np.zeros((_PARTS, x.shape[1]))
+    tasks.run(_step, _PARTS, 2 * x.size, x, before, ahead, slopes, steps, stride, lower, upper, sums)
+    return added(sums)
+
+
+@compiled
+def _step(
+    first: int,
+    last: int,
+    x: Array,
+    before: Array,
+    ahead: Array,
+    slopes: Array,
+    steps: Array,
+    stride: Array,
+    lower: float,
+    upper: float,
+    sums: Array,
+) -> None:
     rows, columns = x.shape
-    parts = 64
-    sums = np.zeros((parts, columns))
-    for part in prange(parts):
-        for row in range(part * rows // parts, (part + 1) * rows // parts):
+    for part in range(first, last):
+        for row in range(part * rows // _PARTS, (part + 1) * rows // _PARTS):
             for column in range(columns):
                 here = x[row, column]
                 length = steps[row, column]
@@ -36,34 +55,50 @@ def step(
                 new = min(max(start - stride[column] * length * slopes[row, column], lower), upper)
                 sums[part, column] += (start - new) * (new - here) / length
                 before[row, column] = new
+
+
+@compiled
+def added(sums: Array) -> Array:
+    """The sum of all rows, added in their order."""
     return sums.sum(axis=0)
 
 
-@parallel
 def expect(x: Array, share: float, out: Array) -> None:
     """Write how far each unknown may move, relative to the others of its column: ``|x|`` and `share` of its mean.
 
     Where all of a column is 0, it is 1.
     """
+    sums = np.zeros((_PARTS, x.shape[1]))
+    tasks.run(_add, _PARTS, x.size, x, sums)
+    more = (share * added(sums) / len(x)).astype(x.dtype)
+    more[more == 0] = 1
+    tasks.run(_expect, len(x), x.size, x, more, out)
+
+
+@compiled
+def _add(first: int, last: int, x: Array, sums: Array) -> None:
     rows, columns = x.shape
-    parts = 64
-    sums = np.zeros((parts, columns))
-    for part in prange(parts):
-        for row in range(part * rows // parts, (part + 1) * rows // parts):
+    for part in range(first, last):
+        for row in range(part * rows // _PARTS, (part + 1) * rows // _PARTS):
             for column in range(columns):
                 sums[part, column] += abs(x[row, column])
-    more = (share * sums.sum(axis=0) / rows).astype(x.dtype)
-    more[more == 0] = 1
-    for row in prange(rows):
-        for column in range(columns):
+
+
+@compiled
+def _expect(first: int, last: int, x: Array, more: Array, out: Array) -> None:
+    for row in range(first, last):
+        for column in range(x.shape[1]):
             out[row, column] = abs(x[row, column]) + more[column]
 
 
-@parallel
 def divide(numerators: Array, denominators: Array) -> None:
     """Replace positive `denominators` by the quotients, all others by 0."""
-    rows, columns = numerators.shape
-    for row in prange(rows):
-        for column in range(columns):
+    tasks.run(_divide, len(numerators), numerators.size, numerators, denominators)
+
+
+@compiled
+def _divide(first: int, last: int, numerators: Array, denominators: Array) -> None:
+    for row in range(first, last):
+        for column in range(numerators.shape[1]):
             below = denominators[row, column]
             denominators[row, column] = numerators[row, column] / below if below > 0 else 0

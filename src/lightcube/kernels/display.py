@@ -7,11 +7,11 @@ throughout, as the light and the curve are.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
+from lightcube.kernels import tasks
+from lightcube.kernels.compiled import compiled
 from lightcube.kernels.exponential import exp
-from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
@@ -37,7 +37,7 @@ def curve(srgb: bool, dtype: type[np.floating[Any]]) -> Curve:
     return Curve(*(np.dtype(dtype).type(number) for number in (toe, toe_slope, 1.055, 0.055, 1 / 2.4, 0.03)))
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def display_of_log(u: Any, curve: Curve) -> tuple[Any, Any, Any]:
     """Return g, g' and g'' at `u` = ln(linear light)."""
     in_toe = u <= curve.toe
@@ -48,7 +48,7 @@ def display_of_log(u: Any, curve: Curve) -> tuple[Any, Any, Any]:
     return value if in_toe else value - curve.offset, slope, bend
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def residual(u: Any, wanted: Any, curve: Curve) -> tuple[Any, Any]:
     """Return the two-sided residual and its slope in `u`; both arguments are ln(linear light)."""
     target, slope, _ = display_of_log(wanted, curve)
@@ -57,7 +57,7 @@ def residual(u: Any, wanted: Any, curve: Curve) -> tuple[Any, Any]:
     return (value - target if u > wanted else slope * (u - wanted)), (steepness if u > wanted else slope)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def pull(u: Any, wanted: Any, curve: Curve) -> tuple[Any, Any]:
     """Return the first and second derivative by `u` of half the squared residual."""
     target, slope, _ = display_of_log(wanted, curve)
@@ -68,7 +68,7 @@ def pull(u: Any, wanted: Any, curve: Curve) -> tuple[Any, Any]:
     return first, (steepness * steepness + off * bend if u > wanted else slope * slope)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def curvature(u: Any, wanted: Any, curve: Curve) -> Any:
     """Return the largest second derivative of half the squared residual for any light up to `u` or the wanted one."""
     target, slope, _ = display_of_log(wanted, curve)
@@ -77,7 +77,7 @@ def curvature(u: Any, wanted: Any, curve: Curve) -> Any:
     return max(steepness * steepness + (value - target) * bend, dark * dark)
 
 
-@njit(cache=True)
+@compiled
 def conjugate(slope: float, wanted: float, curve: Curve) -> float:
     """Return the largest ``slope u - f(u)`` over all `u`, with f half the squared residual (its convex conjugate)."""
     _, least, _ = display_of_log(wanted, curve)
@@ -105,14 +105,17 @@ def conjugate(slope: float, wanted: float, curve: Curve) -> float:
     return slope * u - 0.5 * value * value
 
 
-@parallel
 def conjugates(slopes: Array, wanted: Array, weights: Array, curve: Curve) -> Array:
     """Sum of the weighted terms' convex conjugates at `slopes`, one number per row; slopes are 0 where weights are."""
-    rows, columns = slopes.shape
-    sums = np.zeros(rows)
-    for row in prange(rows):
-        for column in range(columns):
+    sums = np.zeros(len(slopes))
+    tasks.run(_conjugates, len(slopes), 50 * slopes.size, slopes, wanted, weights, curve, sums)
+    return sums
+
+
+@compiled
+def _conjugates(first: int, last: int, slopes: Array, wanted: Array, weights: Array, curve: Curve, sums: Array) -> None:
+    for row in range(first, last):
+        for column in range(slopes.shape[1]):
             weight = weights[row, column]
             if weight > 0:
                 sums[row] += weight * conjugate(slopes[row, column] / weight, wanted[row, column], curve)
-    return sums

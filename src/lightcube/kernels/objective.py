@@ -13,12 +13,13 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
+from lightcube.kernels import tasks
+from lightcube.kernels.compiled import compiled
+from lightcube.kernels.descent import added
 from lightcube.kernels.display import Curve, curvature, pull, residual
 from lightcube.kernels.exponential import exp
-from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
@@ -39,7 +40,7 @@ class Mixture(NamedTuple):
     shadow: Array
 
 
-@njit(cache=True)
+@compiled
 def _runs(mixture: Mixture, entries: int, columns: int) -> tuple[int, int, int]:
     """Most views of a picture, entries of a run (whole rows), and parts of a picture."""
     most = 1
@@ -50,14 +51,14 @@ def _runs(mixture: Mixture, entries: int, columns: int) -> tuple[int, int, int]:
     return most, run * columns, min(PARTS, (rows + run - 1) // run)
 
 
-@njit(cache=True)
+@compiled
 def _part(part: int, parts: int, entries: int, columns: int) -> tuple[int, int]:
     """First entry of a part of a picture, and one after its last; parts are whole rows."""
     rows = entries // columns
     return part * rows // parts * columns, (part + 1) * rows // parts * columns
 
 
-@njit(cache=True)
+@compiled
 def _split(mixture: Mixture, view: int, start: int, count: int, clear: Array, dark: Array) -> None:
     """Write the light of a view, without a cube, that no cube absorbs (`clear`), and that which one can (`dark`)."""
     channels = mixture.powers.shape[1]
@@ -69,7 +70,7 @@ def _split(mixture: Mixture, view: int, start: int, count: int, clear: Array, da
             clear[k * channels + c] = full - dark[k * channels + c]
 
 
-@njit(cache=True)
+@compiled
 def _shine(
     mixture: Mixture, picture: int, absorbance: Array, start: int, end: int, lit: Array, cast: Array, u: Array
 ) -> None:
@@ -107,7 +108,7 @@ def _shine(
             cast[j, i] *= whole[i]
 
 
-@njit(cache=True)
+@compiled
 def _bare(mixture: Mixture, picture: int, start: int, end: int, inverse: Array) -> None:
     """Write 1 over the light without a cube."""
     channels = mixture.powers.shape[1]
@@ -119,12 +120,30 @@ def _bare(mixture: Mixture, picture: int, start: int, end: int, inverse: Array) 
         inverse[i] = 1 / max(inverse[i], inverse.dtype.type(1e-30))
 
 
-@parallel
+def _run(kernel: Any, mixture: Mixture, shape: tuple[int, ...], columns: int, *arguments: Any) -> None:
+    """Run a loop whose tasks are the parts of all pictures; `shape` is ``(pictures, entries)``."""
+    pictures, entries = shape
+    parts = _runs(mixture, entries, columns)[2]
+    tasks.run(kernel, pictures * parts, 8 * len(mixture.light) * entries, *arguments)
+
+
 def shine(mixture: Mixture, absorbance: Array, columns: int, logs: Array) -> None:
     """Write ln of the light that the screen shows to `logs`, ``(pictures, entries)``."""
-    pictures, entries = logs.shape
+    _run(_shine_all, mixture, logs.shape, columns, mixture, absorbance, columns, logs)
+
+
+@compiled
+def _shine_all(
+    first_task: int,
+    last_task: int,
+    mixture: Mixture,
+    absorbance: Array,
+    columns: int,
+    logs: Array,
+) -> None:
+    entries = logs.shape[1]
     most, run, parts = _runs(mixture, entries, columns)
-    for task in prange(pictures * parts):
+    for task in range(first_task, last_task):
         lit, cast = np.empty((most, run), logs.dtype), np.empty((most, run), logs.dtype)
         begin, stop = _part(task % parts, parts, entries, columns)
         for start in range(begin, stop, run):
@@ -132,14 +151,29 @@ def shine(mixture: Mixture, absorbance: Array, columns: int, logs: Array) -> Non
             _shine(mixture, task // parts, absorbance, start, end, lit, cast, logs[task // parts, start:end])
 
 
-@parallel
 def descend(
     mixture: Mixture, absorbance: Array, columns: int, wanted: Array, weights: Array, curve: Curve, slopes: Array
 ) -> None:
     """Write the derivative of the objective by the absorbance to `slopes`, which may be `absorbance` itself."""
-    pictures, entries = wanted.shape
+    data = mixture, absorbance, columns, wanted, weights, curve, slopes
+    _run(_descend, mixture, wanted.shape, columns, *data)
+
+
+@compiled
+def _descend(
+    first_task: int,
+    last_task: int,
+    mixture: Mixture,
+    absorbance: Array,
+    columns: int,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    slopes: Array,
+) -> None:
+    entries = wanted.shape[1]
     most, run, parts = _runs(mixture, entries, columns)
-    for task in prange(pictures * parts):
+    for task in range(first_task, last_task):
         p = task // parts
         lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
         u = np.empty(run, wanted.dtype)
@@ -155,16 +189,35 @@ def descend(
                     slopes[v, start + i] = -u[i] * cast[v - mixture.starts[p], i]
 
 
-@parallel
 def arrive(
     mixture: Mixture, last: Array, now: Array, columns: int, wanted: Array, weights: Array, curve: Curve
 ) -> tuple[Array, Array]:
     """Of each column, the objective at absorbance `now`, and the least absorbance if it changed as much once more."""
     pictures, entries = wanted.shape
+    room = pictures * _runs(mixture, entries, columns)[2], columns
+    sums, least = np.zeros(room), np.full(room, np.inf)
+    data = mixture, last, now, columns, wanted, weights, curve, sums, least
+    _run(_arrive, mixture, wanted.shape, columns, *data)
+    return 0.5 * added(sums), least.min(axis=0)
+
+
+@compiled
+def _arrive(
+    first_task: int,
+    last_task: int,
+    mixture: Mixture,
+    last: Array,
+    now: Array,
+    columns: int,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    sums: Array,
+    least: Array,
+) -> None:
+    entries = wanted.shape[1]
     most, run, parts = _runs(mixture, entries, columns)
-    sums = np.zeros((pictures * parts, columns))
-    least = np.full((pictures * parts, columns), np.inf)
-    for task in prange(pictures * parts):
+    for task in range(first_task, last_task):
         p = task // parts
         lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
         u = np.empty(run, wanted.dtype)
@@ -179,13 +232,8 @@ def arrive(
                 for i in range(end - start):
                     ahead = now[v, start + i] + (now[v, start + i] - last[v, start + i])
                     least[task, i % columns] = min(least[task, i % columns], float(ahead))
-    lowest = least[0]
-    for line in least:
-        lowest = np.minimum(lowest, line)
-    return 0.5 * sums.sum(axis=0), lowest
 
 
-@parallel
 def curvatures(
     mixture: Mixture,
     absorbance: Array,
@@ -201,10 +249,27 @@ def curvatures(
     The part of a view that absorbs nearly all counts as `_LEAST_PART` of what it is without a cube: where a beam has
     grown dark among brighter ones, it would have no bound on its way back.
     """
-    pictures, entries = wanted.shape
+    data = mixture, absorbance, columns, wanted, weights, curve, room, values
+    _run(_curvatures, mixture, wanted.shape, columns, *data)
+
+
+@compiled
+def _curvatures(
+    first_task: int,
+    last_task: int,
+    mixture: Mixture,
+    absorbance: Array,
+    columns: int,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    room: Any,
+    values: Array,
+) -> None:
+    entries = wanted.shape[1]
     channels, least = mixture.powers.shape[1], wanted.dtype.type(_LEAST_PART)
     most, run, parts = _runs(mixture, entries, columns)
-    for task in prange(pictures * parts):
+    for task in range(first_task, last_task):
         p = task // parts
         lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
         u, bare = np.empty(run, wanted.dtype), np.empty(run, wanted.dtype)
@@ -232,7 +297,6 @@ def curvatures(
                     values[v, start + i] *= s * bend[i] + min(s, abs(2 * s * (1 - s))) * u[i]
 
 
-@parallel
 def pulls(
     mixture: Mixture,
     groups: Array,
@@ -248,10 +312,27 @@ def pulls(
     ``groups[v]`` is the group of view v: views of a picture and a lamp follow each other. `sums` is
     ``(2, PARTS, groups, channels)``, to be summed.
     """
-    pictures, entries = wanted.shape
+    data = mixture, groups, absorbance, columns, wanted, weights, curve, sums
+    _run(_pulls, mixture, wanted.shape, columns, *data)
+
+
+@compiled
+def _pulls(
+    first_task: int,
+    last_task: int,
+    mixture: Mixture,
+    groups: Array,
+    absorbance: Array,
+    columns: int,
+    wanted: Array,
+    weights: Array,
+    curve: Curve,
+    sums: Array,
+) -> None:
+    entries = wanted.shape[1]
     channels = mixture.powers.shape[1]
     most, run, parts = _runs(mixture, entries, columns)
-    for task in prange(pictures * parts):
+    for task in range(first_task, last_task):
         p, part = task // parts, task % parts
         lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
         u, bends, share = np.empty(run, wanted.dtype), np.empty(run, wanted.dtype), np.empty(run, wanted.dtype)

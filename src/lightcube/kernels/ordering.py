@@ -4,13 +4,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from lightcube.kernels.compiled import compiled
 
 Array = NDArray[Any]
 
 
-@njit(cache=True)
+@compiled
 def shortest_tour(distances: Array) -> Array:
     """Return a short closed tour of points with symmetric `distances`: the nearest next point, then 2-opt.
 
@@ -40,7 +41,7 @@ def shortest_tour(distances: Array) -> Array:
     return best
 
 
-@njit(cache=True)
+@compiled
 def _untangle(distances: Array, tour: Array) -> None:
     """Turn round parts of `tour` in place for as long as that makes it shorter (2-opt)."""
     count = len(tour)
@@ -55,7 +56,7 @@ def _untangle(distances: Array, tour: Array) -> None:
                     shorter = True
 
 
-@njit(cache=True)
+@compiled
 def misfit(parts: Array, order: Array) -> float:
     """Mean over stops of ln of the mean square that is left unfitted where ``order[stop]`` is the picture of a stop.
 
@@ -74,7 +75,7 @@ def misfit(parts: Array, order: Array) -> float:
 TINY = 1e-9
 
 
-@njit(cache=True, fastmath={"contract", "reassoc"})
+@compiled(fastmath={"contract", "reassoc"})
 def _left_after_swap(parts: Array, left: Array, s: int, t: int, i: int, j: int) -> float:
     """Sum over stops of ln of what is left once picture `j` stands at `s` and `i` at `t` instead of the reverse."""
     total = 0.0
@@ -90,7 +91,7 @@ def _left_after_swap(parts: Array, left: Array, s: int, t: int, i: int, j: int) 
     return total
 
 
-@njit(cache=True)
+@compiled
 def anneal(parts: Array, start: Array, places: Array, dice: Array, hot: float, cold: float) -> Array:
     """Return the best order met on a walk of swaps from `start` that keeps `misfit` low (simulated annealing).
 

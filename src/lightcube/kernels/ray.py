@@ -11,10 +11,10 @@ goes on, and both together take little longer than one.
 import math
 from typing import Any
 
-from numba import njit
 from numpy.typing import NDArray
 
 from lightcube.kernels.beam import PARALLEL, beside, crossings, faces, on_face
+from lightcube.kernels.compiled import compiled
 
 Array = NDArray[Any]
 Ray = tuple[float, float, float, float, float, float, float, float]
@@ -25,13 +25,13 @@ Way = tuple[float, int, int, int, int, int, int, float, float, float]
 At = tuple[float, int, int, int, int, float, float, float, int]
 
 
-@njit(cache=True)
+@compiled
 def most_pieces(nx: int, ny: int, nz: int) -> int:
     """Upper bound on the pieces of one ray, ties included, with room for one more."""
     return 4 * (nx + ny + nz + 5) + 1
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _enter(ray: Ray, shape: Triple, strides: Triple, count: int) -> tuple[Way, At]:
     """Where a ray that runs along no face enters the block; where it misses, its end is there too."""
     px, py, pz, dx, dy, dz, first, last = ray
@@ -54,7 +54,7 @@ def _enter(ray: Ray, shape: Triple, strides: Triple, count: int) -> tuple[Way, A
     return (end, x_way, y_way, z_way, *steps, x_gap, y_gap, z_gap), (t, x, y, z, place, tx, ty, tz, count)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _advance(way: Way, at: At, shape: Triple, scale: float, places: Array, weights: Array) -> At:
     """Write the piece of a ray up to the next face, unless it has none left; free of branches on the numbers."""
     end, x_way, y_way, z_way, x_step, y_step, z_step, x_gap, y_gap, z_gap = way
@@ -78,7 +78,7 @@ def _advance(way: Way, at: At, shape: Triple, scale: float, places: Array, weigh
     )
 
 
-@njit(cache=True)
+@compiled
 def _trace_off_faces(
     ray: Ray, shape: Triple, strides: Triple, scale: float, places: Array, weights: Array, count: int
 ) -> int:
@@ -89,13 +89,13 @@ def _trace_off_faces(
     return at[8]
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _is_oblique(ray: Ray) -> bool:
     """Whether a ray cannot run along a face."""
     return abs(ray[3]) >= PARALLEL and abs(ray[4]) >= PARALLEL and abs(ray[5]) >= PARALLEL
 
 
-@njit(cache=True)
+@compiled
 def trace_ray(ray: Ray, shape: Triple, strides: Triple, scale: float, places: Array, weights: Array) -> int:
     """Write the pieces of a ray; return how many there are.
 
@@ -118,7 +118,7 @@ def trace_ray(ray: Ray, shape: Triple, strides: Triple, scale: float, places: Ar
     return count
 
 
-@njit(cache=True)
+@compiled
 def trace_two(
     ray: Ray, other: Ray, shape: Triple, strides: Triple, scale: float, places: Array, weights: Array
 ) -> tuple[int, int]:

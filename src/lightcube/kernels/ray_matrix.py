@@ -3,16 +3,16 @@
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from lightcube.kernels.compiled import compiled
 from lightcube.kernels.ray import Triple, most_pieces
 from lightcube.kernels.rays import trace
 
 Array = NDArray[Any]
 
 
-@njit(cache=True)
+@compiled
 def trace_all(
     lamps: Array,
     screens: Array,

@@ -14,11 +14,11 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
+from lightcube.kernels import tasks
+from lightcube.kernels.compiled import compiled
 from lightcube.kernels.ray import Ray, Triple, most_pieces, trace_ray, trace_two
-from lightcube.kernels.threads import parallel
 
 Array = NDArray[Any]
 
@@ -28,7 +28,7 @@ BRICK = 32
 NO_RAY = (0.0, 0.0, 0.0, 0.6, 0.6, 0.5, 0.0, 0.0)
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def _ray(lamp: Array, screen: Array, column: int, row: int, low: Triple) -> Ray:
     """The ray of a pixel, seen from the corner `low` of a brick, and from the pixel: lamps may be far away."""
     qx = screen[0, 0] + column * screen[1, 0] + row * screen[2, 0]
@@ -44,7 +44,7 @@ def _ray(lamp: Array, screen: Array, column: int, row: int, low: Triple) -> Ray:
     return px, py, pz, dx / length, dy / length, dz / length, -length, 0.0
 
 
-@njit(cache=True)
+@compiled
 def trace(
     lamps: Array,
     screens: Array,
@@ -63,7 +63,7 @@ def trace(
     return trace_ray(ray, (nx, ny, nz), (nz, nx * nz, 1), scale, places, weights)
 
 
-@njit(cache=True)
+@compiled
 def _trace_rows(
     lamp: Array,
     screen: Array,
@@ -87,7 +87,7 @@ def _trace_rows(
     return trace_two(ray, other, size, strides, scale, places, weights)
 
 
-@njit(cache=True)
+@compiled
 def _gather(x: Array, places: Array, weights: Array, count: int, sums: Array) -> None:
     """``sums = sum_k weights[k] x[places[k]]``."""
     if len(sums) == 3:  # the colours of most cubes: in registers
@@ -105,7 +105,7 @@ def _gather(x: Array, places: Array, weights: Array, count: int, sums: Array) ->
                 sums[column] += weights[k] * x[places[k], column]
 
 
-@njit(cache=True)
+@compiled
 def _scatter(x: Array, places: Array, weights: Array, count: int, values: Array) -> None:
     """``x[places[k]] += weights[k] values``."""
     if len(values) == 3:
@@ -121,7 +121,6 @@ def _scatter(x: Array, places: Array, weights: Array, count: int, values: Array)
                 x[places[k], column] += weights[k] * values[column]
 
 
-@parallel
 def forward(
     lamps: Array,
     screens: Array,
@@ -133,9 +132,32 @@ def forward(
     b: Array,
 ) -> None:
     """``b = A x``; every number of `b` is written. `heard`, ``(views * width, height)``, is 0 where none counts."""
+    work = _work(heard, grid)
+    tasks.run(_forward, len(lamps) * shape[0], work, lamps, screens, shape, heard, grid, scale, x, b)
+
+
+def _work(heard: Array, grid: Triple) -> int:
+    """Nanoseconds that a product takes, roughly: some for each piece of each ray."""
+    return 3 * heard.size * sum(grid)
+
+
+@compiled
+def _forward(
+    first: int,
+    last: int,
+    lamps: Array,
+    screens: Array,
+    shape: tuple[int, int],
+    heard: Array,
+    grid: Triple,
+    scale: float,
+    x: Array,
+    b: Array,
+) -> None:
+    """Gather along the rays of picture columns `first` to before `last`, counted through all views."""
     width, height = shape
     nz, ny, nx = grid
-    for line in prange(len(lamps) * width):
+    for line in range(first, last):
         places = np.empty((2, most_pieces(nx, ny, nz)), np.int64)
         weights = np.empty(places.shape, x.dtype)
         lamp, screen = lamps[line // width], screens[line // width]
@@ -159,7 +181,6 @@ def forward(
                 _gather(x, places[1], weights[1], counts[1], b[line * height + row + 1])
 
 
-@parallel
 def adjoint(
     lamps: Array,
     screens: Array,
@@ -176,17 +197,36 @@ def adjoint(
     ``shadows[view]`` is the 3 x 4 matrix that takes a point ``(x, y, z, 1)`` to ``(column, row, 1)`` of its shadow
     times a number, which is above 0 where the point lies between lamp and screen or beyond the screen.
     """
+    bricks = math.prod((side + BRICK - 1) // BRICK for side in grid)
+    tasks.run(_adjoint, bricks, _work(heard, grid), lamps, screens, shadows, shape, heard, grid, scale, b, x)
+
+
+@compiled
+def _adjoint(
+    first: int,
+    last: int,
+    lamps: Array,
+    screens: Array,
+    shadows: Array,
+    shape: tuple[int, int],
+    heard: Array,
+    grid: Triple,
+    scale: float,
+    b: Array,
+    x: Array,
+) -> None:
+    """Do bricks `first` to before `last`."""
     width, height = shape
     nz, ny, nx = grid
     across, along = (nx + BRICK - 1) // BRICK, (ny + BRICK - 1) // BRICK
-    for brick in prange(across * along * ((nz + BRICK - 1) // BRICK)):
+    for brick in range(first, last):
         low_x, low_y = brick % across * BRICK, brick // across % along * BRICK
         low_z = brick // (across * along) * BRICK
         size_x, size_y, size_z = min(BRICK, nx - low_x), min(BRICK, ny - low_y), min(BRICK, nz - low_z)
         for y in range(low_y, low_y + size_y):
             for each in range(low_x, low_x + size_x):
-                first = (y * nx + each) * nz + low_z
-                x[first : first + size_z] = 0
+                start = (y * nx + each) * nz + low_z
+                x[start : start + size_z] = 0
         places = np.empty((2, most_pieces(size_x, size_y, size_z)), np.int64)
         weights = np.empty(places.shape, x.dtype)
         brick_x = x[(low_y * nx + low_x) * nz + low_z :]
@@ -215,7 +255,7 @@ def adjoint(
                             _scatter(brick_x, places[i], weights[i], counts[i], b[line * height + row + i])
 
 
-@njit(cache=True)
+@compiled
 def _shadow(shadow: Array, shape: tuple[int, int], low: Triple, size: Triple) -> tuple[int, int, int, int]:
     """First column, one after the last, and the same of rows, of the pixels whose rays may meet a brick."""
     left, right, bottom, top = np.inf, -np.inf, np.inf, -np.inf

@@ -3,10 +3,10 @@
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
-from lightcube.kernels.threads import parallel
+from lightcube.kernels import tasks
+from lightcube.kernels.compiled import compiled
 
 Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.integer[Any]]
@@ -15,7 +15,7 @@ Ints = NDArray[np.integer[Any]]
 BLOCK = 32
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def sweep_block(
     indptr: Ints,
     indices: Ints,
@@ -54,8 +54,10 @@ def sweep_block(
                 x[voxel, j] = min(max(x[voxel, j] + length * step[j], lower), upper)
 
 
-@njit(cache=True)
+@compiled
 def _sweep(
+    first_block: int,
+    last_block: int,
     indptr: Ints,
     indices: Ints,
     data: Floats,
@@ -68,9 +70,9 @@ def _sweep(
     upper: float,
     x: Floats,
 ) -> None:
-    """`sweep_block` on every block of columns."""
+    """`sweep_block` on blocks of columns."""
     columns = x.shape[1]
-    for block in prange((columns + BLOCK - 1) // BLOCK):
+    for block in range(first_block, last_block):
         first = block * BLOCK
         last = min(first + BLOCK, columns)
         mine = x[:, first:last].copy()
@@ -88,9 +90,6 @@ def _sweep(
             mine,
         )
         x[:, first:last] = mine
-
-
-_sweep_parallel = parallel(getattr(_sweep, "py_func", _sweep))
 
 
 def sweep(
@@ -125,5 +124,6 @@ def sweep(
     x
         ``(unknowns, columns)``.
     """
-    run = _sweep if x.shape[1] <= BLOCK else _sweep_parallel  # threads cost more than one block of work
-    run(indptr, indices, data, inverse_norms, order, b, active, relaxation, lower, upper, x)
+    blocks, work = (x.shape[1] + BLOCK - 1) // BLOCK, len(data) * x.shape[1]
+    system = indptr, indices, data, inverse_norms
+    tasks.run(_sweep, blocks, work, *system, order, b, active, relaxation, lower, upper, x)

@@ -15,12 +15,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit, prange
 from numpy.typing import NDArray
 
 from lightcube.kernels.beam import PARALLEL, max_pieces, trace_beam
+from lightcube.kernels.compiled import compiled
 from lightcube.kernels.rows import LANES, add_rows, prefetch
-from lightcube.kernels.threads import parallel
+from lightcube.kernels.tasks import run
 
 Array = NDArray[Any]
 
@@ -30,7 +30,7 @@ TILE, GROUP, COLUMNS = 16, 16, 256
 _MOST_PIECES = 1 << 20
 
 
-@njit(cache=True)
+@compiled
 def _room(beams: Array, width: int) -> tuple[int, int]:
     """Return how many beams of a view may meet a tile, and how many pieces one of them may have there."""
     rays, rise = 0, 0
@@ -44,7 +44,7 @@ def _room(beams: Array, width: int) -> tuple[int, int]:
     return rays, max_pieces(TILE, TILE, rise) + 1
 
 
-@njit(cache=True)
+@compiled
 def _meeting(beams: Array, view: int, low: int, high: int, x: int, y: int, nx: int, ny: int) -> tuple[int, int]:
     """Return the first of the beams `low` to before `high` of a view that may meet a tile, and one after the last."""
     start, step, light = beams[view, 0], beams[view, 1], beams[view, 2]
@@ -60,7 +60,7 @@ def _meeting(beams: Array, view: int, low: int, high: int, x: int, y: int, nx: i
     return int(max(float(low), math.floor(first))), int(min(float(high), math.ceil(last) + 1))
 
 
-@njit(cache=True)
+@compiled
 def _trace_tile(
     beams: Array,
     width: int,
@@ -114,18 +114,44 @@ def _trace_tile(
     return met
 
 
-@parallel
 def forward(
     beams: Array, width: int, nx: int, ny: int, scale: float, x: Array, b: Array, channels: int, tasks: int
 ) -> None:
     """``b = A x``; every number of `b` is written. At least `tasks` parts are worked on side by side, if possible."""
-    columns, slices = b.shape[1], x.shape[1]
-    source, target = x.reshape(-1), b.reshape(-1)
-    most_rays, most_pieces = _room(beams, width)
-    group = max(1, min(GROUP, len(beams) // tasks, _MOST_PIECES // (most_rays * most_pieces)))
+    rays, pieces = _room(beams, width)
+    group = max(1, min(GROUP, len(beams) // tasks, _MOST_PIECES // (rays * pieces)))
     groups = (len(beams) + group - 1) // group
     parts = min((tasks + groups - 1) // groups, width)  # where there are few views, strips of beams
-    for task in prange(groups * parts):
+    work = _work(beams, width, nx, ny, b.shape[1])
+    run(_forward, groups * parts, work, beams, width, nx, ny, scale, x, b, channels, group, parts, rays, pieces)
+
+
+def _work(beams: Array, width: int, nx: int, ny: int, columns: int) -> int:
+    """Nanoseconds that a product takes, roughly: the pieces of all beams, traced once and added up in vectors."""
+    return len(beams) * width * (nx + ny) * (8 + 2 * columns // LANES)
+
+
+@compiled
+def _forward(
+    first: int,
+    last: int,
+    beams: Array,
+    width: int,
+    nx: int,
+    ny: int,
+    scale: float,
+    x: Array,
+    b: Array,
+    channels: int,
+    group: int,
+    parts: int,
+    most_rays: int,
+    most_pieces: int,
+) -> None:
+    """Do the groups of views, or strips of their beams, that are tasks `first` to before `last`."""
+    columns, slices = b.shape[1], x.shape[1]
+    source, target = x.reshape(-1), b.reshape(-1)
+    for task in range(first, last):
         view = (task // parts) * group
         after = min(view + group, len(beams))
         low, high = task % parts * width // parts, (task % parts + 1) * width // parts
@@ -159,10 +185,10 @@ def forward(
                 )
                 base = (tile_y * nx + tile_x) * slices
                 for column in range(0, columns, COLUMNS):
-                    last = min(column + COLUMNS, columns)
+                    end = min(column + COLUMNS, columns)
                     for i in range(met):
                         if i + 1 < met:
-                            for near in range(column, last, LANES):
+                            for near in range(column, end, LANES):
                                 prefetch(target, (view * width + rays[i + 1]) * columns + near)
                         at = (view * width + rays[i]) * columns
                         add_rows(
@@ -177,31 +203,50 @@ def forward(
                             ends[i],
                             ends[i + 1],
                             column,
-                            last,
+                            end,
                         )
 
 
-@parallel
 def adjoint(
     beams: Array, width: int, nx: int, ny: int, scale: float, b: Array, x: Array, channels: int, tasks: int
 ) -> None:
     """``x = A.T b``; every number of `x` is written. At least `tasks` parts are worked on side by side, if possible."""
+    tiles = ((nx + TILE - 1) // TILE) * ((ny + TILE - 1) // TILE)
+    parts = max(1, min((tasks + tiles - 1) // tiles, x.shape[1] // (4 * LANES)))
+    work = _work(beams, width, nx, ny, x.shape[1])
+    run(_adjoint, tiles * parts, work, beams, width, nx, ny, scale, b, x, channels, parts, *_room(beams, width))
+
+
+@compiled
+def _adjoint(
+    first: int,
+    last: int,
+    beams: Array,
+    width: int,
+    nx: int,
+    ny: int,
+    scale: float,
+    b: Array,
+    x: Array,
+    channels: int,
+    parts: int,
+    most_rays: int,
+    most_pieces: int,
+) -> None:
+    """Do the tiles, or strips of their columns, that are tasks `first` to before `last`."""
     rows, columns = b.shape[1], x.shape[1]
     source, target = b.reshape(-1), x.reshape(-1)
-    most_rays, most_pieces = _room(beams, width)
     group = max(1, min(GROUP, len(beams), _MOST_PIECES // (most_rays * most_pieces)))
     across = (nx + TILE - 1) // TILE
-    tiles = across * ((ny + TILE - 1) // TILE)
-    parts = max(1, min((tasks + tiles - 1) // tiles, columns // (4 * LANES)))
     part = (columns + parts * LANES - 1) // (parts * LANES) * LANES
-    for task in prange(tiles * parts):
+    for task in range(first, last):
         tile_y, tile_x = (task // parts) // across * TILE, (task // parts) % across * TILE
         size_x, size_y = min(TILE, nx - tile_x), min(TILE, ny - tile_y)
         start = (task % parts) * part
         stop = min(start + part, columns)
         for y in range(size_y):
-            first = (tile_y + y) * nx + tile_x
-            x[first : first + size_x, start:stop] = 0
+            row = (tile_y + y) * nx + tile_x
+            x[row : row + size_x, start:stop] = 0
         rays, ends = np.empty(group * most_rays, np.int64), np.empty(group * most_rays + 1, np.int64)
         room = group * most_rays * most_pieces
         voxels, levels, lengths = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
@@ -231,7 +276,7 @@ def adjoint(
             )
             _by_voxel(rays, ends, met, rows, voxels, levels, lengths, voxel_ends, places, shifts, weights)
             for column in range(start, stop, COLUMNS):
-                last = min(column + COLUMNS, stop)
+                end = min(column + COLUMNS, stop)
                 for voxel in range(size_x * size_y):
                     if voxel_ends[voxel + 1] > voxel_ends[voxel]:
                         at = ((tile_y + voxel // size_x) * nx + tile_x + voxel % size_x) * columns
@@ -247,11 +292,11 @@ def adjoint(
                             voxel_ends[voxel],
                             voxel_ends[voxel + 1],
                             column,
-                            last,
+                            end,
                         )
 
 
-@njit(cache=True)
+@compiled
 def _by_voxel(
     rays: Array,
     ends: Array,
@@ -281,14 +326,18 @@ def _by_voxel(
     voxel_ends[0] = 0
 
 
-@parallel
 def copy_rows(source: Array, target: Array) -> None:
     """Write the rows of `source` to the beginnings of those of `target`, which may be longer."""
-    for row in prange(len(source)):
+    run(_copy_rows, len(source), source.size // 2, source, target)
+
+
+@compiled
+def _copy_rows(first: int, last: int, source: Array, target: Array) -> None:
+    for row in range(first, last):
         target[row, : source.shape[1]] = source[row]
 
 
-@njit(cache=True)
+@compiled
 def trace_column(
     beams: Array, width: int, beam: int, nx: int, ny: int, scale: float, voxels: Array, levels: Array, lengths: Array
 ) -> int:
@@ -313,7 +362,7 @@ def trace_column(
     )
 
 
-@njit(cache=True)
+@compiled
 def trace_all(
     beams: Array,
     width: int,

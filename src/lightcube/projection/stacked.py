@@ -6,7 +6,6 @@ All beams of a picture column are the same beam, moved up by whole voxels: one t
 import math
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
@@ -14,6 +13,7 @@ from scipy.sparse import csr_array
 from lightcube.kernels import stacked
 from lightcube.kernels.beam import max_pieces
 from lightcube.kernels.layout import LINE, empty, is_worth_lines
+from lightcube.kernels.tasks import threads
 from lightcube.optics.grid import PARALLEL, Grid
 from lightcube.optics.views import Views
 
@@ -131,4 +131,4 @@ class StackedBeams:
 
 def _tasks() -> int:
     """Parts that a product is divided into at least: more than threads, for they are not all equally long."""
-    return int(4 * numba.get_num_threads())
+    return 4 * threads()

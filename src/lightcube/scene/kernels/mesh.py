@@ -6,11 +6,12 @@ Each node holds the index of the node to go on with when its box is missed (``sk
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from lightcube.kernels.compiled import compiled
 
-@njit(cache=True)
+
+@compiled
 def _box_hit(
     boxes: NDArray[np.float64],
     k: int,
@@ -39,7 +40,7 @@ def _box_hit(
     return near <= far + 1e-12 * (abs(near) + abs(far))
 
 
-@njit(cache=True)
+@compiled
 def _edge(ax: float, ay: float, bx: float, by: float) -> float:
     """Twice the area of (origin, a, b), and where that is 0 its sign for an origin moved by (e, e^2), e -> 0+.
 
@@ -53,7 +54,7 @@ def _edge(ax: float, ay: float, bx: float, by: float) -> float:
     return math.copysign(5e-324, bx - ax) if bx != ax else 0.0
 
 
-@njit(cache=True)
+@compiled
 def _triangle(
     corners: NDArray[np.float64], k: int, ox: float, oy: float, oz: float, sx: float, sy: float, depth: float, axis: int
 ) -> tuple[float, int]:
@@ -77,7 +78,7 @@ def _triangle(
     return ((u / total * az + v / total * bz + w / total * cz) / depth, 1 if (total > 0.0) == (depth > 0.0) else -1)
 
 
-@njit(cache=True)
+@compiled
 def _sheared(dx: float, dy: float, dz: float) -> tuple[float, float, float, int]:
     """``(sx, sy, depth, axis)`` of a direction for `_triangle`."""
     if abs(dx) >= abs(dy) and abs(dx) >= abs(dz):
@@ -87,7 +88,7 @@ def _sheared(dx: float, dy: float, dz: float) -> tuple[float, float, float, int]
     return (dx / dz, dy / dz, dz, 2)
 
 
-@njit(cache=True)
+@compiled
 def mesh_nearest(
     triangles: NDArray[np.float64],
     boxes: NDArray[np.float64],
@@ -118,7 +119,7 @@ def mesh_nearest(
     return (best if found >= 0 else math.inf, found)
 
 
-@njit(cache=True)
+@compiled
 def mesh_inside(
     triangles: NDArray[np.float64],
     boxes: NDArray[np.float64],

@@ -4,10 +4,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import prange
 from numpy.typing import NDArray
 
-from lightcube.kernels.threads import parallel
+from lightcube.kernels import tasks
+from lightcube.kernels.compiled import compiled
 from lightcube.scene.kernels.world import (
     Vector,
     World,
@@ -18,6 +18,9 @@ from lightcube.scene.kernels.world import (
     normal_towards,
     transmission,
 )
+
+#: Nanoseconds that a beam takes, roughly.
+_BEAM = 1000
 
 
 class Sight(NamedTuple):
@@ -134,11 +137,16 @@ def _pixel(
     return (r * share, g * share, b * share)
 
 
-@parallel
 def shaded(world: World, sight: Sight, pictures: NDArray[np.float32]) -> None:
     """Fill `pictures` ``(f, row, column, 3)`` with what the camera sees at each instant of `world`."""
-    count, rows, columns, _ = pictures.shape
-    for line in prange(count * rows):
+    beams = pictures.size // 3 * sight.samples**2
+    tasks.run(_shaded, pictures.shape[0] * pictures.shape[1], _BEAM * beams, world, sight, pictures)
+
+
+@compiled
+def _shaded(first: int, last: int, world: World, sight: Sight, pictures: NDArray[np.float32]) -> None:
+    _, rows, columns, _ = pictures.shape
+    for line in range(first, last):
         f, row = line // rows, line % rows
         out = np.empty(4)
         for column in range(columns):
@@ -148,7 +156,6 @@ def shaded(world: World, sight: Sight, pictures: NDArray[np.float32]) -> None:
             pictures[f, row, column, 2] = light[2]
 
 
-@parallel
 def shadowed(
     world: World,
     lamps: NDArray[np.float64],
@@ -161,8 +168,24 @@ def shadowed(
 
     View ``f`` sees instant ``f`` of `world`; lengths are in scene units, see `lightcube.optics.views.Views`.
     """
-    count, rows, columns, _ = pictures.shape
-    for line in prange(count * rows):
+    work = _BEAM * (pictures.size // 3)
+    data = world, lamps, origins, column_steps, row_steps, pictures
+    tasks.run(_shadowed, pictures.shape[0] * pictures.shape[1], work, *data)
+
+
+@compiled
+def _shadowed(
+    first: int,
+    last: int,
+    world: World,
+    lamps: NDArray[np.float64],
+    origins: NDArray[np.float64],
+    column_steps: NDArray[np.float64],
+    row_steps: NDArray[np.float64],
+    pictures: NDArray[np.float32],
+) -> None:
+    _, rows, columns, _ = pictures.shape
+    for line in range(first, last):
         f, row = line // rows, line % rows
         out = np.empty(4)
         down = row - 0.5 * (rows - 1)

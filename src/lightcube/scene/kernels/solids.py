@@ -8,8 +8,9 @@ line enters and leaves the solid, in order: (enter, leave) once, twice for a tor
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from lightcube.kernels.compiled import compiled
 
 SPHERE, BOX, CONE, CAPSULE, TORUS, PLANE, MESH = range(7)
 
@@ -21,7 +22,7 @@ Span = tuple[float, float]
 Size = tuple[float, float, float]
 
 
-@njit(cache=True)
+@compiled
 def _below(a: float, b: float, c: float) -> Span:
     """Between the roots of ``a t^2 + 2 b t + c`` for ``a > 0``, where it is at most 0."""
     root = b * b - a * c
@@ -34,7 +35,7 @@ def _below(a: float, b: float, c: float) -> Span:
     return (min(q / a, c / q), max(q / a, c / q))
 
 
-@njit(cache=True)
+@compiled
 def _slab(o: float, d: float, half: float) -> Span:
     """Where ``|o + t d| <= half``."""
     if d == 0.0:
@@ -43,19 +44,19 @@ def _slab(o: float, d: float, half: float) -> Span:
     return (min(low, high), max(low, high))
 
 
-@njit(cache=True)
+@compiled
 def _both(first: Span, second: Span) -> Span:
     """Intersection of two spans."""
     return (max(first[0], second[0]), min(first[1], second[1]))
 
 
-@njit(cache=True)
+@compiled
 def _sphere(ox: float, oy: float, oz: float, dx: float, dy: float, dz: float, radius: float) -> Span:
     b = ox * dx + oy * dy + oz * dz
     return _below(dx * dx + dy * dy + dz * dz, b, ox * ox + oy * oy + oz * oz - radius * radius)
 
 
-@njit(cache=True)
+@compiled
 def _cone(
     ox: float, oy: float, oz: float, dx: float, dy: float, dz: float, low: float, high: float, half: float
 ) -> Span:
@@ -81,7 +82,7 @@ def _cone(
     return _both((outside[1], math.inf) if shrink < 0.0 else (-math.inf, outside[0]), caps)
 
 
-@njit(cache=True)
+@compiled
 def _capsule(ox: float, oy: float, oz: float, dx: float, dy: float, dz: float, radius: float, half: float) -> Span:
     """Everything within `radius` of the axis from ``-half`` to ``half``: convex, so its parts' hull along the line."""
     low, high = _cone(ox, oy, oz, dx, dy, dz, radius, radius, half) if half > 0.0 else _NOTHING
@@ -94,19 +95,19 @@ def _capsule(ox: float, oy: float, oz: float, dx: float, dy: float, dz: float, r
     return (low, high)
 
 
-@njit(cache=True)
+@compiled
 def _value(c4: float, c2: float, c1: float, c0: float, s: float) -> float:
     """``c4 s^4 + c2 s^2 + c1 s + c0``."""
     return ((c4 * s * s + c2) * s + c1) * s + c0
 
 
-@njit(cache=True)
+@compiled
 def _slope(c4: float, c2: float, c1: float, s: float) -> float:
     """Derivative of `_value`."""
     return (4.0 * c4 * s * s + 2.0 * c2) * s + c1
 
 
-@njit(cache=True)
+@compiled
 def _bracketed(c4: float, c2: float, c1: float, c0: float, low: float, high: float, turning: bool) -> float:
     """Root of `_value` (or of its derivative, where `turning`) in a bracket with a change of sign: safe Newton."""
     rises = (_slope(c4, c2, c1, high) if turning else _value(c4, c2, c1, c0, high)) > 0.0
@@ -129,7 +130,7 @@ def _bracketed(c4: float, c2: float, c1: float, c0: float, low: float, high: flo
     return s
 
 
-@njit(cache=True)
+@compiled
 def _torus(
     ox: float,
     oy: float,
@@ -181,7 +182,7 @@ def _torus(
     return count - count % 2
 
 
-@njit(cache=True)
+@compiled
 def crossings(
     kind: int,
     size: Size,
@@ -225,7 +226,7 @@ def crossings(
     return 2
 
 
-@njit(cache=True)
+@compiled
 def normal(kind: int, size: Size, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Outward normal, of any length, at a point of the surface of an analytic shape."""
     if kind == SPHERE:
