@@ -167,8 +167,6 @@ def test_public_names_are_a_list() -> None:
         "spread_angles",
         "turntable",
         "views_at",
-        "write_page",
-        "write_pictures",
     ]
     for name in lightcube.__all__:
         assert name == "METHODS" or getattr(lightcube, name).__doc__, name

@@ -26,7 +26,7 @@ SMALL = ("--shape", "6,8,7", "--frame-width", "0.7", "--hold", "0", "--iteration
 
 def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     pictures = np.random.default_rng(0).uniform(0.1, 1, (3, 6, 5, 3)).astype(np.float32)
-    photographs, out = io.write_pictures(f"{remote}/photographs", pictures), f"{remote}/a.zarr"
+    photographs, out = io.save(pictures, f"{remote}/photographs"), f"{remote}/a.zarr"
     with monkeypatch.context() as patched:
         patched.setattr("lightcube.scoring.metrics.mean_psnr", pressed)
         stopped = run("solve", photographs, "-o", out, *SMALL)

@@ -31,7 +31,8 @@ def report(
     """Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, how it was made."""
     title = io.bare_name(cube)
     target = f"{title}-report.html" if output is None else output
-    io.check_page_target(target, overwrite=overwrite)
+    page_file = io.Output(target, "page", overwrite)
+    page_file.check()
     loaded = load(cube)
     wanted = frames_from_targets(loaded) if frames is None else refitted(loaded, frames)
     stage = io.read_stage(frames, transfer=loaded.transfer)[0] if frames is not None and io.is_stage(frames) else None
@@ -41,7 +42,7 @@ def report(
     text = page(
         found, title, _compared(found, frames), reproducing(loaded, wanted, frames, made), [*origins(cube, frames)]
     )
-    io.write_page(target, text, overwrite=overwrite)
+    page_file.write(text)
     size, scores = len(text.encode()), found.scores
     done(
         as_json,

@@ -37,12 +37,13 @@ def score(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compare what a cube really casts with what was wanted."""
-    if sheet is not None:
-        io.check_sheet_target(sheet, overwrite=overwrite)
+    sheet_file = None if sheet is None else io.Output(sheet, "picture", overwrite)
+    plot_file = None if plot is None else io.Output(plot, "plot", overwrite)
     if plot is not None and sheet is not None and Path(plot) == Path(sheet):
         raise InputError(f"--sheet and --plot both name {plot}: give them two names")
-    if plot is not None:
-        io.check_figure_target(plot, overwrite=overwrite)
+    for file in (sheet_file, plot_file):
+        if file is not None:
+            file.check()
     loaded = load(cube)
     wanted = frames_from_targets(loaded) if frames is None else refitted(loaded, frames)
     scores = metrics.score(loaded, wanted)
@@ -51,15 +52,15 @@ def score(
             curve = between.curve(loaded, wanted, callback=advance)
         columns = {"angles": curve.angles, "nearest": curve.nearest, "psnr": curve.psnr, "ssim": curve.ssim}
         scores["between"] = {name: column.tolist() for name, column in {**columns, "lobe_deg": curve.lobes}.items()}
-        if plot is not None:
-            io.write_figure(plot, plots.between_plot({"": curve}), overwrite=overwrite)
+        if plot_file is not None:
+            plot_file.write(plots.between_plot({"": curve}))
     if robust:
         with progress("a set-up that is off", as_json=False) as advance:
             scores["robust"] = measure_robust(loaded, wanted, callback=advance)
-    if sheet is not None:
+    if sheet_file is not None:
         shown = casting.play(loaded)
         picture = contact_sheet(shown, wanted, [view["psnr"] for view in scores["views"]])
-        io.write_sheet(sheet, picture, overwrite=overwrite)
+        sheet_file.write(picture)
     if as_json:
         json_document(scores)
     else:

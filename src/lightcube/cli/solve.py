@@ -45,7 +45,7 @@ def solve(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compute the cube whose shadows are the frames; what was stopped or killed goes on where it was."""
-    io.check_cube_target(output, overwrite=overwrite)
+    io.Output(output, "cube", overwrite).check()
     check_partial(output)
     if unit is not None and (memory is not None or scheduler is not None):
         other = "--memory" if scheduler is None else "--scheduler"
@@ -92,7 +92,7 @@ def merge(
 ) -> None:
     """Make the cube of units that were solved one by one."""
     output = published_path(partial)
-    io.check_cube_target(output, overwrite=overwrite)
+    io.Output(output, "cube", overwrite).check()
     began, store = time.monotonic(), DiskStore(partial)
     job = load_job(partial)
     missing = [str(number) for number, name in enumerate(job.unit_names, 1) if name not in store.names()]

@@ -36,8 +36,9 @@ def draw(
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the target if it exists.")] = False,
 ) -> None:
     """Draw the room from above and from the side, with the beams."""
-    io.check_drawing_target(output, overwrite=overwrite)
-    io.write_drawing(output, drawing(io.read_stage(stage)[0]), overwrite=overwrite)
+    plan = io.Output(output, "drawing", overwrite)
+    plan.check()
+    plan.write(drawing(io.read_stage(stage)[0]))
     out.print(f"{Path(output)}")
 
 

@@ -29,7 +29,8 @@ def trace(
 ) -> None:
     """Ray-trace a moving scene: a folder of PNGs, or a movie by suffix."""
     described = io.read_scene(scene)
-    io.check_pictures_target(output, overwrite=overwrite)
+    movie = io.Output(output, "pictures", overwrite)
+    movie.check()
     shape = None
     if size is not None:
         width, height = arguments.whole_numbers(size, "x", "--size", 2)
@@ -38,6 +39,6 @@ def trace(
     solving.check_memory(24 * len(views) * views.picture_shape[0] * views.picture_shape[1])
     with progress("tracing", as_json=as_json) as advance:
         made = scene_frames(described, views, grid, callback=advance)
-    io.write_pictures(output, made.pictures, fps=fps, views=views, overwrite=overwrite)
+    movie.write(made.pictures, fps=fps, views=views)
     rows, columns = views.picture_shape
     done(as_json, f"{len(views)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(views))

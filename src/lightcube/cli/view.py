@@ -29,7 +29,8 @@ def view(
     """Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail."""
     title = io.bare_name(cube)
     target = f"{title}.html" if output is None else output
-    io.check_page_target(target, overwrite=overwrite)
+    page_file = io.Output(target, "page", overwrite)
+    page_file.check()
     loaded = load(cube)
     is_smaller = not full and max(loaded.grid.shape) > smaller.MOST_SIDE
     doing = "solving a smaller cube for the page" if is_smaller else "putting the page together"
@@ -40,7 +41,7 @@ def view(
             loaded, title, full=full, callback=lambda step: advance(round(1000 * step.done), 1000)
         )
     text = page.page_of(description, packed)
-    io.write_page(target, text, overwrite=overwrite)
+    page_file.write(text)
     held, kept, size = description["voxels"]["shape"], description["kept"], len(text.encode())
     if not as_json and is_smaller:
         both = _voxels(held), _voxels(loaded.grid.shape)

@@ -7,7 +7,8 @@ from lightcube.backward.solution import merged
 from lightcube.errors import InputError
 from lightcube.io._files import PARTIAL_SUFFIX
 from lightcube.io._places import Place, name_of, place
-from lightcube.io.cubes import check_cube_target, read_cube, save
+from lightcube.io.cubes import read_cube
+from lightcube.io.outputs import Output
 from lightcube.jobs.partial import DiskStore, discard_partial, load_job, published_path
 from lightcube.optics.cube import Cube
 
@@ -63,7 +64,6 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Place:
     """
     out = published_path(partial)
     cube = _load_partial(place(partial))
-    check_cube_target(out, overwrite=overwrite)
-    save(cube, out, overwrite=overwrite)
+    Output(out, "cube", overwrite).write(cube)
     discard_partial(out)
     return out
