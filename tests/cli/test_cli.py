@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -156,6 +157,7 @@ def test_ctrl_c_keeps_what_was_reached(run, frames: Path, tmp_path: Path, monkey
     assert "hold was" in again.err
     published = run("publish", f"{out}.partial")
     assert published.code == 0
+    assert f"{out} holds 0 of 1 units, the rest is" in published.out
     told = run("info", out)
     assert "interrupted" in told.out
     assert run("publish", f"{out}.partial").code == 2
@@ -261,8 +263,11 @@ BAD = [
     ("info", "{none}"),
     ("info", "{frames}/1.png"),
     ("publish", "{cube}"),
-    ("merge", "{cube}"),
-    ("merge", "{none}.zarr.partial"),
+    ("publish", "{none}.zarr.partial"),
+    ("draw", "{none}", "-o", "{tmp}/a.png"),
+    ("draw", "{cube}", "-o", "{tmp}/a.svg"),
+    ("draw", "{cube}", "-o", "{cube}"),
+    ("draw", "{cube}", "-o", "{tmp}/a.png", "--angle", "nan"),
     ("trace", "{none}", "-o", "{tmp}/a"),
     ("trace", "carousel", "-o", "{tmp}/a", "--size", "64"),
     ("trace", "carousel", "-o", "{tmp}/a", "--frames", "0"),
@@ -346,5 +351,5 @@ def test_help_names_every_command() -> None:
     environment = {**os.environ, "COLUMNS": "100"}
     command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", "--help"]
     text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
-    for name in ("trace", "solve", "play", "score", "info", "publish", "merge", "demo", "check"):
-        assert name in text
+    listed = re.findall(r"^\s+([a-z]+)\s\s+[A-Z]", text, re.MULTILINE)
+    assert " ".join(listed) == "trace check solve play score view report draw info publish bench demo"

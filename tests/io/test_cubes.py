@@ -29,6 +29,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views, turntable
 from lightcube.pictures.frames import Frames
+from lightcube.scoring import metrics
 
 SUFFIXES = (".zarr", ".zarr.zip", ".npz")
 MANY = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -435,7 +436,8 @@ class TestPartial:
         with pytest.warns(UnfinishedCube, match="still being made"):
             reached = load(partial_path(out))
         assert reached.status == "interrupted"
-        assert publish(partial_path(out)) == out
+        made = publish(partial_path(out))
+        assert (made.path, made.is_whole, made.done, made.units) == (out, False, 1, 2)
         assert files_in(tmp_path) == [out.name]
         with pytest.warns(UnfinishedCube, match="stopped early"):
             assert_same(load(out), reached)
@@ -446,7 +448,9 @@ class TestPartial:
         with pytest.warns(UnfinishedCube, match="still being made"):
             whole = load(partial_path(out))
         assert_same(whole, merged(job, DiskStore(partial_path(out))).cube)
-        assert_same(load(publish(partial_path(out))), whole)
+        made = publish(partial_path(out))
+        assert (made.path, made.is_whole) == (out, True)
+        assert_same(load(out), replace(whole, scores=json.loads(json.dumps(metrics.score(whole, job.frames)))))
 
     def test_publish_overwrites_only_when_asked(self, tmp_path: Path, suffix: str) -> None:
         out = save(make((5, 3, 7)), tmp_path / f"a{suffix}")

@@ -4,7 +4,7 @@ import sys
 
 import typer
 
-from lightcube.cli import bench, check, demo, play, report, score, solve, stage, trace, view
+from lightcube.cli import bench, check, demo, draw, play, report, score, solve, trace, view
 from lightcube.cli.console import Stopped, err, plain_warnings, prepare
 from lightcube.errors import InputError
 
@@ -18,12 +18,10 @@ app = typer.Typer(
 )
 
 for command in (
-    *(trace.trace, check.check, solve.solve, solve.merge, play.play, view.view, report.report),
-    *(score.score, score.info, solve.publish, bench.bench),
+    *(trace.trace, check.check, solve.solve, play.play, score.score, view.view, report.report, draw.draw),
+    *(score.info, solve.publish, bench.bench, demo.demo),
 ):
     app.command()(command)
-app.add_typer(stage.app, name="stage")
-app.command()(demo.demo)
 
 #: The exit code after Ctrl-C.
 _INTERRUPTED = 130

@@ -50,4 +50,4 @@ def _picture(kind: str) -> Writer:
 
 
 PLOTS = {".png": _plot("png"), ".svg": _plot("svg")}
-SHEETS = {".png": _picture("PNG"), ".webp": _picture("WEBP"), ".jpg": _picture("JPEG"), ".jpeg": _picture("JPEG")}
+PICTURES = {".png": _picture("PNG"), ".webp": _picture("WEBP"), ".jpg": _picture("JPEG"), ".jpeg": _picture("JPEG")}

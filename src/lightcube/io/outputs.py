@@ -62,7 +62,7 @@ KINDS: Mapping[Kind, Row] = {
     "page": Row("a page", {".html": documents.write_text}, lambda thing: isinstance(thing, str)),
     "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),
     "plot": Row("a plot", documents.PLOTS, lambda thing: hasattr(thing, "savefig")),
-    "picture": Row("a contact sheet", documents.SHEETS, _is_picture),
+    "picture": Row("a picture", documents.PICTURES, _is_picture),
     "document": Row("a document", {".json": documents.write_json}, lambda thing: isinstance(thing, Mapping)),
     "pictures": Row(
         "a movie",
