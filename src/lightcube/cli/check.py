@@ -7,11 +7,7 @@ import typer
 from lightcube import io
 from lightcube.cli.console import err, json_document, out
 from lightcube.cli.options import FRAMES, JSON, one_by_one
-from lightcube.optics.stage import Stage
-from lightcube.pictures.frames import Frames
-from lightcube.planning.placement import doubtful, facts, impossible
-from lightcube.planning.reachable import sentences
-from lightcube.verbs import solving, staging, words
+from lightcube.verbs import checking
 from lightcube.verbs.options import Options
 
 
@@ -21,33 +17,20 @@ def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = Fal
 
     The exit code is 2 where anything on a stage is impossible.
     """
-    if io.is_stage(frames):
-        _stage(*io.read_stage_frames(frames, transfer=options.transfer), as_json=as_json)
-        return
-    options = solving.settled(options)
-    with err.status("rehearsing"):
-        planned = solving.prepare(frames, options)
-        order = solving.another_order(planned)
-    advice = [] if options.paper else words.what_to_change(planned)  # all that would help contradicts it
-    known = words.facts(planned, order)
-    if as_json:
-        json_document({**known, "advice": advice})
-        return
-    for line in [*words.in_short(planned, order), "", *words.table(known), "", *advice]:
-        out.print(line)
-
-
-def _stage(stage: Stage, frames: Frames, *, as_json: bool) -> None:
-    """Print what is known of a stage and its pictures; exit code 2 where something on it is impossible."""
-    wrong, odd = impossible(stage), [*doubtful(stage), *sentences(frames)]
-    if as_json:
-        json_document({**facts(stage), "impossible": wrong, "doubtful": odd})
+    stage = io.is_stage(frames)
+    if stage:
+        found = checking.of_stage(frames, options.transfer)
     else:
-        for line in [*staging.table(stage), "", *odd]:
+        with err.status("rehearsing"):
+            found = checking.of_pictures(frames, options)
+    if as_json:
+        json_document(found.facts)
+    else:
+        for line in found.lines:
             out.print(line)
-        for sentence in wrong:
+        for sentence in found.impossible:
             err.print(f"impossible: {sentence}")
-        if not wrong:
+        if stage and not found.impossible:
             out.print("nothing here is impossible")
-    if wrong:
+    if found.impossible:
         raise typer.Exit(2)

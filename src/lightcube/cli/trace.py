@@ -6,10 +6,9 @@ import typer
 
 from lightcube import io
 from lightcube.cli import arguments
-from lightcube.cli.console import done, progress
+from lightcube.cli.console import done, telling
 from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE
-from lightcube.scene.tracer import scene_frames, scene_views
-from lightcube.verbs import solving
+from lightcube.verbs import tracing
 
 
 def trace(
@@ -35,10 +34,8 @@ def trace(
     if size is not None:
         width, height = arguments.whole_numbers(size, "x", "--size", 2)
         shape = (width, height)
-    grid, views = scene_views(described, frames, shape, span, elevation)
-    solving.check_memory(24 * len(views) * views.picture_shape[0] * views.picture_shape[1])
-    with progress("tracing", as_json=as_json) as advance:
-        made = scene_frames(described, views, grid, callback=advance)
-    movie.write(made.pictures, fps=fps, views=views)
-    rows, columns = views.picture_shape
-    done(as_json, f"{len(views)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(views))
+    with telling("tracing", as_json=as_json) as tell:
+        made = tracing.trace(described, tell, count=frames, size=shape, span=span, elevation=elevation)
+    movie.write(made.pictures, fps=fps, views=made.views)
+    rows, columns = made.views.picture_shape
+    done(as_json, f"{len(made)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(made))
