@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from lightcube import load
 from lightcube.cli import main
 from lightcube.forward.casting import play
 from lightcube.io import save
+from lightcube.jobs.cubes import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import turntable
@@ -163,6 +165,23 @@ def test_ctrl_c_keeps_what_was_reached(run, frames: Path, tmp_path: Path, monkey
     assert run("publish", f"{out}.partial").code == 2
     assert run("solve", frames, "-o", out, "--n", 6, "--overwrite", "--iterations", 3).code == 0
     assert "complete" in run("info", out).out
+
+
+def test_publish_tells_machines_whether_a_cube_is_whole(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    out, said = tmp_path / "a.npz", ("--n", 6, "--iterations", 3, "--powers", "coarse")
+    for units, whole in ((("1/2",), False), (("1/2", "2/2"), True)):
+        for unit in units:
+            assert run("solve", frames, "-o", out, *said, "--unit", unit, "--overwrite").code == 0
+        told = json.loads(run("publish", f"{out}.partial", "--overwrite", "--json").out)
+        assert (told["event"], told["out"], told["units"]) == ("result", str(out), 2)
+        assert (told["whole"], told["units_done"]) == (whole, len(units))
+        assert ("psnr_mean" in told, "psnr_mean" in load_quietly(out).scores) == (whole, whole)
+
+
+def load_quietly(path: Path) -> Cube:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnfinishedCube)
+        return load(path)
 
 
 def test_an_interrupted_cube_remembers_how_it_was_made(  # type: ignore[no-untyped-def]
