@@ -235,7 +235,7 @@ def draw(columns: list[list[tuple[str, Array]]], path: Path) -> None:
         for panel, (title, image) in zip(side, column, strict=False):
             panel.imshow(image, cmap="gray", vmin=0, vmax=most, origin="lower", interpolation="nearest")
             panel.set_title(title, fontsize=7)
-    lc.io.write_figure(path, figure, overwrite=True)
+    lc.save(figure, path, overwrite=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

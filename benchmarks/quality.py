@@ -368,7 +368,7 @@ def main() -> None:
             say_best_elevation(rows)
         if name == "capacity":
             for file, raised, curves in PLOTS:
-                lc.io.write_figure(given.figures / file, capacity_plot(run, curves, raised), overwrite=True)
+                lc.save(capacity_plot(run, curves, raised), given.figures / file, overwrite=True)
 
 
 if __name__ == "__main__":

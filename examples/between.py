@@ -104,9 +104,9 @@ def main(folder: Path) -> None:
         words = "all of these at once" if kind == "all" else disturbance
         print(f"| {words} | " + " | ".join(f"{each[kind]['psnr_mean']:.1f}" for each in left.values()) + " |")
     print("| *the wanted picture half a pixel to the right* | " + " | ".join(f"{each:.1f}" for each in moved) + " |")
-    lc.io.write_figure(folder / "between.png", plots.between_plot(curves), overwrite=True)
+    lc.save(plots.between_plot(curves), folder / "between.png", overwrite=True)
     sheet = np.concatenate(strips).repeat(SCALE, axis=0).repeat(SCALE, axis=1)
-    lc.io.write_sheet(folder / "between-strips.png", sheet, overwrite=True)
+    lc.save(sheet, folder / "between-strips.png", overwrite=True)
 
 
 if __name__ == "__main__":

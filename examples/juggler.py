@@ -29,7 +29,7 @@ def main(out: str) -> None:
     upper = np.concatenate(list(wanted), axis=1)
     gap = np.ones((4, upper.shape[1], 3), np.float32)
     sheet = to_uint8(np.concatenate([upper, gap, lower], axis=0)).repeat(SCALE, axis=0).repeat(SCALE, axis=1)
-    lc.io.write_sheet(out, sheet, overwrite=True)
+    lc.save(sheet, out, overwrite=True)
     print(f"{out}: {lc.score(cube, frames)['psnr_mean']:.1f} dB, {rows} rows")
 
 

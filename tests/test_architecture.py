@@ -167,8 +167,6 @@ def test_public_names_are_a_list() -> None:
         "threads",
         "turntable",
         "turntable_for",
-        "write_page",
-        "write_pictures",
     ]
     for name in lightcube.__all__:
         assert name == "METHODS" or getattr(lightcube, name).__doc__, name

@@ -6,7 +6,7 @@ from lightcube.backward.solving import solve
 from lightcube.cores import threads
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
-from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save, write_page, write_pictures
+from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save
 from lightcube.jobs.cubes import load, publish
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
@@ -76,8 +76,6 @@ __all__ = [
     "threads",
     "turntable",
     "turntable_for",
-    "write_page",
-    "write_pictures",
 ]
 
 Cube.shown_by = displayed  # the cube itself stands too low to know the page

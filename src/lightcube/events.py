@@ -36,3 +36,17 @@ class Said:
 
 #: Called with all that happens; True stops the work.
 Tell = Callable[[Progress | Said], bool | None]
+
+
+class Interrupted(Exception):  # noqa: N818 - nothing is wrong
+    """Work was told to stop, and nothing of it is kept."""
+
+
+def counting(tell: Tell) -> Callable[[int, int], None]:
+    """Make a callback of how much of how much is done, which raises `Interrupted` where `tell` stops the work."""
+
+    def advance(done: int, of: int) -> None:
+        if tell(Progress(done, of)):
+            raise Interrupted
+
+    return advance

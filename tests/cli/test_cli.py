@@ -2,9 +2,11 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +17,7 @@ from lightcube import load
 from lightcube.cli import main
 from lightcube.forward.casting import play
 from lightcube.io import save
+from lightcube.jobs.cubes import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
@@ -156,11 +159,29 @@ def test_ctrl_c_keeps_what_was_reached(run, frames: Path, tmp_path: Path, monkey
     assert "hold was" in again.err
     published = run("publish", f"{out}.partial")
     assert published.code == 0
+    assert f"{out} holds 0 of 1 units, the rest is" in published.out
     told = run("info", out)
     assert "interrupted" in told.out
     assert run("publish", f"{out}.partial").code == 2
     assert run("solve", frames, "-o", out, "--n", 6, "--overwrite", "--iterations", 3).code == 0
     assert "complete" in run("info", out).out
+
+
+def test_publish_tells_machines_whether_a_cube_is_whole(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    out, said = tmp_path / "a.npz", ("--n", 6, "--iterations", 3, "--powers", "coarse")
+    for units, whole in ((("1/2",), False), (("1/2", "2/2"), True)):
+        for unit in units:
+            assert run("solve", frames, "-o", out, *said, "--unit", unit, "--overwrite").code == 0
+        told = json.loads(run("publish", f"{out}.partial", "--overwrite", "--json").out)
+        assert (told["event"], told["out"], told["units"]) == ("result", str(out), 2)
+        assert (told["whole"], told["units_done"]) == (whole, len(units))
+        assert ("psnr_mean" in told, "psnr_mean" in load_quietly(out).scores) == (whole, whole)
+
+
+def load_quietly(path: Path) -> Cube:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UnfinishedCube)
+        return load(path)
 
 
 def test_an_interrupted_cube_remembers_how_it_was_made(  # type: ignore[no-untyped-def]
@@ -261,8 +282,11 @@ BAD = [
     ("info", "{none}"),
     ("info", "{frames}/1.png"),
     ("publish", "{cube}"),
-    ("merge", "{cube}"),
-    ("merge", "{none}.zarr.partial"),
+    ("publish", "{none}.zarr.partial"),
+    ("draw", "{none}", "-o", "{tmp}/a.png"),
+    ("draw", "{cube}", "-o", "{tmp}/a.svg"),
+    ("draw", "{cube}", "-o", "{cube}"),
+    ("draw", "{cube}", "-o", "{tmp}/a.png", "--angle", "nan"),
     ("trace", "{none}", "-o", "{tmp}/a"),
     ("trace", "carousel", "-o", "{tmp}/a", "--size", "64"),
     ("trace", "carousel", "-o", "{tmp}/a", "--frames", "0"),
@@ -346,5 +370,5 @@ def test_help_names_every_command() -> None:
     environment = {**os.environ, "COLUMNS": "100"}
     command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", "--help"]
     text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
-    for name in ("trace", "solve", "play", "score", "info", "publish", "merge", "demo", "check"):
-        assert name in text
+    listed = re.findall(r"^\s+([a-z]+)\s\s+[A-Z]", text, re.MULTILINE)
+    assert " ".join(listed) == "trace check solve play score view report draw info publish bench demo"

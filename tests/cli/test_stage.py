@@ -79,7 +79,9 @@ def test_a_stage_goes_through_all_commands(run, stage: Path) -> None:  # type: i
     assert own["psnr_mean"] == pytest.approx(given["psnr_mean"], abs=0.2)
     assert [view["angle"] for view in given["views"]] == [10, 130, 10]
     assert "bulb" in run("info", cube).out
-    assert run("check", stage).out == run("stage", "check", stage).out
+    checked = run("check", stage)
+    assert checked.code == 0
+    assert "nothing here is impossible" in checked.out
 
 
 @pytest.mark.parametrize(
@@ -113,10 +115,28 @@ def test_a_still_is_a_png(run, stage: Path) -> None:  # type: ignore[no-untyped-
 
 def test_a_drawing_is_an_svg_that_is_not_overwritten(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     out = stage.parent / "room.svg"
-    assert run("stage", "draw", stage, "-o", out).code == 0
+    assert run("draw", stage, "-o", out).code == 0
     assert out.read_text().startswith("<svg")
-    assert run("stage", "draw", stage, "-o", out).code == 2
-    assert run("stage", "draw", stage, "-o", stage.parent / "room.bmp").code == 2
+    for more, said in (
+        (("-o", out), "exists already"),
+        (("-o", stage.parent / "room.png"), "no suffix that a drawing can have: use .svg"),
+        (("-o", stage.parent / "other.svg", "--angle", 5), "--angle is for a cube"),
+    ):
+        done = run("draw", stage, *more)
+        assert (done.code, done.out) == (2, "")
+        assert said in done.err
+
+
+def test_a_cubes_room_is_drawn_as_it_is_played(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    cube, out = solved(run, stage), stage.parent / "room.png"
+    for more, angle in (((), 10), (("--angle", 25), 25)):
+        assert run("draw", cube, "-o", out, "--overwrite", *more).code == 0
+        assert run("play", cube, "-o", stage.parent / "still.png", "--room", "--angles", angle, "--overwrite").code == 0
+        with Image.open(out) as drawn, Image.open(stage.parent / "still.png") as played:
+            np.testing.assert_array_equal(np.asarray(drawn), np.asarray(played))
+    done = run("draw", cube, "-o", stage.parent / "other.svg")
+    assert done.code == 2
+    assert "use one of .png, .webp, .jpg, .jpeg" in done.err
 
 
 def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
@@ -165,7 +185,7 @@ def test_options_that_contradict_a_stage_are_refused(run, stage: Path, options: 
 def test_what_cannot_be_is_said_by_check_and_solve(run, stage: Path, old: str, new: str, said: str) -> None:  # type: ignore[no-untyped-def]
     assert old in STAGE
     stage.write_text(STAGE.replace(old, new, 1))
-    for command in (["stage", "check", stage], ["check", stage], ["solve", stage, "-o", stage.parent / "cube.zarr"]):
+    for command in (["check", stage], ["solve", stage, "-o", stage.parent / "cube.zarr"]):
         done = run(*command)
         assert done.code == 2
         assert said in done.err

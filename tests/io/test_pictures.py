@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 from lightcube.errors import InputError
-from lightcube.io import TransparentPictures, _decode, read_pictures, write_pictures
+from lightcube.io import TransparentPictures, _decode, read_pictures, save
 from lightcube.optics.transfer import Transfer, decode, from_uint8, to_uint8
 from lightcube.optics.views import spread_angles
 
@@ -425,7 +425,7 @@ class TestRefused:
             read_pictures(tmp_path / "a.mkv")
 
     def test_a_video_with_damaged_pictures(self, tmp_path: Path) -> None:
-        path = write_pictures(tmp_path / "a.mp4", np.random.default_rng(1).random((8, 65, 97, 3), dtype=np.float32))
+        path = save(np.random.default_rng(1).random((8, 65, 97, 3), dtype=np.float32), tmp_path / "a.mp4")
         content = bytearray(path.read_bytes())
         middle = len(content) // 2
         content[middle : middle + 60] = bytes(byte ^ 0x5A for byte in content[middle : middle + 60])
@@ -471,7 +471,7 @@ def test_containers_know_their_length(tmp_path: Path, suffix: str) -> None:
     whole, cut = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
     sample(whole)
     if suffix in (".mp4", ".mov"):  # with its index in front, where a cut loses pictures and nothing else
-        write_pictures(tmp_path / "c.mp4", np.stack(read_pictures(whole).images))
+        save(np.stack(read_pictures(whole).images), tmp_path / "c.mp4")
         (tmp_path / "c.mp4").rename(whole)
     content = whole.read_bytes()
     assert len(read_pictures(whole)) == 3

@@ -15,16 +15,11 @@ from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io import (
+    Output,
     TransparentPictures,
     _places,
-    check_cube_target,
-    check_pictures_target,
-    check_sheet_target,
     read_pictures,
     save,
-    write_json,
-    write_pictures,
-    write_sheet,
 )
 from lightcube.jobs.cubes import load
 from lightcube.optics.cube import Cube
@@ -142,16 +137,16 @@ def files_at(url: str) -> dict[str, bytes]:
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_cubes_come_back_bit_for_bit(folder: str, suffix: str) -> None:
     url = f"{folder}/a{suffix}"
-    check_cube_target(url)
+    Output(url, "cube").check()
     assert save(make(), url) == url
     assert_same(load(url), make())
     assert_same(load(url + "/"), make())
     assert {name.split("/")[0] for name in files_at(folder)} == {f"a{suffix}"}
-    for refused in (lambda: save(make((5, 3, 7)), url), lambda: check_cube_target(url)):
+    for refused in (lambda: save(make((5, 3, 7)), url), Output(url, "cube").check):
         with pytest.raises(InputError, match=rf"a{suffix} exists already.*--overwrite"):
             refused()
     assert_same(load(url), make())
-    check_cube_target(url, overwrite=True)
+    Output(url, "cube", overwrite=True).check()
     save(make((5, 3, 7)), url, overwrite=True)
     assert_same(load(url), make((5, 3, 7)))
 
@@ -159,23 +154,23 @@ def test_cubes_come_back_bit_for_bit(folder: str, suffix: str) -> None:
 @pytest.mark.parametrize("suffix", ["", ".webm", ".apng"])
 def test_pictures_come_back(folder: str, suffix: str) -> None:
     url = f"{folder}/a{suffix}"
-    check_pictures_target(url)
+    Output(url, "pictures").check()
     names = ("b", "a", "ü [1]", "c") if not suffix else None
-    assert write_pictures(url, from_uint8(LEVELS), views=None if suffix else VIEWS, names=names) == url
+    assert save(from_uint8(LEVELS), url, views=None if suffix else VIEWS, names=names) == url
     read = read_pictures(url)
     np.testing.assert_array_equal(np.stack([to_uint8(image) for image in read.images]), LEVELS)
     if not suffix:
         assert read.names == names
         np.testing.assert_array_equal(read.angles, VIEWS.angles)
     with pytest.raises(InputError, match="exists already"):
-        write_pictures(url, from_uint8(LEVELS))
-    write_pictures(url, from_uint8(LEVELS[:2, :3]), overwrite=True)
+        save(from_uint8(LEVELS), url)
+    save(from_uint8(LEVELS[:2, :3]), url, overwrite=True)
     assert [image.shape for image in read_pictures(url).images] == [(3, 7, 3)] * 2
     assert len(files_at(url) if not suffix else files_at(folder)) == (2 if not suffix else 1)
 
 
 def test_only_pictures_are_fetched_of_a_folder(remote: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    write_pictures(f"{remote}/a", from_uint8(LEVELS), views=VIEWS)
+    save(from_uint8(LEVELS), f"{remote}/a", views=VIEWS)
     for name in ("notes.txt", "[x].raw", "deep/0.png", ".hidden.png"):
         put(f"{remote}/a/{name}", b"x")
     sizes: dict[str, int] = {}
@@ -211,7 +206,7 @@ def test_an_interrupted_upload_is_never_taken_for_whole(
         if suffix:
             save(make(((3, 5, 7), (5, 3, 7))[number]), url, overwrite=overwrite)
         else:
-            write_pictures(url, from_uint8(LEVELS[: 4 - number]), overwrite=overwrite)
+            save(from_uint8(LEVELS[: 4 - number]), url, overwrite=overwrite)
 
     def found() -> str:
         try:
@@ -237,7 +232,7 @@ def test_an_interrupted_upload_is_never_taken_for_whole(
                 store.rm_file(f"{path}/{_places.UNFINISHED}")
                 assert found() in ("old", "new")
                 store.pipe_file(f"{path}/{_places.UNFINISHED}", b"")
-            check_cube_target(url) if suffix else check_pictures_target(url)
+            Output(url, "cube" if suffix else "pictures").check()
             write(0, overwrite=False)
     assert finished
     assert {"new"} < seen <= ({"old", "new"} if suffix == ".npz" else {"old", "unfinished", "new"})
@@ -326,13 +321,14 @@ def test_names_that_lead_out_of_the_folder_are_refused(s3: str, tmp_path: Path) 
 
 
 def test_single_pictures_and_documents(remote: str) -> None:
-    check_sheet_target(f"{remote}/a.png")
-    assert write_sheet(f"{remote}/a.png", LEVELS[0]) == f"{remote}/a.png"
-    write_json(f"{remote}/a.json", {"a": 1})
+    sheet = Output(f"{remote}/a.png", "picture")
+    sheet.check()
+    sheet.write(LEVELS[0])
+    assert save({"a": 1}, f"{remote}/a.json") == f"{remote}/a.json"
     assert set(files_at(remote)) == {"a.png", "a.json"}
     assert files_at(remote)["a.json"] == b'{\n  "a": 1\n}\n'
     with pytest.raises(InputError, match="exists already"):
-        check_sheet_target(f"{remote}/a.png")
+        sheet.check()
 
 
 def test_warnings_name_the_url(remote: str) -> None:
@@ -382,7 +378,7 @@ def test_files_of_a_folder(folder: str) -> None:
     ],
 )
 def test_urls_that_cannot_be_right(url: str, said: str) -> None:
-    for refused in (lambda: save(make(), url), lambda: load(url), lambda: check_cube_target(url)):
+    for refused in (lambda: save(make(), url), lambda: load(url), Output(url, "cube").check):
         with pytest.raises(InputError, match=said):
             refused()
 

@@ -239,7 +239,7 @@ def test_the_command_line_solves_there_or_here(  # type: ignore[no-untyped-def]
     assert " of 3 units" in again.err
     for unit in ("1/3", "2/3", "3/3"):
         assert run("solve", frames, "-o", here, *said, "--unit", unit).code == 0
-    assert run("merge", f"{here}.partial").code == 0
+    assert run("publish", f"{here}.partial").code == 0
     assert_same(load(out), load(here))
 
 

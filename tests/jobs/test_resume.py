@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -110,26 +111,23 @@ def content_of(cube: Path) -> dict[str, bytes]:
     return {str(path.relative_to(cube)): data for path, data in content(cube).items()}
 
 
-def test_units_of_several_programs_and_merge_are_the_run_in_one(run, photographs: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_units_of_several_programs_published_are_the_run_in_one(run, photographs: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     out, one = tmp_path / "a.zarr", tmp_path / "one.zarr"
     said = options(*LEVEL_LAMP, "--iterations", "9")
     assert run("solve", photographs, "-o", out, *said, "--unit", "2/2").code == 0
     assert not out.exists()
-    lacking = run("merge", f"{out}.partial")
-    assert lacking.code == 2
-    assert "lacks unit 1" in lacking.err
-    assert "--unit 1/2" in lacking.err
     other = run("solve", photographs, "-o", out, *said, "--unit", "1/3")
     assert other.code == 2
     assert "units was 2 and is 3" in other.err
     told = json.loads(run("solve", photographs, "-o", out, *said, "--dry-run", "--json").out)
     assert told["units"] == 2  # as the folder was begun
     assert run("solve", photographs, "-o", out, *said, "--unit", "1/2").code == 0
-    merge = run("merge", f"{out}.partial")
-    assert merge.code == 0, merge.err
-    assert "PSNR" in merge.out
+    published = run("publish", f"{out}.partial")
+    assert published.code == 0, published.err
+    assert f"{out} is whole: PSNR" in published.out
     assert not partial_path(out).exists()
     made = load(out)
+    assert made.scores["psnr_mean"] > 0
     assert made.status == "complete"
     assert made.provenance["units"] == 2
     told = json.loads(run("solve", photographs, "-o", one, *said, "--dry-run", "--json").out)
@@ -255,7 +253,7 @@ def test_publishing_what_is_there(tmp_path: Path) -> None:
     assert np.all(cube.extinction.max(axis=(0, 2, 3)) > 0)
     begun(tmp_path / "b.zarr", made, *made.pieces)
     publish(partial_path(tmp_path / "b.zarr"))
-    assert_same(load(tmp_path / "b.zarr"), whole)
+    assert_same(replace(load(tmp_path / "b.zarr"), scores={}), whole)
 
 
 def test_two_programs_at_the_same_unit_do_no_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -339,7 +337,7 @@ def test_another_version_refuses_to_go_on_but_publishes(tmp_path: Path, monkeypa
         monkeypatch.setattr(f"{module}.version", lambda _: "9.9")
     with pytest.raises(InputError, match=r"lightcube was .* and is 9\.9"):
         open_partial(tmp_path / "a.zarr", made)
-    assert load(publish(partial_path(tmp_path / "a.zarr"))).status == "complete"
+    assert load(publish(partial_path(tmp_path / "a.zarr")).path).status == "complete"
 
 
 def test_old_leftovers_are_removed_and_fresh_ones_are_not(tmp_path: Path) -> None:

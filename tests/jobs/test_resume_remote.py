@@ -26,7 +26,7 @@ SMALL = ("--shape", "6,8,7", "--frame-width", "0.7", "--hold", "0", "--iteration
 
 def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     pictures = np.random.default_rng(0).uniform(0.1, 1, (3, 6, 5, 3)).astype(np.float32)
-    photographs, out = io.write_pictures(f"{remote}/photographs", pictures), f"{remote}/a.zarr"
+    photographs, out = io.save(pictures, f"{remote}/photographs"), f"{remote}/a.zarr"
     with monkeypatch.context() as patched:
         patched.setattr("lightcube.scoring.metrics.mean_psnr", pressed)
         stopped = run("solve", photographs, "-o", out, *SMALL)
@@ -52,7 +52,7 @@ def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch
     assert {"sheet.png", "a.gif"} <= set(files_at(remote))
 
 
-def test_units_and_merge_at_a_url(run, remote: str) -> None:  # type: ignore[no-untyped-def]
+def test_units_are_published_at_a_url(run, remote: str) -> None:  # type: ignore[no-untyped-def]
     made, out = job(**LEVEL, passes=2), f"{remote}/a.npz"
     store = open_partial(out, made)
     assert store.is_empty()
@@ -63,7 +63,7 @@ def test_units_and_merge_at_a_url(run, remote: str) -> None:  # type: ignore[no-
     assert store.names() == set(made.pieces)
     whole = solved(made)
     assert same(merged(made, store), whole)
-    assert run("merge", f"{out}.partial").code == 0
+    assert run("publish", f"{out}.partial").code == 0
     np.testing.assert_array_equal(load(out).extinction, whole.cube.extinction)
     assert not files_at(f"{out}.partial")
 
@@ -76,7 +76,7 @@ def test_what_is_there_is_published_or_replaced(remote: str) -> None:
     with pytest.raises(InputError, match="has nothing of a cube in it yet"):
         publish(f"{out}.partial")
     assert solve_piece(made, made.pieces[0], store)
-    assert publish(f"{out}.partial") == out
+    assert publish(f"{out}.partial").path == out
     with pytest.warns(UnfinishedCube):
         assert load(out).status == "interrupted"
     assert solve_piece(made, made.pieces[0], open_partial(out, made))

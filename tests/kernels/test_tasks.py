@@ -331,7 +331,7 @@ def test_the_command_line_refuses_what_is_no_number_of_threads(
 
 def test_threads_of_the_command_line_hold_and_stand_in_no_cube(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_NUM_THREADS", "2")
-    lightcube.write_pictures(str(tmp_path / "frames"), pictures()[0].pictures)
+    lightcube.save(pictures()[0].pictures, tmp_path / "frames")
     for name, options in (("one", ["--threads", "2"]), ("other", [])):
         tasks.set_threads(1)
         command = ["lightcube", "solve", str(tmp_path / "frames"), "-o", str(tmp_path / f"{name}.zarr"), "--n", "9"]

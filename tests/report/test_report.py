@@ -192,7 +192,7 @@ def test_the_command_makes_the_cube_bit_for_bit(run: Run, frames: Path, options:
     if "--unit" in options:
         for unit in (1, 2, 3):
             assert run(*solve[:-1], f"{unit}/3")[0] == 0
-        run("merge", "a cube.npz.partial")
+        run("publish", "a cube.npz.partial")
     else:
         assert run(*solve)[0] == 0
     _makes_it_again(run, "a cube.npz", "frames")

@@ -47,7 +47,7 @@ def kept(picture: bytes, name: str, tmp_path: Path) -> np.ndarray[Any, np.dtype[
 def test_the_page_is_drawn(
     browser: Any, cube: Cube, tmp_path: Path, name: str, width: int, height: int, scheme: str
 ) -> None:
-    io.write_page(tmp_path / "photographs.html", page(cube, "photographs"))
+    io.save(page(cube, "photographs"), tmp_path / "photographs.html")
     tab, heard = opened(browser, tmp_path / "photographs.html", width=width, height=height, color_scheme=scheme)
     room = tab.locator("canvas.room")
     room.wait_for()

@@ -2,28 +2,35 @@
 
 from typing import Annotated
 
+import typer
+
 from lightcube import io
-from lightcube.cli import stage
 from lightcube.cli.console import err, json_document, out
 from lightcube.cli.options import FRAMES, JSON, one_by_one
-from lightcube.verbs import solving, words
+from lightcube.verbs import checking
 from lightcube.verbs.options import Options
 
 
 @one_by_one
 def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
-    """Say before solving what can be known: what contradicts itself, how full the cube is, how good it will be."""
-    if io.is_stage(frames):
-        stage.checked(*io.read_stage_frames(frames, transfer=options.transfer), as_json=as_json)
-        return
-    options = solving.settled(options)
-    with err.status("rehearsing"):
-        planned = solving.prepare(frames, options)
-        order = solving.another_order(planned)
-    advice = [] if options.paper else words.what_to_change(planned)  # all that would help contradicts it
-    facts = words.facts(planned, order)
+    """Say before solving what can be known: how good it will be, what contradicts itself, or on a stage cannot be.
+
+    The exit code is 2 where anything on a stage is impossible.
+    """
+    stage = io.is_stage(frames)
+    if stage:
+        found = checking.of_stage(frames, options.transfer)
+    else:
+        with err.status("rehearsing"):
+            found = checking.of_pictures(frames, options)
     if as_json:
-        json_document({**facts, "advice": advice})
-        return
-    for line in [*words.in_short(planned, order), "", *words.table(facts), "", *advice]:
-        out.print(line)
+        json_document(found.facts)
+    else:
+        for line in found.lines:
+            out.print(line)
+        for sentence in found.impossible:
+            err.print(f"impossible: {sentence}")
+        if stage and not found.impossible:
+            out.print("nothing here is impossible")
+    if found.impossible:
+        raise typer.Exit(2)

@@ -131,9 +131,21 @@ class Stopped(Exception):  # noqa: N818 - nothing is wrong
 @contextmanager
 def listening(task: str, *, as_json: bool) -> Iterator[Tell]:
     """Yield what long work tells: it prints, and stops the work where Ctrl-C was pressed."""
-    with ctrl_c() as pressed, progress(task, as_json=as_json) as advance:
+    with ctrl_c() as pressed, telling(task, as_json=as_json) as tell_it:
 
         def tell(event: events.Progress | Said) -> bool:
+            tell_it(event)
+            return pressed()
+
+        yield tell
+
+
+@contextmanager
+def telling(task: str, *, as_json: bool) -> Iterator[Tell]:
+    """Yield what work tells of which nothing is kept: it prints; Ctrl-C ends the work at once."""
+    with progress(task, as_json=as_json) as advance:
+
+        def tell(event: events.Progress | Said) -> None:
             if isinstance(event, Said) and as_json:
                 json_line(event.what, **event.facts)
             elif isinstance(event, Said):
@@ -141,7 +153,6 @@ def listening(task: str, *, as_json: bool) -> Iterator[Tell]:
             else:  # the bar reckons for itself how long it takes
                 left = {"left_s": event.left_s} if as_json and event.left_s is not None else {}
                 advance(event.done, event.of, **event.figures, **left)
-            return pressed()
 
         yield tell
 

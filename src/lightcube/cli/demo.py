@@ -53,7 +53,7 @@ def run(folder: Path) -> None:
         _one("photographs", planned.frames, grid, folder, planned.recipe),
         _one("juggler", _juggler(grid), grid, folder),
     ]
-    io.write_json(folder / "metrics.json", {row["name"]: row for row in rows}, overwrite=True)
+    io.save({row["name"]: row for row in rows}, folder / "metrics.json", overwrite=True)
     out.print()
     out.print(
         f"{'cube':>14} {'pictures':>16} {'lamp':>6} {'PSNR':>8} {'worst':>7} {'SSIM':>7} {'dE2000':>7} {'time':>7}"
@@ -86,15 +86,15 @@ def _one(name: str, frames: Frames, grid: Grid, folder: Path, recipe: Recipe | N
     io.save(cube, folder / f"{name}.zarr", overwrite=True)
     shown = casting.play(cube)
     sheet = contact_sheet(shown, frames, [view["psnr"] for view in scores["views"]])
-    io.write_sheet(folder / f"{name}.png", sheet, overwrite=True)
+    io.save(sheet, folder / f"{name}.png", overwrite=True)
     stops = _on_a_screen(casting.cast(cube))
-    io.write_pictures(
-        folder / f"{name}-stops.mp4", stops, count=len(frames), fps=min(10, len(frames) / 4), scale=6, overwrite=True
+    io.save(
+        stops, folder / f"{name}-stops.mp4", count=len(frames), fps=min(10, len(frames) / 4), scale=6, overwrite=True
     )
     turn = turning.turn(cube, 180)
     shadows = _on_a_screen(casting.cast(cube, *turning.moment(cube, turn, whole_screen=True)))
-    io.write_pictures(folder / f"{name}-turn.mp4", shadows, count=len(turn), fps=20, scale=4, overwrite=True)
-    io.write_page(folder / f"{name}.html", page(cube, name), overwrite=True)
+    io.save(shadows, folder / f"{name}-turn.mp4", count=len(turn), fps=20, scale=4, overwrite=True)
+    io.save(page(cube, name), folder / f"{name}.html", overwrite=True)
     rows, columns = frames.rig.picture_shape
     return {
         "name": name,
@@ -119,7 +119,7 @@ def paper(folder: Path) -> None:
     whole_turn = turntable(grid, np.arange(0, 360, 5.0))
     rows, columns = raster_shape(grid)
     shown = pictures_from_columns(transmittance(Projector(grid, whole_turn).forward(x)), (rows, columns), 3)
-    io.write_pictures(folder / "paper.gif", shown.astype(np.float32), fps=12, scale=48, overwrite=True)
+    io.save(shown.astype(np.float32), folder / "paper.gif", fps=12, scale=48, overwrite=True)
     out.print(f"A random cube of 3 x 3 x 3 voxels turns: {columns} x {rows} pictures in {folder}/paper.gif")
     views = turntable(grid, spread_angles(8))
     matrix = Projector(grid, views)

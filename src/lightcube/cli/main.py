@@ -4,7 +4,7 @@ import sys
 
 import typer
 
-from lightcube.cli import bench, check, demo, play, report, score, solve, stage, trace, view
+from lightcube.cli import bench, check, demo, draw, play, report, score, solve, trace, view
 from lightcube.cli.console import Stopped, err, plain_warnings, prepare
 from lightcube.cli.options import threaded
 from lightcube.errors import InputError
@@ -19,13 +19,11 @@ app = typer.Typer(
 )
 
 for command in (
-    *(trace.trace, check.check, solve.solve, solve.merge, play.play, view.view, report.report),
-    *(score.score, bench.bench, demo.demo),
+    *(trace.trace, check.check, solve.solve, play.play, score.score, view.view, report.report, draw.draw),
+    *(score.info, solve.publish, bench.bench, demo.demo),
 ):
-    app.command()(threaded(command))
-for command in (score.info, solve.publish):  # that compute nothing
-    app.command()(command)
-app.add_typer(stage.app, name="stage")
+    computes = command not in (draw.draw, score.info, solve.publish)
+    app.command()(threaded(command) if computes else command)
 
 #: The exit code after Ctrl-C.
 _INTERRUPTED = 130

@@ -44,7 +44,8 @@ def play(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix."""
-    io.check_pictures_target(output, overwrite=overwrite)
+    movie = io.Output(output, "pictures", overwrite)
+    movie.check()
     if target and no_mask:
         raise InputError("--target shows the picture window: leave out --no-mask")
     if room and (target or no_mask or screens):
@@ -68,8 +69,7 @@ def play(
         if not as_json:
             err.print(sentence)
     with progress("playing", as_json=as_json) as advance:
-        io.write_pictures(
-            output,
+        movie.write(
             _counted(show.pictures, show.count, advance),
             count=show.count,
             transfer=loaded.transfer,
@@ -77,7 +77,6 @@ def play(
             scale=arguments.movie_scale(output, show.rows) if scale is None else scale,
             views=show.views,
             names=show.names,
-            overwrite=overwrite,
         )
     done(as_json, f"{show.count} pictures in {output}", out=str(output), frames=show.count)
 

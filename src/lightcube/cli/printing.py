@@ -1,7 +1,6 @@
 """What is printed of a solved cube and of its scores."""
 
 from collections import Counter
-from pathlib import Path
 from typing import Any
 
 from lightcube.backward.solution import Solution
@@ -10,7 +9,7 @@ from lightcube.optics.disturbance import DISTURBANCES
 
 
 def facts(solution: Solution) -> dict[str, Any]:
-    """How a solver arrived, for JSON."""
+    """How a solver arrived, and how good its cube is, for JSON."""
     return {
         "iterations": len(solution.residuals),
         "residual": float(solution.residuals[-1]),
@@ -18,11 +17,14 @@ def facts(solution: Solution) -> dict[str, Any]:
         "stop_reason": solution.stop_reason,
         "rejected": solution.rejected.tolist(),
         "undetermined": solution.undetermined,
+        "predicted": solution.cube.provenance.get("predicted"),
+        **solution.cube.scores,
     }
 
 
-def solved(solution: Solution, scores: dict[str, Any], output: str | Path, seconds: float) -> None:
-    """Print how good the cube is and how long it took."""
+def solved(solution: Solution, opening: str, seconds: float | None = None) -> None:
+    """Print how good a cube is, after an opening, and how long it took where that is known."""
+    scores = solution.cube.scores
     if len(solution.rejected):
         most = Counter(solution.cube.names[view] for view in solution.rejected[:, 0]).most_common(5)
         views = ", ".join(f"{count} in {name}" for name, count in most)
@@ -30,9 +32,9 @@ def solved(solution: Solution, scores: dict[str, Any], output: str | Path, secon
     if solution.undetermined:
         out.print(f"{solution.undetermined} voxel values that nothing determines are transparent")
     out.print(
-        f"{output}: PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), "
+        f"{opening}: PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), "
         f"SSIM {scores['ssim_mean']:.3f}, colour difference {scores['delta_e_mean']:.1f}; "
-        f"{len(solution.residuals)} passes in {seconds:.0f} s",
+        f"{len(solution.residuals)} passes" + (f" in {seconds:.0f} s" if seconds is not None else ""),
     )
 
 

@@ -7,17 +7,13 @@ import typer
 
 from lightcube import io
 from lightcube.cli import arguments, printing
-from lightcube.cli.console import json_document, out, progress
+from lightcube.cli.console import json_document, out, telling
 from lightcube.cli.options import JSON, OVERWRITE
-from lightcube.drawing import plots
-from lightcube.drawing.sheet import contact_sheet
 from lightcube.errors import InputError
-from lightcube.forward import casting
 from lightcube.jobs.cubes import load
-from lightcube.pictures.fitting import frames_from_targets
-from lightcube.scoring import between, metrics
-from lightcube.scoring.robust import robust as measure_robust
-from lightcube.verbs.wanted import refitted
+from lightcube.scoring import metrics
+from lightcube.verbs import scoring
+from lightcube.verbs.wanted import wanted_of
 
 
 def score(
@@ -37,33 +33,25 @@ def score(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compare what a cube really casts with what was wanted."""
-    if sheet is not None:
-        io.check_sheet_target(sheet, overwrite=overwrite)
+    sheet_file = None if sheet is None else io.Output(sheet, "picture", overwrite)
+    plot_file = None if plot is None else io.Output(plot, "plot", overwrite)
     if plot is not None and sheet is not None and Path(plot) == Path(sheet):
         raise InputError(f"--sheet and --plot both name {plot}: give them two names")
-    if plot is not None:
-        io.check_figure_target(plot, overwrite=overwrite)
+    for file in (sheet_file, plot_file):
+        if file is not None:
+            file.check()
     loaded = load(cube)
-    wanted = frames_from_targets(loaded) if frames is None else refitted(loaded, frames)
-    scores = metrics.score(loaded, wanted)
-    if between_frames or plot is not None:
-        with progress("between the frames", as_json=False) as advance:  # what is printed is one document
-            curve = between.curve(loaded, wanted, callback=advance)
-        columns = {"angles": curve.angles, "nearest": curve.nearest, "psnr": curve.psnr, "ssim": curve.ssim}
-        scores["between"] = {name: column.tolist() for name, column in {**columns, "lobe_deg": curve.lobes}.items()}
-        if plot is not None:
-            io.write_figure(plot, plots.between_plot({"": curve}), overwrite=overwrite)
-    if robust:
-        with progress("a set-up that is off", as_json=False) as advance:
-            scores["robust"] = measure_robust(loaded, wanted, callback=advance)
-    if sheet is not None:
-        shown = casting.play(loaded)
-        picture = contact_sheet(shown, wanted, [view["psnr"] for view in scores["views"]])
-        io.write_sheet(sheet, picture, overwrite=overwrite)
+    wanted = wanted_of(loaded, frames)
+    with telling("measuring", as_json=False) as tell:  # what is printed is one document
+        found = scoring.score(loaded, wanted, tell, between=between_frames or plot is not None, off=robust)
+    if plot_file is not None and found.curve is not None:
+        plot_file.write(scoring.plot(found.curve))
+    if sheet_file is not None:
+        sheet_file.write(scoring.sheet(loaded, wanted, found))
     if as_json:
-        json_document(scores)
+        json_document(found.scores)
     else:
-        printing.scored(scores)
+        printing.scored(found.scores)
 
 
 def info(

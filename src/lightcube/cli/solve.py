@@ -1,9 +1,7 @@
-"""The commands that make cubes: `solve`, `merge`, `publish`."""
+"""The commands that make cubes: `solve` and `publish`."""
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -11,14 +9,13 @@ import typer
 from lightcube import io
 from lightcube.backward.job import Job
 from lightcube.backward.needs import job_memory
-from lightcube.backward.solution import merged
+from lightcube.backward.solution import Solution
 from lightcube.cli import arguments, printing
 from lightcube.cli.console import Stopped, done, err, json_line, listening, out
 from lightcube.cli.options import FRAMES, JSON, OUT, OVERWRITE, one_by_one
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, cubes, running
-from lightcube.jobs.partial import DiskStore, check_partial, discard_partial, load_job, open_partial, published_path
-from lightcube.scoring import metrics
+from lightcube.jobs.partial import check_partial, open_partial
 from lightcube.verbs import solving, staging, words
 from lightcube.verbs.options import Options
 
@@ -32,7 +29,7 @@ def solve(
         str | None, typer.Option(help="Use at most so much, 2GB or 512MB, by solving in parts.  [default: 4GB]")
     ] = None,
     unit: Annotated[
-        str | None, typer.Option(help="Solve only unit I of N, I/N; merge makes the cube when all are there.")
+        str | None, typer.Option(help="Solve only unit I of N, I/N; publish makes the cube when all are there.")
     ] = None,
     scheduler: Annotated[
         str | None,
@@ -45,7 +42,7 @@ def solve(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compute the cube whose shadows are the frames; what was stopped or killed goes on where it was."""
-    io.check_cube_target(output, overwrite=overwrite)
+    io.Output(output, "cube", overwrite).check()
     check_partial(output)
     if unit is not None and (memory is not None or scheduler is not None):
         other = "--memory" if scheduler is None else "--scheduler"
@@ -80,35 +77,35 @@ def solve(
             f"  lightcube publish {store.folder}"
         )
     if which is None:
-        _finish(job, store, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
+        solution = cubes.finish(job, store, output, overwrite=overwrite).solution
+        _solved(solution, output, time.monotonic() - began, as_json=as_json)
     else:
         done(as_json, f"unit {which} of {units} is in {store.folder}", out=str(store.folder), unit=which, units=units)
 
 
-def merge(
-    partial: Annotated[str, typer.Argument(help="The unfinished cube, NAME.zarr.partial, with all its units.")],
-    overwrite: Annotated[bool, OVERWRITE] = False,
-    as_json: Annotated[bool, JSON] = False,
-) -> None:
-    """Make the cube of units that were solved one by one."""
-    output = published_path(partial)
-    io.check_cube_target(output, overwrite=overwrite)
-    began, store = time.monotonic(), DiskStore(partial)
-    job = load_job(partial)
-    missing = [str(number) for number, name in enumerate(job.unit_names, 1) if name not in store.names()]
-    if missing:
-        raise InputError(
-            f"{partial} lacks unit {', '.join(missing)} of {job.units}: solve with --unit {missing[0]}/{job.units}"
-        )
-    _finish(job, store, output, time.monotonic() - began, overwrite=overwrite, as_json=as_json)
+def _solved(solution: Solution, output: str, seconds: float, *, as_json: bool) -> None:
+    """Say how good a cube is and how long it took."""
+    if as_json:
+        json_line("result", out=output, seconds=seconds, **printing.facts(solution))
+    else:
+        printing.solved(solution, output, seconds)
 
 
 def publish(
     partial: Annotated[str, typer.Argument(help="The unfinished cube, NAME.zarr.partial.")],
     overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Turn the unfinished cube of an interrupted solve into a cube file."""
-    out.print(f"{cubes.publish(partial, overwrite=overwrite)}")
+    """Make a cube of what there is of an unfinished one, and say whether it is whole."""
+    made = cubes.publish(partial, overwrite=overwrite)
+    if as_json:
+        facts = printing.facts(made.solution) if made.is_whole else {}
+        units = {"whole": made.is_whole, "units_done": made.done, "units": made.units}
+        json_line("result", out=str(made.path), **units, **facts)
+    elif made.is_whole:
+        printing.solved(made.solution, f"{made.path} is whole")
+    else:
+        out.print(words.holds(made))
 
 
 def _asked(frames: str, options: Options, memory: int | None, units: int | None) -> tuple[Job, Callable[[], list[str]]]:
@@ -122,16 +119,3 @@ def _asked(frames: str, options: Options, memory: int | None, units: int | None)
         order = solving.another_order(planned)
     job = solving.job(planned, memory=memory, units=units)
     return job, lambda: [*words.in_short(planned, order), *([] if options.paper else words.what_to_change(planned))]
-
-
-def _finish(job: Job, store: DiskStore, output: str | Path, seconds: float, *, overwrite: bool, as_json: bool) -> None:
-    """Make the cube of a job that is finished, score it, and say so."""
-    solution = merged(job, store)
-    scores = metrics.score(solution.cube, job.frames)
-    io.save(replace(solution.cube, scores=scores), output, overwrite=overwrite)
-    discard_partial(output)
-    if as_json:
-        predicted = solution.cube.provenance.get("predicted")
-        json_line("result", out=str(output), seconds=seconds, **printing.facts(solution), predicted=predicted, **scores)
-    else:
-        printing.solved(solution, scores, output, seconds)

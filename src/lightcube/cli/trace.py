@@ -1,16 +1,14 @@
 """The command `lightcube trace`."""
 
-import math
 from typing import Annotated
 
 import typer
 
 from lightcube import io
 from lightcube.cli import arguments
-from lightcube.cli.console import done, progress
+from lightcube.cli.console import done, telling
 from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE
-from lightcube.scene.tracer import scene_frames, scene_rig
-from lightcube.verbs import solving
+from lightcube.verbs import tracing
 
 
 def trace(
@@ -30,15 +28,14 @@ def trace(
 ) -> None:
     """Ray-trace a moving scene: a folder of PNGs, or a movie by suffix."""
     described = io.read_scene(scene)
-    io.check_pictures_target(output, overwrite=overwrite)
+    movie = io.Output(output, "pictures", overwrite)
+    movie.check()
     shape = None
     if size is not None:
         width, height = arguments.whole_numbers(size, "x", "--size", 2)
         shape = (width, height)
-    grid, rig = scene_rig(described, frames, shape, span, elevation)
-    solving.check_memory(24 * len(rig) * math.prod(rig.picture_shape))
-    with progress("tracing", as_json=as_json) as advance:
-        made = scene_frames(described, rig, grid, callback=advance)
-    io.write_pictures(output, made.pictures, fps=fps, views=rig.views, overwrite=overwrite)
-    rows, columns = rig.picture_shape
-    done(as_json, f"{len(rig)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(rig))
+    with telling("tracing", as_json=as_json) as tell:
+        made = tracing.trace(described, tell, count=frames, size=shape, span=span, elevation=elevation)
+    movie.write(made.pictures, fps=fps, views=made.rig.views)
+    rows, columns = made.rig.picture_shape
+    done(as_json, f"{len(made)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(made))

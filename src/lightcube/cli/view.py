@@ -7,11 +7,10 @@ from typing import Annotated
 import typer
 
 from lightcube import io
-from lightcube.cli.console import done, err, progress
+from lightcube.cli.console import done, err, telling
 from lightcube.cli.options import JSON, OVERWRITE
 from lightcube.jobs.cubes import load
-from lightcube.viewer import page, smaller
-from lightcube.viewer.page import contents
+from lightcube.verbs import viewing
 
 
 def view(
@@ -29,31 +28,29 @@ def view(
     """Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail."""
     title = io.bare_name(cube)
     target = f"{title}.html" if output is None else output
-    io.check_page_target(target, overwrite=overwrite)
+    page_file = io.Output(target, "page", overwrite)
+    page_file.check()
     loaded = load(cube)
-    is_smaller = not full and max(loaded.grid.shape) > smaller.MOST_SIDE
+    is_smaller = viewing.is_solved_anew(loaded, full=full)
     doing = "solving a smaller cube for the page" if is_smaller else "putting the page together"
     if not as_json:
         err.print(f"{doing} ...")
-    with progress(doing, as_json=as_json) as advance:
-        description, packed = contents(
-            loaded, title, full=full, callback=lambda step: advance(round(1000 * step.done), 1000)
-        )
-    text = page.page_of(description, packed)
-    io.write_page(target, text, overwrite=overwrite)
-    held, kept, size = description["voxels"]["shape"], description["kept"], len(text.encode())
+    with telling(doing, as_json=as_json) as tell:
+        page = viewing.page(loaded, title, tell, full=full)
+    page_file.write(page.text)
     if not as_json and is_smaller:
-        both = _voxels(held), _voxels(loaded.grid.shape)
+        both = _voxels(page.shape), _voxels(loaded.grid.shape)
         err.print(f"it holds {both[0]} voxels, solved anew for the pictures of {both[1]}: --full keeps all")
+    size = len(page.text.encode())
     done(
         as_json,
-        f"{target}, {size / 1e6:.1f} MB; its shadows are off by at most {kept['worst_levels']:.1f} of 255 levels "
-        f"({kept['rms_levels']:.2f} on average)",
+        f"{target}, {size / 1e6:.1f} MB; its shadows are off by at most {page.worst_levels:.1f} of 255 levels "
+        f"({page.rms_levels:.2f} on average)",
         out=target,
         bytes=size,
-        shape=held,
-        worst_levels=kept["worst_levels"],
-        rms_levels=kept["rms_levels"],
+        shape=page.shape,
+        worst_levels=page.worst_levels,
+        rms_levels=page.rms_levels,
     )
     if show:
         webbrowser.open(target if "://" in target else Path(target).absolute().as_uri())

@@ -5,7 +5,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TypeVar
 
 from lightcube.errors import InputError
@@ -13,15 +13,21 @@ from lightcube.io._places import Place, exists, is_folder, name_of, send
 
 Entry = TypeVar("Entry")
 
+#: Called with a path where nothing is yet, a thing, and what may be said of it; returns what to warn of, if anything.
+Writer = Callable[..., Warning | None]
+
 #: What the name of a cube that is still being made ends with.
 PARTIAL_SUFFIX = ".partial"
 
 
 def suffix_entry(path: Place, table: Mapping[str, Entry], what: str) -> Entry:
-    """Entry of `table` for the longest suffix that the name of `path` ends with, in any case, or `InputError`."""
+    """Entry of `table` for the longest suffix that the name of `path` ends with, in any case, or `InputError`.
+
+    An entry for ``""`` is that of names without a suffix.
+    """
     name = name_of(path).lower()
     for suffix in sorted(table, key=len, reverse=True):
-        if name.endswith(suffix) and len(name) > len(suffix):
+        if name.endswith(suffix) and len(name) > len(suffix) and (suffix or not PurePath(name).suffix):
             return table[suffix]
     known = [suffix for suffix in table if suffix]
     which = f"one of {', '.join(known)}" if len(known) > 1 else known[0]

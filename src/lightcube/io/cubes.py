@@ -1,21 +1,19 @@
-"""Saving and loading cubes, by suffix."""
+"""Writers and readers of cubes, by suffix."""
 
 import json
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.io import _metadata
-from lightcube.io._files import PARTIAL_SUFFIX, check_free, suffix_entry, system_errors, written_whole
+from lightcube.io._files import PARTIAL_SUFFIX, suffix_entry, system_errors
 from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
 from lightcube.io._zarr import read_zarr, read_zarr_zip, write_zarr, write_zarr_zip
 from lightcube.optics.cube import Cube
-
-Given = TypeVar("Given", bound=str | Path)
 
 
 def bare_name(path: str | Path) -> str:
@@ -27,48 +25,8 @@ def bare_name(path: str | Path) -> str:
     return bare_name(name[: -len(max(found, key=len))]) if found and name.lower() not in found else name
 
 
-def check_cube_target(path: str | Path, *, overwrite: bool = False) -> None:
-    """Raise `InputError` unless `save` could write to `path`: ask before long work."""
-    at = place(path)
-    suffix_entry(at, _FORMATS, "a cube")
-    check_free(at, overwrite=overwrite, replaceable=_is_cube_folder)
-
-
-def save(cube: Cube, path: Given, *, overwrite: bool = False) -> Given:
-    """Save a cube by the suffix of `path`; the file appears when it is whole.
-
-    Parameters
-    ----------
-    path
-        ``.zarr`` (a folder, OME-Zarr 0.5: napari and others open it as it is), ``.zarr.zip`` (the same in one
-        file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`). It may be a
-        URL such as ``s3://bucket/cube.zarr``.
-    overwrite
-        Whether an existing file, or an existing folder with a cube in it, is replaced.
-
-    Returns
-    -------
-    `path`.
-
-    Raises
-    ------
-    InputError
-        Where the suffix is unknown, the target exists, or the disk is full. Nothing is left behind.
-
-    Notes
-    -----
-    All arrays and numbers come back bit for bit. `scores` and `provenance` come back as JSON's types: tuples as
-    lists, NaN and infinities as None, anything that JSON does not know as its text.
-    """
-    at = place(path)
-    _, write = suffix_entry(at, _FORMATS, "a cube")
-    with written_whole(at, overwrite=overwrite, replaceable=_is_cube_folder) as fresh:
-        write(fresh, cube)
-    return path
-
-
 def read_cube(path: str | Path) -> Cube:
-    """The cube of a file that `save` wrote.
+    """The cube of a file that `lightcube.io.save` wrote.
 
     Raises
     ------
@@ -126,7 +84,7 @@ def _read_npz(path: Path) -> Cube:
     return _metadata.from_json(path, document, extinction, targets)
 
 
-def _is_cube_folder(path: Place) -> bool:
+def is_cube_folder(path: Place) -> bool:
     """Whether a folder holds a light cube, and may therefore be replaced by another one."""
     try:
         document = json.loads(read_bytes(child(path, "zarr.json")) or b"")
@@ -140,3 +98,5 @@ _FORMATS: dict[str, tuple[Callable[[Path], Cube], Callable[[Path, Cube], None]]]
     ".zarr.zip": (read_zarr_zip, write_zarr_zip),
     ".npz": (_read_npz, _write_npz),
 }
+
+WRITERS = {suffix: write for suffix, (_, write) in _FORMATS.items()}

@@ -1,12 +1,11 @@
-"""Writing pictures: a movie, an animation, a folder of PNGs, or numbers."""
+"""Writers of pictures: a movie, an animation, a folder of PNGs, or numbers."""
 
 import math
-import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path, PurePath
-from typing import TypeVar
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +13,14 @@ from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io import _encoders
-from lightcube.io._files import check_free, suffix_entry, written_whole
-from lightcube.io._places import Place, name_of, names_in, place
+from lightcube.io._files import Writer
+from lightcube.io._places import Place, names_in
 from lightcube.io.frames_folder import VIEWS_FILE, views_text
 from lightcube.optics.transfer import Transfer, check_transfer, encode
 from lightcube.optics.views import Views
 
 Picture = NDArray[np.float32]
-Given = TypeVar("Given", bound=str | Path)
+Levels = NDArray[np.uint8]
 
 
 class ClippedPictures(UserWarning):
@@ -46,100 +45,87 @@ class _Clipped:
     total: int = 0
 
 
-def check_pictures_target(path: str | Path, *, overwrite: bool = False) -> None:
-    """Raise `InputError` unless `write_pictures` could write to `path`: ask before long work."""
-    at = place(path)
-    _writer(at)
-    check_free(at, overwrite=overwrite, replaceable=_is_frames_folder)
-
-
-def write_pictures(
-    path: Given,
-    pictures: Picture | Iterable[Picture],
-    *,
-    count: int | None = None,
-    transfer: Transfer = "srgb",
-    fps: float = 10.0,
-    scale: int = 1,
-    views: Views | None = None,
-    names: Sequence[str] | None = None,
-    overwrite: bool = False,
-) -> Given:
-    """Write pictures by the suffix of `path`; the file appears when it is whole.
+class Options(TypedDict, total=False):
+    """What may be said of pictures.
 
     Parameters
     ----------
-    path
-        ``.png`` for a single picture, ``.mp4`` (H.264, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256
-        colours for all pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped),
-        or no suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given. It may be a URL.
-    pictures
-        ``(view, row, column, 3)``, or one ``(row, column, 3)`` after the other, in linear light, 1 = white.
-        Only one of them is in memory at a time.
     count
-        How many there are; needed where `pictures` has no length.
+        How many there are; needed where they have no length.
+    transfer
+        How linear light becomes display values; sRGB where nothing is said.
     fps
-        Pictures per second of a movie.
+        Pictures per second of a movie; 10 where nothing is said.
     scale
         Enlarges each pixel to a square of so many.
     views, names
         One view and one name per picture, for a folder's `views.toml`.
-    overwrite
-        Whether an existing file, or an existing folder of frames, is replaced.
-
-    Returns
-    -------
-    `path`.
-
-    Warns
-    -----
-    ClippedPictures
-        Once, with the number of values that were clipped to black or white.
-
-    Raises
-    ------
-    InputError
-        Where the suffix is unknown, the target exists, the disk is full, or the pictures cannot be used.
-        Nothing is left behind.
     """
-    at = place(path)
-    writer = _writer(at)
-    if count is None:
-        if not isinstance(pictures, Sized):
-            raise TypeError("pictures without a length need a count")
-        count = len(pictures)
-    for what, given in (("views", views), ("names", names)):
-        if given is not None and len(given) != count:
-            raise InputError(f"{len(given)} {what} for {count} pictures: give one per picture")
-    if count < 1 or int(scale) != scale or scale < 1:
-        raise InputError(f"cannot write {count} pictures at scale {scale}: both must be whole numbers of at least 1")
-    job = _Job(count, check_transfer(transfer), _rate(fps), views_text(views, names))
-    clipped = _Clipped()
-    with written_whole(at, overwrite=overwrite, replaceable=_is_frames_folder) as fresh:
+
+    count: int | None
+    transfer: Transfer
+    fps: float
+    scale: int
+    views: Views | None
+    names: Sequence[str] | None
+
+
+def _writer(write: Callable[[Path, Iterable[Picture], _Job, _Clipped], None]) -> Writer:
+    """What `write` does, with all that is said of the pictures checked."""
+
+    def checked(
+        path: Path,
+        pictures: Picture | Iterable[Picture],
+        *,
+        count: int | None = None,
+        transfer: Transfer = "srgb",
+        fps: float = 10.0,
+        scale: int = 1,
+        views: Views | None = None,
+        names: Sequence[str] | None = None,
+    ) -> ClippedPictures | None:
+        number = _count(pictures, count, {"views": views, "names": names})
+        if number < 1 or int(scale) != scale or scale < 1:
+            raise InputError(
+                f"cannot write {number} pictures at scale {scale}: both must be whole numbers of at least 1"
+            )
+        job, clipped = _Job(number, check_transfer(transfer), _rate(fps), views_text(views, names)), _Clipped()
         try:
-            writer(fresh, _checked(pictures, count, int(scale)), job, clipped)
+            write(path, _checked(pictures, number, int(scale)), job, clipped)
         except Exception as error:
             from av.error import FFmpegError
 
             if isinstance(error, OSError) or not isinstance(error, FFmpegError):
                 raise
             raise InputError(
-                f"{path} cannot be encoded ({error.strerror}): try another suffix, fewer or smaller pictures"
+                f"{path.name} cannot be encoded ({error.strerror}): try another suffix, fewer or smaller pictures"
             ) from error
-    if clipped.values:
-        warnings.warn(
-            f"{clipped.values} of {clipped.total} values in {path} ({clipped.values / clipped.total:.1%}) "
-            "were clipped to black or white: "
-            "write .npy to keep them",
-            ClippedPictures,
-            stacklevel=2,
-        )
-    return path
+        return _lost(clipped, path.name)
+
+    return checked
 
 
-def _writer(at: Place) -> Callable[[Path, Iterable[Picture], _Job, _Clipped], None]:
-    """Return the writer for the suffix; without one it is a folder."""
-    return suffix_entry(at, _WRITERS, "a movie") if PurePath(name_of(at)).suffix else _write_folder
+def _count(pictures: Iterable[Picture], count: int | None, each: Mapping[str, Sized | None]) -> int:
+    """How many pictures there are; `InputError` where there are not as many of `each`."""
+    if count is None:
+        if not isinstance(pictures, Sized):
+            raise TypeError("pictures without a length need a count")
+        count = len(pictures)
+    for what, given in each.items():
+        if given is not None and len(given) != count:
+            raise InputError(f"{len(given)} {what} for {count} pictures: give one per picture")
+    return count
+
+
+def _lost(clipped: _Clipped, name: str) -> ClippedPictures | None:
+    """What to warn of, where anything was clipped."""
+    if not clipped.values:
+        return None
+    return ClippedPictures(
+        f"{clipped.values} of {clipped.total} values in {name} ({clipped.values / clipped.total:.1%}) "
+        "were clipped to black or white: "
+        "write .npy to keep them"
+    )
 
 
 def _rate(fps: float) -> Fraction:
@@ -164,7 +150,7 @@ def _checked(pictures: Iterable[Picture], count: int, scale: int) -> Iterator[Pi
         raise ValueError(f"{count} pictures were announced and {number} came")
 
 
-def _levels(pictures: Iterable[Picture], transfer: Transfer, clipped: _Clipped) -> Iterator[NDArray[np.uint8]]:
+def _levels(pictures: Iterable[Picture], transfer: Transfer, clipped: _Clipped) -> Iterator[Levels]:
     """8-bit display levels of each picture, counting what was clipped."""
     for picture in pictures:
         if picture.shape[2] != 3:
@@ -176,13 +162,13 @@ def _levels(pictures: Iterable[Picture], transfer: Transfer, clipped: _Clipped) 
         yield np.ascontiguousarray(shown.astype(np.uint8))
 
 
-def _movie(encoder: _encoders.Encoder) -> Callable[[Path, Iterable[Picture], _Job, _Clipped], None]:
+def _movie(encoder: _encoders.Encoder) -> Writer:
     """Writer that hands 8-bit levels to an encoder."""
 
     def write(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
         encoder(path, _levels(pictures, job.transfer, clipped), job.fps)
 
-    return write
+    return _writer(write)
 
 
 def _write_folder(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
@@ -213,17 +199,18 @@ def _write_npy(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Cli
             file.write(picture.astype("<f4").tobytes())
 
 
-def _is_frames_folder(path: Place) -> bool:
+def is_frames_folder(path: Place) -> bool:
     """Whether a folder holds nothing but what `_write_folder` writes."""
     return all(name == VIEWS_FILE or PurePath(name).suffix == ".png" for name in names_in(path))
 
 
-_WRITERS = {
+WRITERS = {
     ".mp4": _movie(_encoders.encode_mp4),
     ".webm": _movie(_encoders.encode_webm),
     ".gif": _movie(_encoders.encode_gif),
     ".webp": _movie(_encoders.encode_webp),
     ".apng": _movie(_encoders.encode_apng),
-    ".npy": _write_npy,
-    ".png": _write_png,
+    ".npy": _writer(_write_npy),
+    ".png": _writer(_write_png),
+    "": _writer(_write_folder),
 }

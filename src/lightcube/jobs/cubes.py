@@ -1,15 +1,19 @@
 """Cubes that are still being made: loading and publishing them."""
 
 import warnings
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from lightcube.backward.solution import merged
+from lightcube.backward.job import Job
+from lightcube.backward.solution import Solution, merged
 from lightcube.errors import InputError
 from lightcube.io._files import PARTIAL_SUFFIX
 from lightcube.io._places import Place, name_of, place
-from lightcube.io.cubes import check_cube_target, read_cube, save
+from lightcube.io.cubes import read_cube
+from lightcube.io.outputs import Output
 from lightcube.jobs.partial import DiskStore, discard_partial, load_job, published_path
 from lightcube.optics.cube import Cube
+from lightcube.scoring import metrics
 
 
 class UnfinishedCube(UserWarning):
@@ -17,7 +21,7 @@ class UnfinishedCube(UserWarning):
 
 
 def load(path: str | Path) -> Cube:
-    """Load a cube from a file that `save` wrote, or from a ``.partial`` folder of one that is being made.
+    """Load a cube from a file that `lightcube.io.save` wrote, or from a ``.partial`` folder of one that is being made.
 
     Of the latter there is what is finished, the state of the unit that is being solved, and for the rest what it
     would start from.
@@ -43,17 +47,48 @@ def load(path: str | Path) -> Cube:
 
 def _load_partial(at: Place) -> Cube:
     """The cube of what there is of an unfinished one."""
-    store = DiskStore(at)
-    if store.is_empty():
-        raise InputError(f"{at} has nothing of a cube in it yet: start again without it")
+    store = _begun(at)
     return merged(load_job(at), store).cube
 
 
-def publish(partial: str | Path, *, overwrite: bool = False) -> Place:
-    """Turn ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``) into NAME, and return NAME.
+def _begun(at: Place) -> DiskStore:
+    """The store of an unfinished cube; `InputError` where there is nothing in it."""
+    store = DiskStore(at)
+    if store.is_empty():
+        raise InputError(f"{at} has nothing of a cube in it yet: start again without it")
+    return store
 
-    What there is of it, as `load` puts it together, is saved under its name, with the status ``"interrupted"`` unless
-    all is finished; then the partial folder is removed.
+
+@dataclass(frozen=True, eq=False)
+class Published:
+    """A cube that was made of an unfinished one.
+
+    Parameters
+    ----------
+    path
+        Where it is now.
+    solution
+        The cube, with its scores where it is whole, and how it was reached.
+    done, units
+        How many of how many units are finished.
+    """
+
+    path: Place
+    solution: Solution
+    done: int
+    units: int
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all of the cube is finished."""
+        return self.done == self.units
+
+
+def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
+    """Make a cube of what there is of ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``).
+
+    It is saved as NAME, as `load` puts it together: scored where all is finished, with the status ``"interrupted"``
+    where not. Then the partial folder is removed.
 
     Raises
     ------
@@ -62,8 +97,19 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Place:
         the partial folder is kept then.
     """
     out = published_path(partial)
-    cube = _load_partial(place(partial))
-    check_cube_target(out, overwrite=overwrite)
-    save(cube, out, overwrite=overwrite)
-    discard_partial(out)
-    return out
+    Output(out, "cube", overwrite).check()
+    store = _begun(place(partial))
+    return finish(load_job(partial), store, out, overwrite=overwrite)
+
+
+def finish(job: Job, store: DiskStore, out: str | Path, *, overwrite: bool = False) -> Published:
+    """Save what a store has of the job of a cube, scored where that is all, and remove the cube's partial folder."""
+    solution = merged(job, store)
+    done = len(store.names().intersection(job.unit_names))
+    if done == job.units:
+        scored = replace(solution.cube, scores=metrics.score(solution.cube, job.frames))
+        solution = replace(solution, cube=scored)
+    at = place(out)
+    Output(at, "cube", overwrite).write(solution.cube)
+    discard_partial(at)
+    return Published(at, solution, done, job.units)

@@ -53,7 +53,7 @@ def reproducing(cube: Cube, frames: Frames, source: str | None, target: str) -> 
         command.lines = [solve]
         return command
     command.lines = [[*solve, f"--unit {unit}/{units}"] for unit in range(1, units + 1)]
-    command.lines.append([shlex.join(["lightcube", "merge", f"{target}.partial"])])
+    command.lines.append([shlex.join(["lightcube", "publish", f"{target}.partial"])])
     return command
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from lightcube import io
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
-from lightcube.pictures.fitting import check_fit, fit
+from lightcube.pictures.fitting import check_fit, fit, frames_from_targets
 from lightcube.pictures.frames import Frames
 
 
@@ -20,6 +20,11 @@ def _of_stage(path: str, cube: Cube) -> Frames:
     if not (same and np.allclose(rig.views.lamps, cube.rig.views.lamps)):
         raise InputError(f"the cube was not made on the stage {path}: give the one it was made on")
     return replace(frames, rig=cube.rig)
+
+
+def wanted_of(cube: Cube, frames: str | None) -> Frames:
+    """The pictures that a cube is compared with: those of a file or folder, or its own targets."""
+    return frames_from_targets(cube) if frames is None else refitted(cube, frames)
 
 
 def refitted(cube: Cube, frames: str) -> Frames:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from lightcube.backward.problem import held
+from lightcube.jobs.cubes import Published
 from lightcube.optics.rig import POWER_MOST
 from lightcube.pictures.fitting import fit_report
 from lightcube.pictures.frames import Frames
@@ -121,6 +122,12 @@ def needed(needs: dict[str, Any]) -> str:
     if needs["seconds"] is None:
         return f"{memory}, {units}"
     return f"{memory}, {units}, at most {needs['passes']:.0f} passes, about {duration(needs['seconds'])}"
+
+
+def holds(made: Published) -> str:
+    """How much of a published cube is finished, and what the rest is."""
+    rest = "the rest is as far as it was solved, or what it would start from"
+    return f"{made.path} holds {made.done} of {made.units} units, {rest}"
 
 
 def duration(seconds: float) -> str:

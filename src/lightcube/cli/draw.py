@@ -1,0 +1,38 @@
+"""The command `lightcube draw`."""
+
+from typing import Annotated
+
+import typer
+
+from lightcube import io
+from lightcube.cli.console import done
+from lightcube.cli.options import JSON, OVERWRITE
+from lightcube.errors import InputError
+from lightcube.jobs.cubes import load
+from lightcube.verbs import drawing
+
+
+def draw(
+    thing: Annotated[str, typer.Argument(metavar="STAGE|CUBE", help="A stage (TOML), or a cube.")],
+    output: Annotated[
+        str,
+        typer.Option("-o", "--out", help="Where to write: an SVG of a stage, a PNG, WebP or JPEG of a cube's room."),
+    ],
+    angle: Annotated[
+        float | None, typer.Option(help="Turntable angle of a cube's room in degrees.  [default: its first stop]")
+    ] = None,
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Draw a stage from above and from the side, with its beams, or the room of a cube in perspective."""
+    if io.is_stage(thing):
+        if angle is not None:
+            raise InputError("--angle is for a cube: a stage is drawn at its first stop, leave it out")
+        plan = io.Output(output, "drawing", overwrite)
+        plan.check()
+        plan.write(drawing.of_stage(thing))
+    else:
+        picture = io.Output(output, "picture", overwrite)
+        picture.check()
+        picture.write(drawing.of_cube(load(thing), angle))
+    done(as_json, output, out=output)

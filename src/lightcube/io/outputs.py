@@ -1,0 +1,177 @@
+"""What can be written: one table from kind and suffix to a writer, and outputs that are asked before long work."""
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
+
+import numpy as np
+
+from lightcube.io import cubes, documents, movies
+from lightcube.io._files import Writer, check_free, suffix_entry, written_whole
+from lightcube.io._places import Place, place
+from lightcube.optics.cube import Cube
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Given = TypeVar("Given", bound=str | Path)
+
+#: What can be written, by name.
+Kind = Literal["cube", "pictures", "page", "drawing", "plot", "picture", "document"]
+
+#: Whatever is of one of the kinds.
+Thing: TypeAlias = "Cube | str | movies.Picture | Iterable[movies.Picture] | Mapping[str, Any] | movies.Levels | Figure"
+
+
+@dataclass(frozen=True)
+class Row:
+    """All that is known of one kind.
+
+    Parameters
+    ----------
+    called
+        What sentences call it.
+    writers
+        By suffix; the empty one is that of names without a suffix.
+    takes
+        Tells of a thing whether it is of the kind.
+    replaceable
+        Tells of an existing folder whether it is of the kind: no other folder is ever replaced.
+    """
+
+    called: str
+    writers: Mapping[str, Writer]
+    takes: Callable[[Any], bool]
+    replaceable: Callable[[Place], bool] = lambda _: False
+
+    def writer(self, at: Place) -> Writer:
+        """The writer for a place, by its suffix, or `InputError`."""
+        return suffix_entry(at, self.writers, self.called)
+
+
+def _is_picture(thing: Any) -> bool:
+    """Whether something is one picture of 8-bit levels, not several of linear light."""
+    return isinstance(thing, np.ndarray) and thing.dtype == np.uint8 and thing.ndim == 3
+
+
+#: The table; of the kinds that take a thing, `save` chooses the first one that knows the suffix.
+KINDS: Mapping[Kind, Row] = {
+    "cube": Row("a cube", cubes.WRITERS, lambda thing: isinstance(thing, Cube), cubes.is_cube_folder),
+    "page": Row("a page", {".html": documents.write_text}, lambda thing: isinstance(thing, str)),
+    "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),
+    "plot": Row("a plot", documents.PLOTS, lambda thing: hasattr(thing, "savefig")),
+    "picture": Row("a picture", documents.PICTURES, _is_picture),
+    "document": Row("a document", {".json": documents.write_json}, lambda thing: isinstance(thing, Mapping)),
+    "pictures": Row(
+        "a movie",
+        movies.WRITERS,
+        lambda thing: isinstance(thing, Iterable) and not (isinstance(thing, str | Mapping) or _is_picture(thing)),
+        movies.is_frames_folder,
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Output:
+    """A place that something of one kind will be written to.
+
+    Parameters
+    ----------
+    path
+        A path or a URL.
+    kind
+        One of `KINDS`.
+    overwrite
+        Whether what stands there may be replaced: an existing file, or an existing folder of the kind.
+    """
+
+    path: str | Path
+    kind: Kind
+    overwrite: bool = False
+
+    def check(self) -> None:
+        """Raise `InputError` unless the output could be written: ask before long work."""
+        at, row = place(self.path), KINDS[self.kind]
+        row.writer(at)
+        check_free(at, overwrite=self.overwrite, replaceable=row.replaceable)
+
+    def write(self, thing: Thing, **options: Unpack[movies.Options]) -> None:
+        """Write something of the kind; takes and raises what `save` does."""
+        if not KINDS[self.kind].takes(thing):
+            raise TypeError(f"{KINDS[self.kind].called} is not made of {type(thing).__name__}")
+        _write(self, thing, options)
+
+
+def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpack[movies.Options]) -> Given:
+    """Save a thing by the suffix of `path`; the file appears when it is whole.
+
+    Parameters
+    ----------
+    thing
+        * A cube: ``.zarr`` (a folder, OME-Zarr 0.5: napari and others open it as it is), ``.zarr.zip`` (the same in
+          one file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
+        * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white:
+          ``.png`` for a single one, ``.mp4`` (H.264, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256
+          colours for all pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never
+          clipped), or no suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given. Of
+          pictures that are made one by one, only one is in memory at a time.
+        * The text of a page, ``.html``, or of a drawing, ``.svg``.
+        * A matplotlib figure, ``.png`` or ``.svg``.
+        * One picture ``(row, column, 3)`` of 8-bit sRGB, such as a contact sheet: ``.png``, ``.webp``, ``.jpg``.
+        * A mapping, as a JSON document: ``.json``.
+    path
+        It may be a URL such as ``s3://bucket/cube.zarr``.
+    overwrite
+        Whether an existing file, or an existing folder with a cube or with pictures in it, is replaced.
+    **options
+        Of pictures, as `lightcube.io.movies.Options` lists them: `fps` (10), `scale` (1), `transfer` (sRGB), `views`,
+        `names`, and `count`, which pictures without a length need.
+
+    Returns
+    -------
+    `path`.
+
+    Warns
+    -----
+    ClippedPictures
+        Once, with the number of values of pictures that were clipped to black or white.
+
+    Raises
+    ------
+    InputError
+        Where the suffix is unknown, the target exists, the disk is full, or the pictures cannot be used.
+        Nothing is left behind.
+
+    Notes
+    -----
+    All arrays and numbers of a cube come back bit for bit. Its `scores` and `provenance` come back as JSON's types:
+    tuples as lists, NaN and infinities as None, anything that JSON does not know as its text.
+    """
+    _write(Output(path, _kind(thing, place(path)), overwrite), thing, options)
+    return path
+
+
+def _kind(thing: Thing, at: Place) -> Kind:
+    """The kind that a thing is written as at a place; `InputError` where none of its kinds has such a suffix."""
+    kinds: list[Kind] = [kind for kind, row in KINDS.items() if row.takes(thing)]
+    if not kinds:
+        raise TypeError(f"nothing is known of writing {type(thing).__name__}")
+    if len(kinds) == 1:
+        return kinds[0]
+    known: dict[str, Kind] = {}
+    for kind in kinds:
+        for suffix in KINDS[kind].writers:
+            known.setdefault(suffix, kind)
+    return suffix_entry(at, known, " or ".join(KINDS[kind].called for kind in kinds))
+
+
+def _write(output: Output, thing: Thing, options: movies.Options) -> None:
+    """Write to an output, whole or not at all, and warn the caller's caller of what was lost."""
+    at, row = place(output.path), KINDS[output.kind]
+    write = row.writer(at)
+    with written_whole(at, overwrite=output.overwrite, replaceable=row.replaceable) as fresh:
+        lost = write(fresh, thing, **options)
+    if lost is not None:
+        warnings.warn(lost, stacklevel=3)

@@ -1,0 +1,28 @@
+"""What `draw` shows: a stage from above and from the side, or the room of a cube in perspective."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube import io
+from lightcube.drawing.room import camera_for, room_picture
+from lightcube.drawing.stage import drawing
+from lightcube.optics.cube import Cube
+from lightcube.optics.transfer import to_uint8
+from lightcube.optics.views import check_angles
+
+
+def of_stage(path: str) -> str:
+    """The drawing of a stage file's room at its first stop: the text of an SVG."""
+    return drawing(io.read_stage(path)[0])
+
+
+def of_cube(cube: Cube, angle: float | None = None) -> NDArray[np.uint8]:
+    """The room of a cube in perspective, ``(row, column, 3)`` display levels.
+
+    Parameters
+    ----------
+    angle
+        Of the turntable, degrees; the first stop where nothing is said.
+    """
+    (turned,) = cube.angles[:1] if angle is None else check_angles([angle])
+    return to_uint8(room_picture(cube, float(turned), camera_for(cube)), cube.transfer)

@@ -1,0 +1,73 @@
+"""What `score` finds of a cube: figures, between the frames too and in a set-up that is off, and pictures of them."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.drawing import plots
+from lightcube.drawing.sheet import contact_sheet
+from lightcube.events import Tell, counting
+from lightcube.forward import casting
+from lightcube.optics.cube import Cube
+from lightcube.pictures.frames import Frames
+from lightcube.scoring import metrics
+from lightcube.scoring.between import Curve, curve
+from lightcube.scoring.robust import robust
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """How good a cube is.
+
+    Parameters
+    ----------
+    scores
+        As `lightcube.score`, with ``between`` and ``robust`` where they were asked for, for JSON.
+    curve
+        What ``between`` was made of, or None.
+    """
+
+    scores: dict[str, Any]
+    curve: Curve | None
+
+
+def score(cube: Cube, frames: Frames, tell: Tell, *, between: bool = False, off: bool = False) -> Found:
+    """Compare what a cube casts with what was wanted.
+
+    Parameters
+    ----------
+    tell
+        Is told how much of what was asked for besides is done.
+    between
+        Whether PSNR and SSIM between the frames are asked for, and how far each one stands.
+    off
+        Whether what a set-up costs that is a little off is asked for.
+
+    Raises
+    ------
+    InputError
+        Where the frames do not fit the cube's views, or nothing is between its stops.
+    """
+    scores, found, advance = metrics.score(cube, frames), None, counting(tell)
+    if between:
+        found = curve(cube, frames, callback=advance)
+        columns = {"angles": found.angles, "nearest": found.nearest, "psnr": found.psnr, "ssim": found.ssim}
+        scores["between"] = {name: column.tolist() for name, column in {**columns, "lobe_deg": found.lobes}.items()}
+    if off:
+        scores["robust"] = robust(cube, frames, callback=advance)
+    return Found(scores, found)
+
+
+def sheet(cube: Cube, frames: Frames, found: Found) -> NDArray[np.uint8]:
+    """Wanted, shown and difference of each view, ``(row, column, 3)`` display levels."""
+    return contact_sheet(casting.play(cube), frames, [view["psnr"] for view in found.scores["views"]])
+
+
+def plot(found: Curve) -> "Figure":
+    """PSNR against the turntable angle."""
+    return plots.between_plot({"": found})

@@ -1,0 +1,42 @@
+"""What `view` makes: the page in which a cube is turned by hand, and how exactly it shows the cube."""
+
+from dataclasses import dataclass
+
+from lightcube.events import Tell, counting
+from lightcube.optics.cube import Cube
+from lightcube.viewer import smaller
+from lightcube.viewer.page import contents, page_of
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page, and what it holds.
+
+    Parameters
+    ----------
+    text
+        The whole HTML file.
+    shape
+        Voxels ``(nz, ny, nx)`` of the cube in it.
+    worst_levels, rms_levels
+        By how many display levels of 255 its shadows are off, at most and on average.
+    """
+
+    text: str
+    shape: tuple[int, int, int]
+    worst_levels: float
+    rms_levels: float
+
+
+def is_solved_anew(cube: Cube, *, full: bool) -> bool:
+    """Whether a page holds a smaller cube, which is solved for it; not where all voxels are asked for."""
+    return not full and max(cube.grid.shape) > smaller.MOST_SIDE
+
+
+def page(cube: Cube, title: str, tell: Tell, *, full: bool = False) -> Page:
+    """The page of a cube; takes and raises what `lightcube.page` does, and tells how far a smaller cube is solved."""
+    advance = counting(tell)
+    description, packed = contents(cube, title, full=full, callback=lambda step: advance(round(1000 * step.done), 1000))
+    nz, ny, nx = description["voxels"]["shape"]
+    kept = description["kept"]
+    return Page(page_of(description, packed), (nz, ny, nx), kept["worst_levels"], kept["rms_levels"])
