@@ -1,83 +1,72 @@
 """Pictures in, a cube of coloured shadows out."""
 
-from lightcube.backward.solution import Solution
-from lightcube.backward.solving import solve
-from lightcube.errors import InputError
-from lightcube.forward.casting import cast, play, player
-from lightcube.forward.turning import exposures_at, lamp_at, views_at
-from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save, write_page, write_pictures
-from lightcube.jobs.cubes import load, publish
-from lightcube.optics.cube import Cube
-from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Lighting, sampled
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage, exposures
-from lightcube.optics.views import Views, spread_angles, turntable
-from lightcube.pictures.fitting import fit, fit_to_stage
-from lightcube.pictures.frames import Frames, Pictures
-from lightcube.planning.consistency import check
-from lightcube.planning.order import best_order
-from lightcube.planning.plan import Plan, plan
-from lightcube.planning.prediction import Prediction, predict
-from lightcube.projection.projector import Projector, dot_test
-from lightcube.scene.scene import Scene
-from lightcube.scene.tracer import scene_frames, scene_views
-from lightcube.scoring.metrics import score
-from lightcube.solvers import METHODS
-from lightcube.solvers.contract import Result
-from lightcube.viewer.notebook import displayed, show
-from lightcube.viewer.page import page
+from typing import Any
 
-__all__ = [
-    "METHODS",
-    "Cube",
-    "Frames",
-    "Grid",
-    "InputError",
-    "Lamp",
-    "Lighting",
-    "Pictures",
-    "Plan",
-    "Prediction",
-    "Projector",
-    "Result",
-    "Scene",
-    "Screen",
-    "Shot",
-    "Solution",
-    "Stage",
-    "Views",
-    "best_order",
-    "cast",
-    "check",
-    "dot_test",
-    "exposures",
-    "exposures_at",
-    "fit",
-    "fit_to_stage",
-    "lamp_at",
-    "load",
-    "page",
-    "plan",
-    "play",
-    "player",
-    "predict",
-    "publish",
-    "read_pictures",
-    "read_scene",
-    "read_stage",
-    "read_stage_frames",
-    "sampled",
-    "save",
-    "scene_frames",
-    "scene_views",
-    "score",
-    "show",
-    "solve",
-    "spread_angles",
-    "turntable",
-    "views_at",
-    "write_page",
-    "write_pictures",
-]
+from lightcube.loading import when_used
+from lightcube.optics import showing
 
-Cube.shown_by = displayed  # the cube itself stands too low to know the page
+__getattr__, __dir__, __all__ = when_used(
+    __name__,
+    {
+        "Solution": "backward.solution",
+        "solve": "backward.solving",
+        "InputError": "errors",
+        "cast": "forward.casting",
+        "play": "forward.casting",
+        "player": "forward.casting",
+        "exposures_at": "forward.turning",
+        "lamp_at": "forward.turning",
+        "views_at": "forward.turning",
+        "read_pictures": "io",
+        "read_scene": "io",
+        "read_stage": "io",
+        "read_stage_frames": "io",
+        "save": "io",
+        "write_page": "io",
+        "write_pictures": "io",
+        "load": "jobs.cubes",
+        "publish": "jobs.cubes",
+        "Cube": "optics.cube",
+        "Grid": "optics.grid",
+        "Lighting": "optics.rig",
+        "sampled": "optics.rig",
+        "Lamp": "optics.stage",
+        "Screen": "optics.stage",
+        "Shot": "optics.stage",
+        "Stage": "optics.stage",
+        "exposures": "optics.stage",
+        "Views": "optics.views",
+        "spread_angles": "optics.views",
+        "turntable": "optics.views",
+        "fit": "pictures.fitting",
+        "fit_to_stage": "pictures.fitting",
+        "Frames": "pictures.frames",
+        "Pictures": "pictures.frames",
+        "check": "planning.consistency",
+        "best_order": "planning.order",
+        "Plan": "planning.plan",
+        "plan": "planning.plan",
+        "Prediction": "planning.prediction",
+        "predict": "planning.prediction",
+        "Projector": "projection.projector",
+        "dot_test": "projection.projector",
+        "Scene": "scene.scene",
+        "scene_frames": "scene.tracer",
+        "scene_views": "scene.tracer",
+        "score": "scoring.metrics",
+        "METHODS": "solvers",
+        "Result": "solvers.contract",
+        "show": "viewer.notebook",
+        "page": "viewer.page",
+    },
+)
+
+
+def _displayed(cube: Any) -> dict[str, Any]:
+    """What a notebook shows of a cube; the page's modules load with the first one that is shown."""
+    from lightcube.viewer.notebook import displayed
+
+    return displayed(cube)
+
+
+showing.by = _displayed  # the cube itself stands too low to know the page

@@ -9,7 +9,6 @@ from lightcube.errors import InputError
 from lightcube.optics.rig import LAMP_MIN
 from lightcube.optics.transfer import BLACK
 from lightcube.solvers import METHODS
-from lightcube.solvers.contract import Solver
 
 #: Each view and colour has its own power, each colour one, each its own as found at half the size, or all a given one.
 Powers = Literal["per-view", "global", "coarse", "fixed"]
@@ -24,11 +23,10 @@ Quality = Literal["draft", "normal", "best"]
 QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 36.0), "normal": (200, 42.0), "best": (1000, np.inf)}
 
 
-def find_method(name: str) -> Solver:
-    """Return the solver called `name`, or raise `InputError` naming those there are."""
+def _check_method(name: str) -> None:
+    """Raise `InputError` naming those there are, where no method is called `name`."""
     if name not in METHODS:
         raise InputError(f"unknown method {name!r}: use one of {', '.join(METHODS)}")
-    return METHODS[name]
 
 
 def _check_lamp(method: str, lamp: Powers | None, lamp_power: float | None, lamp_max: float | None) -> Powers:
@@ -60,7 +58,7 @@ def check_options(
     black: float = BLACK,
 ) -> Powers:
     """Return the kind of lamp that is meant, or raise `InputError` where `solve` would refuse its options."""
-    find_method(method)
+    _check_method(method)
     if not max_extinction > 0:
         raise InputError(f"the largest extinction must be a positive number (1/mm), not {max_extinction}")
     if not BLACK <= black < 1:

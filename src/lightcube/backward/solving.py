@@ -19,7 +19,6 @@ from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import Lighting
 from lightcube.optics.transfer import BLACK
 from lightcube.pictures.frames import Frames
-from lightcube.projection.stacked import is_stacked
 
 
 def solve(
@@ -183,6 +182,8 @@ def _check_method_on_stage(method: str, lighting: Lighting) -> None:
 
 def check_frames(frames: Frames, grid: Grid) -> None:
     """Raise `InputError` where a picture is larger than the grid's screen; other screens are as large as they are."""
+    from lightcube.projection.stacked import is_stacked  # here: the compiler comes with it
+
     if frames.lighting is not None or not is_stacked(grid, frames.views):
         return
     rows, columns = frames.views.picture_shape

@@ -1,47 +1,34 @@
 """Reading and writing files, by suffix."""
 
-from lightcube.io.cubes import bare_name, check_cube_target, read_cube, save
-from lightcube.io.documents import (
-    check_drawing_target,
-    check_figure_target,
-    check_page_target,
-    check_sheet_target,
-    write_drawing,
-    write_figure,
-    write_json,
-    write_page,
-    write_sheet,
-)
-from lightcube.io.machine import free_memory
-from lightcube.io.movies import ClippedPictures, check_pictures_target, write_pictures
-from lightcube.io.pictures import TransparentPictures, read_pictures
-from lightcube.io.scenes import read_scene, scene_names
-from lightcube.io.stages import is_stage, read_stage, read_stage_frames, stage_pictures
+from lightcube.loading import when_used
 
-__all__ = [
-    "ClippedPictures",
-    "TransparentPictures",
-    "bare_name",
-    "check_cube_target",
-    "check_drawing_target",
-    "check_figure_target",
-    "check_page_target",
-    "check_pictures_target",
-    "check_sheet_target",
-    "free_memory",
-    "is_stage",
-    "read_cube",
-    "read_pictures",
-    "read_scene",
-    "read_stage",
-    "read_stage_frames",
-    "save",
-    "scene_names",
-    "stage_pictures",
-    "write_drawing",
-    "write_figure",
-    "write_json",
-    "write_page",
-    "write_pictures",
-    "write_sheet",
-]
+__getattr__, __dir__, __all__ = when_used(
+    __name__,
+    {
+        "bare_name": "cubes",
+        "check_cube_target": "cubes",
+        "read_cube": "cubes",
+        "save": "cubes",
+        "check_drawing_target": "documents",
+        "check_figure_target": "documents",
+        "check_page_target": "documents",
+        "check_sheet_target": "documents",
+        "write_drawing": "documents",
+        "write_figure": "documents",
+        "write_json": "documents",
+        "write_page": "documents",
+        "write_sheet": "documents",
+        "free_memory": "machine",
+        "ClippedPictures": "movies",
+        "check_pictures_target": "movies",
+        "write_pictures": "movies",
+        "TransparentPictures": "pictures",
+        "read_pictures": "pictures",
+        "read_scene": "scenes",
+        "scene_names": "scenes",
+        "is_stage": "stages",
+        "read_stage": "stages",
+        "read_stage_frames": "stages",
+        "stage_pictures": "stages",
+    },
+)

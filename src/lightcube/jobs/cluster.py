@@ -17,8 +17,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-import numba
-
 from lightcube.backward.job import Job, shares
 from lightcube.backward.pieces import Step, solve_piece
 from lightcube.errors import InputError
@@ -116,6 +114,7 @@ def solve_there(place: str, name: str, written_by: str, topic: str, after: objec
     after
         The task that is waited for.
     """
+    import numba
     from distributed import get_worker
 
     worker = get_worker()

@@ -3,12 +3,10 @@
 import warnings
 from pathlib import Path
 
-from lightcube.backward.solution import merged
 from lightcube.errors import InputError
 from lightcube.io._files import PARTIAL_SUFFIX
 from lightcube.io._places import Place, name_of, place
 from lightcube.io.cubes import check_cube_target, read_cube, save
-from lightcube.jobs.partial import DiskStore, discard_partial, load_job, published_path
 from lightcube.optics.cube import Cube
 
 
@@ -42,7 +40,10 @@ def load(path: str | Path) -> Cube:
 
 
 def _load_partial(at: Place) -> Cube:
-    """The cube of what there is of an unfinished one."""
+    """The cube of what there is of an unfinished one; all that makes cubes loads with the first of them."""
+    from lightcube.backward.solution import merged
+    from lightcube.jobs.partial import DiskStore, load_job
+
     store = DiskStore(at)
     if store.is_empty():
         raise InputError(f"{at} has nothing of a cube in it yet: start again without it")
@@ -61,6 +62,8 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Place:
         Where there is no such folder, nothing of a cube in it, or NAME exists and `overwrite` is not asked for;
         the partial folder is kept then.
     """
+    from lightcube.jobs.partial import discard_partial, published_path
+
     out = published_path(partial)
     cube = _load_partial(place(partial))
     check_cube_target(out, overwrite=overwrite)

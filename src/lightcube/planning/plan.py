@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
@@ -12,9 +12,11 @@ from lightcube.optics.grid import Grid, dense_step
 from lightcube.optics.views import widest_hold
 from lightcube.pictures.fitting import RAISED, Fit, fit
 from lightcube.pictures.frames import Frames, Pictures
-from lightcube.planning.order import Order
 from lightcube.planning.prediction import Prediction, predict
 from lightcube.scoring.metrics import GOOD_DB
+
+if TYPE_CHECKING:
+    from lightcube.planning.order import Order
 
 #: What hold may cost, dB; above so much no eye sees a loss.
 HOLD_COSTS_DB, BEST_SEEN_DB = 1.0, 45.0
@@ -50,7 +52,7 @@ class Prepared:
 
     pictures: Pictures
     plan: Plan
-    order: Order | None
+    order: "Order | None"
 
     @property
     def frames(self) -> Frames:

@@ -4,15 +4,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views
-from lightcube.projection.rays import Rays
-from lightcube.projection.stacked import StackedBeams, is_stacked
 
 if TYPE_CHECKING:
+    from scipy.sparse import csr_array
     from scipy.sparse.linalg import LinearOperator
 
 Floats = NDArray[np.floating[Any]]
@@ -48,6 +46,9 @@ class Projector:
     """
 
     def __init__(self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None) -> None:
+        from lightcube.projection.rays import Rays  # here: the compiler comes with them
+        from lightcube.projection.stacked import StackedBeams, is_stacked
+
         self.grid, self.views = grid, views
         if heard is not None and heard.shape != (len(views), *views.picture_shape):
             raise InputError(f"which pixels count has shape {heard.shape}, not {(len(views), *views.picture_shape)}")
@@ -76,7 +77,7 @@ class Projector:
             raise InputError(f"row {index} is not in the matrix of {self.shape[0]} rows")
         return self._engine.row(index)
 
-    def to_sparse(self) -> csr_array:
+    def to_sparse(self) -> "csr_array":
         """Return the same matrix, float64."""
         return self._engine.to_sparse()
 
