@@ -4,7 +4,7 @@ from typing import Annotated
 
 from lightcube import io
 from lightcube.cli import stage
-from lightcube.cli.console import err, json_document, out
+from lightcube.cli.console import compiling, err, json_document, out
 from lightcube.cli.options import FRAMES, JSON, one_by_one
 from lightcube.verbs import solving, words
 from lightcube.verbs.options import Options
@@ -17,8 +17,9 @@ def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = Fal
         stage.checked(*io.read_stage_frames(frames, transfer=options.transfer), as_json=as_json)
         return
     options = solving.settled(options)
-    with err.status("rehearsing"):
-        prepared = solving.prepare(frames, options)
+    pictures = solving.read(frames, options)
+    with err.status("rehearsing"), compiling(as_json=as_json):
+        prepared = solving.prepare(pictures, options)
     advice = words.what_to_change(prepared, options)
     facts = words.facts(prepared, options)
     if as_json:

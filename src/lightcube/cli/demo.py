@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.backward import solving
-from lightcube.cli.console import out, progress
+from lightcube.cli.console import compiling, out, progress
 from lightcube.drawing.sheet import contact_sheet
 from lightcube.forward import casting, turning
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns, volume_from_columns
@@ -38,7 +38,8 @@ def demo(
     ] = False,
 ) -> None:
     """Make a cube of photographs and one of a traced scene, into a folder."""
-    (paper if as_in_the_paper else run)(output)
+    with compiling(as_json=False):
+        (paper if as_in_the_paper else run)(output)
 
 
 def run(folder: Path) -> None:

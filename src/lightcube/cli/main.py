@@ -1,41 +1,79 @@
 """The command line: parses, calls, prints."""
 
-import sys
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from importlib.metadata import version
+from typing import Annotated
 
 import typer
 
-from lightcube.cli import bench, check, demo, play, report, score, solve, stage, trace, view
-from lightcube.cli.console import Stopped, err, plain_warnings, prepare
+from lightcube.cli.console import Stopped, err, out, plain_warnings, prepare
 from lightcube.errors import InputError
 
-app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help="Pictures in, a cube of coloured shadows out.",
-)
-
-for command in (
-    *(trace.trace, check.check, solve.solve, solve.merge, play.play, view.view, report.report),
-    *(score.score, score.info, solve.publish, bench.bench),
-):
-    app.command()(command)
-app.add_typer(stage.app, name="stage")
-app.command()(demo.demo)
-
+#: Where each command stands in this room, and the first sentence of its help: only the one that is named is loaded.
+COMMANDS: Mapping[str, tuple[str, str]] = {
+    "trace": ("trace.trace", "Ray-trace a moving scene: a folder of PNGs, or a movie by suffix."),
+    "check": (
+        "check.check",
+        "Say before solving what can be known: what contradicts itself, how full the cube is, how good it will be.",
+    ),
+    "solve": (
+        "solve.solve",
+        "Compute the cube whose shadows are the frames; what was stopped or killed goes on where it was.",
+    ),
+    "merge": ("solve.merge", "Make the cube of units that were solved one by one."),
+    "play": ("play.play", "Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix."),
+    "view": (
+        "view.view",
+        "Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail.",
+    ),
+    "report": (
+        "report.report",
+        (
+            "Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, "
+            "how it was made."
+        ),
+    ),
+    "score": ("score.score", "Compare what a cube really casts with what was wanted."),
+    "info": ("info.info", "Say what is in a cube file."),
+    "publish": ("solve.publish", "Turn the unfinished cube of an interrupted solve into a cube file."),
+    "bench": ("bench.bench", "Measure this machine and what lightcube makes of it, beside others: tables in Markdown."),
+    "demo": ("demo.demo", "Make a cube of photographs and one of a traced scene, into a folder."),
+    "stage": ("stage.app", "Look at a stage, a room with lamps and screens, before solving."),
+}
 #: The exit code after Ctrl-C.
 _INTERRUPTED = 130
 
 
-def main() -> None:
-    """Run the command line: exit code 0, 2 for what the user can mend, 130 for Ctrl-C."""
+def application(words: Sequence[str]) -> typer.Typer:
+    """The program as far as it takes to run the command that `words` name: of the others there is the name alone."""
+    app = typer.Typer(
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+        context_settings={"help_option_names": ["-h", "--help"]},
+        help="Pictures in, a cube of coloured shadows out.",
+    )
+    app.callback()(_options)
+    wanted = next((word for word in words if not word.startswith("-")), None)
+    for name, (place, said) in COMMANDS.items():
+        command = _loaded(place) if name == wanted else _elsewhere
+        if isinstance(command, typer.Typer):
+            app.add_typer(command, name=name)
+        else:
+            app.command(name, help=said)(command)
+    return app
+
+
+def run(words: Sequence[str]) -> int:
+    """Run the command that `words` name and return the exit code: 0, 2 for what the user can mend, 130 for Ctrl-C."""
+    app = application(words)
     prepare()
     code: int | None = None
     try:
         with plain_warnings():
-            code = app(args=sys.argv[1:] or ["--help"], standalone_mode=False)
+            code = app(args=list(words) or ["--help"], prog_name="lightcube", standalone_mode=False)
         if code == _INTERRUPTED:  # what typer makes of Ctrl-C
             err.print("interrupted: no file was finished")
     except InputError as error:
@@ -56,4 +94,30 @@ def main() -> None:
     except MemoryError:
         err.print("lightcube: the machine has not enough memory for this: use a smaller cube or fewer pictures")
         code = 2
-    sys.exit(code or 0)
+    return code or 0
+
+
+def _loaded(place: str) -> typer.Typer | Callable[..., None]:
+    """What stands at a place of `COMMANDS`: a function, or several commands under one name."""
+    module, _, name = place.partition(".")
+    found: typer.Typer | Callable[..., None] = getattr(import_module(f"lightcube.cli.{module}"), name)
+    return found
+
+
+def _elsewhere() -> None:
+    """A command that is not the one asked for."""
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        out.print(f"lightcube {version('lightcube')}")
+        raise typer.Exit
+
+
+def _options(
+    _: Annotated[
+        bool,
+        typer.Option("--version", help="Show the version and exit.", callback=_print_version, is_eager=True),
+    ] = False,
+) -> None:
+    """What can be said before a command."""

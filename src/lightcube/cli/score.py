@@ -1,4 +1,4 @@
-"""The commands `lightcube score` and `info`."""
+"""The command `lightcube score`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from lightcube import io
-from lightcube.cli import arguments, printing
-from lightcube.cli.console import json_document, out, progress
+from lightcube.cli import printing
+from lightcube.cli.console import compiling, json_document, progress
 from lightcube.cli.options import JSON, OVERWRITE
 from lightcube.drawing import plots
 from lightcube.drawing.sheet import contact_sheet
@@ -45,7 +45,8 @@ def score(
         io.check_figure_target(plot, overwrite=overwrite)
     loaded = load(cube)
     wanted = frames_from_targets(loaded) if frames is None else refitted(loaded, frames)
-    scores = metrics.score(loaded, wanted)
+    with compiling(as_json=as_json):
+        scores = metrics.score(loaded, wanted)
     if between_frames or plot is not None:
         with progress("between the frames", as_json=False) as advance:  # what is printed is one document
             curve = between.curve(loaded, wanted, callback=advance)
@@ -64,16 +65,3 @@ def score(
         json_document(scores)
     else:
         printing.scored(scores)
-
-
-def info(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
-    as_json: Annotated[bool, JSON] = False,
-) -> None:
-    """Say what is in a cube file."""
-    facts = metrics.facts(load(cube))
-    if as_json:
-        json_document(facts)
-        return
-    for name, value in facts.items():
-        out.print(f"{name:>26}  {arguments.short(value)}")

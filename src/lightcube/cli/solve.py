@@ -13,7 +13,7 @@ from lightcube.backward.job import Job
 from lightcube.backward.needs import job_memory
 from lightcube.backward.solution import merged
 from lightcube.cli import arguments, printing
-from lightcube.cli.console import Stopped, done, err, json_line, listening, out
+from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening, out
 from lightcube.cli.options import FRAMES, JSON, OUT, OVERWRITE, one_by_one
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, cubes, running
@@ -53,11 +53,11 @@ def solve(
     which, units = (None, None) if unit is None else arguments.unit(unit)
     budget = None if memory is None else arguments.memory(memory)
     workers = 1 if scheduler is None else cluster.count_workers(scheduler)
-    job, said = _asked(frames, options, budget, units)
+    job, said = _asked(frames, options, budget, units, as_json=as_json)
     if units is None:
         job = solving.divided(job, output, workers, budget)
     if dry_run:
-        with err.status("timing a smaller cube"):
+        with err.status("timing a smaller cube"), compiling(as_json=as_json):
             needs = solving.needs(job)
         done(as_json, words.needed(needs), **needs)
         return
@@ -111,14 +111,17 @@ def publish(
     out.print(f"{cubes.publish(partial, overwrite=overwrite)}")
 
 
-def _asked(frames: str, options: Options, memory: int | None, units: int | None) -> tuple[Job, Callable[[], list[str]]]:
+def _asked(
+    frames: str, options: Options, memory: int | None, units: int | None, *, as_json: bool
+) -> tuple[Job, Callable[[], list[str]]]:
     """The job that `solve` is asked for, and a function that makes what is to be said of it."""
     if io.is_stage(frames):
         stage, wanted = staging.read(frames, options)
         return staging.job(stage, wanted, options, memory=memory, units=units), lambda: staging.in_short(stage, wanted)
     options = solving.settled(options)
-    with err.status("rehearsing"):
-        prepared = solving.prepare(frames, options)
+    pictures = solving.read(frames, options)
+    with err.status("rehearsing"), compiling(as_json=as_json):
+        prepared = solving.prepare(pictures, options)
     job = solving.job(prepared, options, memory=memory, units=units)
     return job, lambda: [*words.in_short(prepared, options), *words.what_to_change(prepared, options)]
 
@@ -126,7 +129,8 @@ def _asked(frames: str, options: Options, memory: int | None, units: int | None)
 def _finish(job: Job, store: DiskStore, output: str | Path, seconds: float, *, overwrite: bool, as_json: bool) -> None:
     """Make the cube of a job that is finished, score it, and say so."""
     solution = merged(job, store)
-    scores = metrics.score(solution.cube, job.frames)
+    with compiling(as_json=as_json):
+        scores = metrics.score(solution.cube, job.frames)
     io.save(replace(solution.cube, scores=scores), output, overwrite=overwrite)
     discard_partial(output)
     if as_json:

@@ -12,7 +12,7 @@ from lightcube.errors import InputError
 from lightcube.jobs.partial import begun_units
 from lightcube.optics.grid import Grid
 from lightcube.pictures.arranging import shifted, spread_over_screen
-from lightcube.planning.order import best_order
+from lightcube.pictures.frames import Pictures
 from lightcube.planning.plan import Prepared, plan
 from lightcube.planning.prediction import as_json, predict
 from lightcube.verbs.options import Options
@@ -62,12 +62,15 @@ def _as_in_the_paper(options: Options) -> Options:
     return replace(options, **white, shape=options.voxels, n=None)
 
 
-def prepare(path: str, options: Options) -> Prepared:
-    """Read the pictures and plan the cube, for options that are settled; `InputError` for all that cannot be."""
-    shape = options.voxels
-    check_memory(memory_needed(options.method, Grid(shape), (1, 1), 1, units=3))
-    pictures = io.read_pictures(path, transfer=options.transfer)
-    lamps = options.lamps
+def read(path: str, options: Options) -> Pictures:
+    """Read the pictures, for options that are settled; `InputError` where they or the cube cannot be."""
+    check_memory(memory_needed(options.method, Grid(options.voxels), (1, 1), 1, units=3))
+    return io.read_pictures(path, transfer=options.transfer)
+
+
+def prepare(pictures: Pictures, options: Options) -> Prepared:
+    """Plan the cube, for options that are settled; `InputError` for all that cannot be."""
+    shape, lamps = options.voxels, options.lamps
     planned = plan(
         pictures,
         max(shape),
@@ -86,6 +89,8 @@ def prepare(path: str, options: Options) -> Prepared:
         planned = replace(planned, frames=frames, prediction=predict(frames, planned.grid, hold=planned.hold, **lamps))
     order = None
     if options.order == "best" or len(pictures) <= _QUICK:
+        from lightcube.planning.order import best_order  # here: the compiler comes with it
+
         order = best_order(planned.frames, planned.grid, **lamps)
     if options.order == "best" and order is not None:
         frames = order(planned.frames)
