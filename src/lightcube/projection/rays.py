@@ -1,16 +1,18 @@
 """The matrix of rays in any direction: parallel or from a point, onto screens in any position."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from lightcube.kernels import rays
 from lightcube.kernels.layout import empty
 from lightcube.kernels.ray import most_pieces
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 Floats = NDArray[np.floating[Any]]
 
@@ -68,8 +70,10 @@ class Rays:
         count = rays.trace(*data, unknowns, lengths)
         return unknowns[:count], lengths[:count]
 
-    def to_sparse(self) -> csr_array:
+    def to_sparse(self) -> "csr_array":
         """Return the same matrix, float64."""
+        from scipy.sparse import csr_array  # here: it takes longer to load than a small cube to play
+
         pieces = [self.row(index) for index in range(self.shape[0])]
         ends = np.cumsum([0, *(len(unknowns) for unknowns, _ in pieces)])
         unknowns, lengths = (np.concatenate([piece[i] for piece in pieces]) for i in (0, 1))
