@@ -5,7 +5,8 @@ from typing import Annotated
 from lightcube import io
 from lightcube.cli import stage
 from lightcube.cli.console import compiling, err, json_document, out
-from lightcube.cli.options import FRAMES, JSON, one_by_one
+from lightcube.cli.fields import one_by_one
+from lightcube.cli.options import FRAMES, JSON
 from lightcube.verbs import solving, words
 from lightcube.verbs.options import Options
 

@@ -14,7 +14,8 @@ from lightcube.backward.needs import job_memory
 from lightcube.backward.solution import merged
 from lightcube.cli import arguments, printing
 from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening, out
-from lightcube.cli.options import FRAMES, JSON, OUT, OVERWRITE, one_by_one
+from lightcube.cli.fields import one_by_one
+from lightcube.cli.options import FRAMES, JSON, OUT, OVERWRITE
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, cubes, running
 from lightcube.jobs.partial import DiskStore, check_partial, discard_partial, load_job, open_partial, published_path
