@@ -1,7 +1,5 @@
 """Pictures in, a cube of coloured shadows out."""
 
-from typing import Any
-
 from lightcube.loading import when_used
 from lightcube.optics import showing
 
@@ -62,7 +60,7 @@ __getattr__, __dir__, __all__ = when_used(
 )
 
 
-def _displayed(cube: Any) -> dict[str, Any]:
+def _displayed(cube: object) -> dict[str, object]:
     """What a notebook shows of a cube; the page's modules load with the first one that is shown."""
     from lightcube.viewer.notebook import displayed
 

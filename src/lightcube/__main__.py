@@ -21,6 +21,7 @@ def main() -> None:
 
         code = run(sys.argv[1:])
         signal.signal(signal.SIGINT, signal.SIG_IGN)
+        exec("")  # noqa: S102 - where Ctrl-C came out of an exec, Python would end by that signal, not by the code
         sys.exit(code)
     except KeyboardInterrupt:  # a second one, while the first is answered
         _stop()

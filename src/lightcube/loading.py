@@ -1,14 +1,20 @@
-"""Names of a package that load when they are first used (PEP 562)."""
+"""Names of a package that load when they are first used (PEP 562).
+
+This module loads before the guard against Ctrl-C is set: it leaves out even `typing`.
+"""
 
 import sys
-from collections.abc import Callable, Mapping
 from importlib import import_module
-from typing import Any
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import Any
 
 
 def when_used(
-    package: str, places: Mapping[str, str]
-) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    package: str, places: "Mapping[str, str]"
+) -> "tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]":
     """What a package calls its ``__getattr__, __dir__, __all__``, for names that stand in modules below it.
 
     Parameters
@@ -19,7 +25,7 @@ def when_used(
         The module of each name, relative to the package.
     """
 
-    def load(name: str) -> Any:
+    def load(name: str) -> "Any":
         if name not in places:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         value = getattr(import_module(f"{package}.{places[name]}"), name)

@@ -202,6 +202,17 @@ def test_who_starts_the_program_may_have_it_ignore_ctrl_c() -> None:
     assert subprocess.run([sys.executable, "-c", program]).returncode == 0
 
 
+@pytest.mark.skipif(os.name != "posix", reason="signals are sent as a terminal does on POSIX")
+def test_the_code_is_130_where_ctrl_c_comes_out_of_an_exec(tmp_path: Path) -> None:
+    """As dataclasses and numba use it: Python remembers that, and a module that is run would end by the signal."""
+    program = "import sys\nfrom lightcube.__main__ import main\nfrom lightcube.cli import main as line\n"
+    program += "line.err.print = lambda text: sys.stderr.write(text + chr(10))\n"  # rich loads with execs of its own
+    program += "line.application = lambda words: lambda **_: exec('import signal; signal.raise_signal(2)')\nmain()"
+    (tmp_path / "program.py").write_text(program)
+    done = subprocess.run([sys.executable, "-m", "program"], capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == PRESSED
+
+
 def test_compiling_is_said_once_and_not_to_machines(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     numba = pytest.importorskip("numba")
     if numba.config.DISABLE_JIT:
