@@ -13,7 +13,7 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 
 #: Rooms from the ground up: a file imports from its own room and from lower storeys, never from a neighbour.
 STOREYS = [
-    ["errors", "events", "kernels"],
+    ["errors", "events", "kernels", "loading"],
     ["optics"],
     ["pictures", "projection", "solvers"],
     ["scene", "backward", "forward"],
@@ -22,6 +22,7 @@ STOREYS = [
     ["viewer", "report"],
     ["verbs", ""],
     ["cli"],
+    ["__main__"],
 ]
 ALLOWED_IN_KERNELS = {
     *("numpy", "numba", "llvmlite", "math", "typing", "collections.abc", "functools", "threading"),
@@ -44,8 +45,10 @@ def storey(name: str) -> int:
 
 
 def imports(file: Path) -> set[str]:
+    """What a file imports; a package whose names load when they are used has a stub that says what they are."""
     found: set[str] = set()
-    for node in ast.walk(ast.parse(file.read_text())):
+    texts = [text.read_text() for text in (file, file.with_suffix(".pyi")) if text.is_file()]
+    for node in (node for text in texts for node in ast.walk(ast.parse(text))):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

@@ -1,81 +1,77 @@
 """Pictures in, a cube of coloured shadows out."""
 
-from lightcube.backward.recipe import Recipe
-from lightcube.backward.solution import Solution
-from lightcube.backward.solving import solve
-from lightcube.cores import threads
-from lightcube.errors import InputError
-from lightcube.forward.casting import cast, play, player
-from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save
-from lightcube.jobs.cubes import load, publish
-from lightcube.optics.cube import Cube
-from lightcube.optics.grid import Grid
-from lightcube.optics.material import Material
-from lightcube.optics.rig import Rig, turntable
-from lightcube.optics.stage import Lamp, Screen, Shot, Stage
-from lightcube.optics.views import Views, spread_angles
-from lightcube.pictures.fitting import fit, turntable_for
-from lightcube.pictures.frames import Frames, Pictures
-from lightcube.planning.consistency import check
-from lightcube.planning.order import best_order
-from lightcube.planning.plan import Plan, plan
-from lightcube.planning.prediction import Prediction, predict
-from lightcube.projection.projector import Projector, dot_test
-from lightcube.scene.scene import Scene
-from lightcube.scene.tracer import scene_frames, scene_rig
-from lightcube.scoring.metrics import score
-from lightcube.solvers import METHODS
-from lightcube.solvers.contract import Result
-from lightcube.viewer.notebook import displayed, show
-from lightcube.viewer.page import page
+from lightcube import kernels
+from lightcube.loading import when_used
+from lightcube.optics import showing
 
-__all__ = [
-    "METHODS",
-    "Cube",
-    "Frames",
-    "Grid",
-    "InputError",
-    "Lamp",
-    "Material",
-    "Pictures",
-    "Plan",
-    "Prediction",
-    "Projector",
-    "Recipe",
-    "Result",
-    "Rig",
-    "Scene",
-    "Screen",
-    "Shot",
-    "Solution",
-    "Stage",
-    "Views",
-    "best_order",
-    "cast",
-    "check",
-    "dot_test",
-    "fit",
-    "load",
-    "page",
-    "plan",
-    "play",
-    "player",
-    "predict",
-    "publish",
-    "read_pictures",
-    "read_scene",
-    "read_stage",
-    "read_stage_frames",
-    "save",
-    "scene_frames",
-    "scene_rig",
-    "score",
-    "show",
-    "solve",
-    "spread_angles",
-    "threads",
-    "turntable",
-    "turntable_for",
-]
+__getattr__, __dir__, __all__ = when_used(
+    __name__,
+    {
+        "Recipe": "backward.recipe",
+        "Solution": "backward.solution",
+        "solve": "backward.solving",
+        "threads": "cores",
+        "InputError": "errors",
+        "cast": "forward.casting",
+        "play": "forward.casting",
+        "player": "forward.casting",
+        "read_pictures": "io",
+        "read_scene": "io",
+        "read_stage": "io",
+        "read_stage_frames": "io",
+        "save": "io",
+        "load": "jobs.cubes",
+        "publish": "jobs.cubes",
+        "Cube": "optics.cube",
+        "Grid": "optics.grid",
+        "Material": "optics.material",
+        "Rig": "optics.rig",
+        "turntable": "optics.rig",
+        "Lamp": "optics.stage",
+        "Screen": "optics.stage",
+        "Shot": "optics.stage",
+        "Stage": "optics.stage",
+        "Views": "optics.views",
+        "spread_angles": "optics.views",
+        "fit": "pictures.fitting",
+        "turntable_for": "pictures.fitting",
+        "Frames": "pictures.frames",
+        "Pictures": "pictures.frames",
+        "check": "planning.consistency",
+        "best_order": "planning.order",
+        "Plan": "planning.plan",
+        "plan": "planning.plan",
+        "Prediction": "planning.prediction",
+        "predict": "planning.prediction",
+        "Projector": "projection.projector",
+        "dot_test": "projection.projector",
+        "Scene": "scene.scene",
+        "scene_frames": "scene.tracer",
+        "scene_rig": "scene.tracer",
+        "score": "scoring.metrics",
+        "METHODS": "solvers",
+        "Result": "solvers.contract",
+        "show": "viewer.notebook",
+        "page": "viewer.page",
+    },
+)
 
-Cube.shown_by = displayed  # the cube itself stands too low to know the page
+
+def _displayed(cube: object) -> dict[str, object]:
+    """What a notebook shows of a cube; the page's modules load with the first one that is shown."""
+    from lightcube.viewer.notebook import displayed
+
+    return displayed(cube)
+
+
+showing.by = _displayed  # the cube itself stands too low to know the page
+
+
+def _free_cores() -> int:
+    """How many threads compute where nobody said so."""
+    from lightcube.cores import default
+
+    return default()
+
+
+kernels.default_threads = _free_cores  # the loops themselves stand too low to know the machine

@@ -5,7 +5,6 @@ import os
 from pathlib import Path, PurePosixPath
 
 from lightcube.errors import InputError
-from lightcube.kernels import tasks
 
 #: Says how many threads there are by default, as it does to all that numba compiles.
 _VARIABLE = "NUMBA_NUM_THREADS"
@@ -30,6 +29,8 @@ def threads(count: int | None = None) -> int:
     InputError
         For another number, or one that contradicts ``NUMBA_NUM_THREADS``.
     """
+    from lightcube.kernels import tasks  # here: the compiler comes with it
+
     if count is not None:
         tasks.set_threads(_checked(count))
     return tasks.threads()
@@ -47,7 +48,8 @@ def _checked(count: object) -> int:
     return count
 
 
-def _default() -> int:
+def default() -> int:
+    """How many threads compute where nobody said so in this process."""
     said = _said()
     return free_cores() if said is None else said
 
@@ -100,6 +102,3 @@ def _lines(file: Path) -> list[str]:
         return file.read_text().splitlines()
     except OSError:
         return []
-
-
-tasks.default = _default

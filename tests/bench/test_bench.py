@@ -14,7 +14,7 @@ import pytest
 from lightcube import bench
 from lightcube.bench import clock, limits, loops, others, playing, products, starting
 from lightcube.bench.report import markdown
-from lightcube.cli.main import main
+from lightcube.cli.main import run
 from lightcube.kernels import tasks
 from tests.conftest import INTERPRETED
 
@@ -131,8 +131,8 @@ def test_the_second_of_two_starts_counts(tmp_path: Path, monkeypatch: pytest.Mon
     started: list[list[str]] = []
     monkeypatch.setattr("lightcube.bench.starting.subprocess.run", lambda command, **_: started.append(command))
     found = starting.starts()
-    assert [each["command"] for each in found] == ["--help", "play"]
-    assert [command[3] for command in started] == ["--help", "--help", "play", "play"]
+    assert [each["command"] for each in found] == ["--help", "info", "play"]
+    assert [command[3] for command in started] == ["--help", "--help", "info", "info", "play", "play"]
     monkeypatch.undo()
     subprocess.run([sys.executable, *started[0][1:]], check=True, capture_output=True)
 
@@ -148,10 +148,7 @@ def test_the_command_prints_json_or_tables(monkeypatch: pytest.MonkeyPatch, caps
 
     monkeypatch.setattr(bench, "measure", measure)
     for words in (["--n", "3", "--json", "--quick"], ["--n", "3", "--views", "2", "--json"]):
-        monkeypatch.setattr(sys, "argv", ["lightcube", "bench", *words])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        assert stop.value.code == 0
+        assert run(["bench", *words]) == 0
         printed = capsys.readouterr()
         assert json.loads(printed.out) == {"found": 1.0}
         assert "something ..." in printed.err
@@ -166,13 +163,8 @@ def test_the_command_prints_json_or_tables(monkeypatch: pytest.MonkeyPatch, caps
         (["--n", "2000", "--views", "100000"], "of memory"),
     ],
 )
-def test_bad_sizes_get_a_sentence(
-    words: list[str], said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(sys, "argv", ["lightcube", "bench", *words])
-    with pytest.raises(SystemExit) as stop:
-        main()
-    assert stop.value.code == 2
+def test_bad_sizes_get_a_sentence(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["bench", *words]) == 2
     assert said in capsys.readouterr().err
 
 

@@ -40,13 +40,11 @@ class Run:
 
 
 @pytest.fixture
-def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch):  # type: ignore[no-untyped-def]
+def run(capsys: pytest.CaptureFixture[str]):  # type: ignore[no-untyped-def]
     def call(*arguments: object) -> Run:
-        monkeypatch.setattr(sys, "argv", ["lightcube", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main.main()
+        code = main.run([*map(str, arguments)])
         captured = capsys.readouterr()
-        return Run(int(stop.value.code or 0), captured.out, captured.err)
+        return Run(code, captured.out, captured.err)
 
     return call
 
@@ -210,7 +208,7 @@ def test_overwrite_removes_an_old_partial(run, frames: Path, tmp_path: Path, mon
 
 def test_a_real_process_stops_at_ctrl_c_with_130(frames: Path, tmp_path: Path) -> None:
     """SIGINT as a terminal sends it, while solving as long as it takes."""
-    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", "solve", str(frames), "-o"]
+    command = [sys.executable, "-m", "lightcube", "solve", str(frames), "-o"]
     command += [str(tmp_path / "a.zarr"), "--n", "8", "--iterations", "1000000", "--json", "--method", "sirt"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
@@ -336,7 +334,7 @@ def test_what_is_no_partial_is_never_touched(run, frames: Path, tmp_path: Path) 
 
 def test_names_with_brackets_and_letters_a_terminal_lacks(frames: Path, tmp_path: Path) -> None:
     (frames / "views.toml").write_text('names = ["[/a]", "[red]b", "\u2603", ":cat:"]\n')
-    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()"]
+    command = [sys.executable, "-m", "lightcube"]
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     arguments = ["solve", str(frames), "-o", str(tmp_path / "a.npz"), "--n", "6", "--method", "gauss-seidel"]
     solved = subprocess.run([*command, *arguments], capture_output=True, text=True, env=environment)
@@ -368,7 +366,7 @@ def test_warnings_are_notes(run, frames: Path, tmp_path: Path) -> None:  # type:
 
 def test_help_names_every_command() -> None:
     environment = {**os.environ, "COLUMNS": "100"}
-    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", "--help"]
+    command = [sys.executable, "-m", "lightcube", "--help"]
     text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
     listed = re.findall(r"^\s+([a-z]+)\s\s+[A-Z]", text, re.MULTILINE)
     assert " ".join(listed) == "trace check solve play score view report draw info publish bench demo"

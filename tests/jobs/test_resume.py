@@ -39,7 +39,7 @@ job.COARSE_PASSES = 20
 pieces.FIRST_CHECKPOINT_S = pieces.CHECKPOINT_S = pieces._PATIENCE = 0.0
 needs.PROGRAM, prediction.PASSES = 0, 1
 order._PASSES = order._WALKS = order._SWAPS = 1
-from lightcube.cli.main import main
+from lightcube.__main__ import main
 main()
 """
 PASSES = 4 if INTERPRETED else 300

@@ -18,9 +18,9 @@ import pytest
 
 import lightcube
 from lightcube import cores
+from lightcube.__main__ import main
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
-from lightcube.cli.main import main
 from lightcube.errors import InputError
 from lightcube.kernels import tasks
 from lightcube.kernels.compiled import compiled
@@ -306,7 +306,7 @@ def test_the_environment_says_how_many_threads(monkeypatch: pytest.MonkeyPatch) 
 def test_an_environment_that_says_nonsense_is_a_sentence(said: str) -> None:
     """Numba alone would end with a traceback, at the import."""
     told = {**os.environ, "NUMBA_NUM_THREADS": said}
-    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", "score", "no.zarr"]
+    command = [sys.executable, "-c", "from lightcube.__main__ import main; main()", "score", "no.zarr"]
     run = subprocess.run(command, env=told, capture_output=True, text=True, check=False)
     assert run.returncode == 2
     assert run.stderr == (

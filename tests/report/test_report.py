@@ -6,7 +6,6 @@ import html
 import json
 import re
 import shlex
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -116,13 +115,11 @@ class Page(HTMLParser):
 
 
 @pytest.fixture
-def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Run:
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
     def call(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["lightcube", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main.main()
+        code = main.run([*map(str, arguments)])
         captured = capsys.readouterr()
-        return int(stop.value.code or 0), captured.out, captured.err
+        return code, captured.out, captured.err
 
     return call
 

@@ -23,6 +23,7 @@ import lightcube as lc
 from lightcube.drawing.strip import thumbnails
 from lightcube.errors import InputError
 from lightcube.forward.casting import play
+from lightcube.optics import showing
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
@@ -165,12 +166,11 @@ def test_outside_of_notebooks_nothing_is_sent_to_a_widget(monkeypatch: pytest.Mo
 
 
 def test_the_package_says_how_a_cube_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert Cube.shown_by is notebook.displayed
     assert lc.show is notebook.show
     monkeypatch.delitem(sys.modules, "IPython", raising=False)
     cube = turning()
     assert cube._repr_mimebundle_(include=None, exclude=None) == notebook.displayed(cube)
-    monkeypatch.setattr(Cube, "shown_by", None)
+    monkeypatch.setattr(showing, "by", None)
     assert cube._repr_mimebundle_() == {"text/plain": repr(cube)}
 
 

@@ -21,8 +21,6 @@ from lightcube.optics.transfer import Transfer, decode
 from lightcube.optics.views import Views
 from lightcube.pictures.frames import Frames
 from lightcube.projection.projector import Projector
-from lightcube.projection.stacked import StackedBeams, is_stacked
-from lightcube.solvers._objective import mixed_light
 from lightcube.solvers.contract import Mixture
 
 Floats = NDArray[np.floating[Any]]
@@ -94,6 +92,8 @@ class Problem:
 
         ``(stop, row, column, channel)`` of the part: `rows` and colours only.
         """
+        from lightcube.solvers._objective import mixed_light  # here: the compiler comes with it
+
         shape = self.rows.stop - self.rows.start, self.matrix.views.picture_shape[1]
 
         def at_stops(values: Floats) -> Floats:
@@ -124,6 +124,8 @@ def volume_from_unknowns(x: Floats, shape: tuple[int, int, int], channels: int) 
 
 def is_level(grid: Grid, views: Views) -> bool:
     """Tell whether each slice of the cube casts one row of the pictures, by itself."""
+    from lightcube.projection.stacked import StackedBeams, is_stacked  # here: the compiler comes with them
+
     return is_stacked(grid, views) and StackedBeams(grid, views).level
 
 

@@ -17,7 +17,6 @@ from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import Rig
 from lightcube.pictures.frames import Frames
-from lightcube.projection.stacked import is_stacked
 
 
 def solve(
@@ -114,6 +113,8 @@ def _check_method(recipe: Recipe, rig: Rig) -> None:
 
 def check_frames(frames: Frames, grid: Grid) -> None:
     """Raise `InputError` where a picture is larger than the grid's screen; other screens are as large as they are."""
+    from lightcube.projection.stacked import is_stacked  # here: the compiler comes with it
+
     rig = frames.rig
     if not np.all(rig.screens.endless) or not is_stacked(grid, rig.views):
         return

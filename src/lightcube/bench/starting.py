@@ -16,19 +16,23 @@ from lightcube.optics.rig import turntable
 
 
 def starts() -> list[dict[str, Any]]:
-    """Seconds of the second start of `lightcube --help` and of `lightcube play` on a tiny cube."""
+    """Seconds of the second start of `lightcube --help`, and of `info` and `play` of a tiny cube."""
     grid = Grid((3, 3, 3))
     cube = Cube(np.ones((3, 3, 3, 3), np.float32), grid, turntable(grid, [10.0]))
     with tempfile.TemporaryDirectory() as folder:
         kept, shown = Path(folder) / "cube.zarr", Path(folder) / "shown.npy"
         io.save(cube, kept)
-        commands = [["--help"], ["play", str(kept), "-o", str(shown), "--angles", "10", "--overwrite"]]
+        commands = [
+            ["--help"],
+            ["info", str(kept)],
+            ["play", str(kept), "-o", str(shown), "--angles", "10", "--overwrite"],
+        ]
         return [{"command": words[0], "seconds": _second(words)} for words in commands]
 
 
 def _second(words: list[str]) -> float:
     """Run a command twice; return the seconds of the second time, when everything compiled is on the disk."""
-    command = [sys.executable, "-c", "from lightcube.cli.main import main; main()", *words]
+    command = [sys.executable, "-m", "lightcube", *words]
 
     def run() -> None:
         subprocess.run(command, check=True, capture_output=True)  # noqa: S603

@@ -4,11 +4,12 @@ from typing import Annotated
 
 import typer
 
-from lightcube.cli.console import err, json_document, out
-from lightcube.cli.options import JSON
+from lightcube.cli.console import compiling, err, json_document, out
+from lightcube.cli.options import JSON, threaded
 from lightcube.verbs import solving
 
 
+@threaded
 def bench(
     n: Annotated[int, typer.Option("--n", min=2, max=2000, help="Voxels along each side of the cube.")] = 300,
     views: Annotated[
@@ -23,7 +24,8 @@ def bench(
 
     pictures = n if views is None else views
     solving.check_memory(benches.memory(n, pictures))
-    found = benches.measure(n, pictures, lambda what: err.print(f"{what} ..."), quick=quick)
+    with compiling(as_json=as_json):
+        found = benches.measure(n, pictures, lambda what: err.print(f"{what} ..."), quick=quick)
     if as_json:
         json_document(found)
     else:

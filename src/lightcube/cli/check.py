@@ -5,12 +5,14 @@ from typing import Annotated
 import typer
 
 from lightcube import io
-from lightcube.cli.console import err, json_document, out
-from lightcube.cli.options import FRAMES, JSON, one_by_one
-from lightcube.verbs import checking
+from lightcube.cli.console import compiling, err, json_document, out
+from lightcube.cli.fields import one_by_one
+from lightcube.cli.options import FRAMES, JSON, threaded
+from lightcube.verbs import checking, solving
 from lightcube.verbs.options import Options
 
 
+@threaded
 @one_by_one
 def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
     """Say before solving what can be known: how good it will be, what contradicts itself, or on a stage cannot be.
@@ -21,8 +23,10 @@ def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = Fal
     if stage:
         found = checking.of_stage(frames, options.transfer)
     else:
-        with err.status("rehearsing"):
-            found = checking.of_pictures(frames, options)
+        options = solving.settled(options)
+        pictures = solving.read(frames, options)
+        with err.status("rehearsing"), compiling(as_json=as_json):
+            found = checking.of_pictures(pictures, options)
     if as_json:
         json_document(found.facts)
     else:

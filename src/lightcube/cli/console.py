@@ -8,11 +8,11 @@ import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
+from functools import cache
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
 from lightcube import events
 from lightcube.events import Said, Tell
@@ -62,6 +62,27 @@ def plain_warnings() -> Iterator[None]:
 
 
 @contextmanager
+def compiling(*, as_json: bool) -> Iterator[None]:
+    """Say once, unless machines listen, that kernels are compiled: numba tells where one is not on the disk yet."""
+    from numba.core import event  # here: only what computes pays for it
+
+    class Listener(event.Listener):
+        def on_start(self, _: object) -> None:
+            _say_compiling()
+
+        def on_end(self, _: object) -> None:
+            pass
+
+    with nullcontext() if as_json else event.install_listener("numba:compile", Listener()):
+        yield
+
+
+@cache
+def _say_compiling() -> None:
+    err.print("compiling, once: about 30 s")
+
+
+@contextmanager
 def progress(task: str, *, as_json: bool) -> Iterator[Callable[..., None]]:
     """Yield ``advance(done, of, **figures)``: a bar with the time left, or at most two JSON lines a second."""
     last = -math.inf
@@ -75,6 +96,8 @@ def progress(task: str, *, as_json: bool) -> Iterator[Callable[..., None]]:
 
         yield advance
         return
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -82,7 +105,8 @@ def progress(task: str, *, as_json: bool) -> Iterator[Callable[..., None]]:
         TextColumn("{task.fields[figures]}"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as bar:
+    bar = Progress(*columns, console=err, transient=True, disable=not err.is_terminal)
+    with compiling(as_json=False), bar:
         running = bar.add_task(task, total=None, figures="")
 
         def show(done: int, of: int, **figures: float) -> None:
@@ -113,7 +137,7 @@ def ctrl_c() -> Iterator[Callable[[], bool]]:
 
 
 def prepare() -> None:
-    """Let no letter that the terminal lacks stop a command, and let SIGTERM clean up as Ctrl-C does."""
+    """Let no letter that the terminal lacks stop a command, and let Ctrl-C and SIGTERM clean up behind it."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -122,6 +146,8 @@ def prepare() -> None:
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, stop)
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 class Stopped(Exception):  # noqa: N818 - nothing is wrong

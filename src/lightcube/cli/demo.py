@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from lightcube import io
 from lightcube.backward import solving
 from lightcube.backward.recipe import Recipe
-from lightcube.cli.console import out, progress
+from lightcube.cli.console import compiling, out, progress
+from lightcube.cli.options import threaded
 from lightcube.drawing.sheet import contact_sheet
 from lightcube.forward import casting, turning
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns, volume_from_columns
@@ -33,6 +34,7 @@ from lightcube.viewer.page import page
 _SIDE = 64
 
 
+@threaded
 def demo(
     output: Annotated[Path, typer.Option("-o", "--out", help="Folder for what the demo makes.")] = Path("out"),
     as_in_the_paper: Annotated[
@@ -40,7 +42,8 @@ def demo(
     ] = False,
 ) -> None:
     """Make a cube of photographs and one of a traced scene, into a folder."""
-    (paper if as_in_the_paper else run)(output)
+    with compiling(as_json=False):
+        (paper if as_in_the_paper else run)(output)
 
 
 def run(folder: Path) -> None:

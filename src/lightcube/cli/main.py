@@ -1,41 +1,65 @@
 """The command line: parses, calls, prints."""
 
-import sys
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from typing import Annotated
 
 import typer
 
-from lightcube.cli import bench, check, demo, draw, play, report, score, solve, trace, view
-from lightcube.cli.console import Stopped, err, plain_warnings, prepare
-from lightcube.cli.options import threaded
+from lightcube.cli.console import Stopped, err, out, plain_warnings, prepare
 from lightcube.errors import InputError
 
-app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help="Pictures in, a cube of coloured shadows out.",
-)
-
-for command in (
-    *(trace.trace, check.check, solve.solve, play.play, score.score, view.view, report.report, draw.draw),
-    *(score.info, solve.publish, bench.bench, demo.demo),
-):
-    computes = command not in (draw.draw, score.info, solve.publish)
-    app.command()(threaded(command) if computes else command)
-
+#: The commands, each in a module of its name, and what they say of themselves: only the one that is named is loaded.
+COMMANDS: Mapping[str, str] = {
+    "trace": "Ray-trace a moving scene: a folder of PNGs, or a movie by suffix.",
+    "check": (
+        "Say before solving what can be known: how good it will be, what contradicts itself, or on a stage cannot be."
+    ),
+    "solve": "Compute the cube whose shadows are the frames; what was stopped or killed goes on where it was.",
+    "play": "Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.",
+    "score": "Compare what a cube really casts with what was wanted.",
+    "view": "Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail.",
+    "report": (
+        "Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, how it was made."
+    ),
+    "draw": "Draw a stage from above and from the side, with its beams, or the room of a cube in perspective.",
+    "info": "Say what is in a cube file.",
+    "publish": "Make a cube of what there is of an unfinished one, and say whether it is whole.",
+    "bench": "Measure this machine and what lightcube makes of it, beside others: tables in Markdown.",
+    "demo": "Make a cube of photographs and one of a traced scene, into a folder.",
+}
 #: The exit code after Ctrl-C.
 _INTERRUPTED = 130
 
 
-def main() -> None:
-    """Run the command line: exit code 0, 2 for what the user can mend, 130 for Ctrl-C."""
+def application(words: Sequence[str]) -> typer.Typer:
+    """The program as far as it takes to run the command that `words` name: of the others there is the name alone."""
+    app = typer.Typer(
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+        context_settings={"help_option_names": ["-h", "--help"]},
+        help="Pictures in, a cube of coloured shadows out.",
+    )
+    app.callback()(_options)
+    wanted = next((word for word in words if not word.startswith("-")), None)
+    for name, said in COMMANDS.items():
+        if name == wanted:
+            app.command(name)(_loaded(name))
+        else:
+            app.command(name, help=said)(_elsewhere)
+    return app
+
+
+def run(words: Sequence[str]) -> int:
+    """Run the command that `words` name and return the exit code: 0, 2 for what the user can mend, 130 for Ctrl-C."""
+    app = application(words)
     prepare()
     code: int | None = None
     try:
         with plain_warnings():
-            code = app(args=sys.argv[1:] or ["--help"], standalone_mode=False)
+            code = app(args=list(words) or ["--help"], prog_name="lightcube", standalone_mode=False)
         if code == _INTERRUPTED:  # what typer makes of Ctrl-C
             err.print("interrupted: no file was finished")
     except InputError as error:
@@ -56,4 +80,31 @@ def main() -> None:
     except MemoryError:
         err.print("lightcube: the machine has not enough memory for this: use a smaller cube or fewer pictures")
         code = 2
-    sys.exit(code or 0)
+    return code or 0
+
+
+def _loaded(name: str) -> Callable[..., None]:
+    """The function that is a command."""
+    found: Callable[..., None] = getattr(import_module(f"lightcube.cli.{name}"), name)
+    return found
+
+
+def _elsewhere() -> None:
+    """A command that is not the one asked for."""
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        out.print(f"lightcube {version('lightcube')}")
+        raise typer.Exit
+
+
+def _options(
+    _: Annotated[
+        bool,
+        typer.Option("--version", help="Show the version and exit.", callback=_print_version, is_eager=True),
+    ] = False,
+) -> None:
+    """What can be said before a command."""

@@ -1,16 +1,14 @@
 """The options that commands have in common."""
 
 import inspect
-from collections.abc import Callable, Mapping
-from dataclasses import Field, fields
+from collections.abc import Callable
 from functools import wraps
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any
 
 import typer
 
 from lightcube import cores
 from lightcube.cli import arguments
-from lightcube.verbs.options import Option, Options
 
 FRAMES = Annotated[str, typer.Argument(help="A folder of pictures, an animated image, a video, or a stage (TOML).")]
 
@@ -23,20 +21,16 @@ THREADS = Annotated[
     typer.Option(help="Compute with so many threads; results are the same.  [default: the cores that are free]"),
 ]
 
-_FIELDS = {each.name: each for each in fields(Options)}
-#: Options that are written as a text of several numbers: what such a text means.
-_TEXTS: Mapping[str, Callable[[str], Any]] = {
-    "shape": lambda text: arguments.whole_numbers(text, ",", "--shape", 3),
-    "angles": lambda text: arguments.numbers(text, "--angles"),
-}
-
 
 def threaded(command: Callable[..., None]) -> Callable[..., None]:
     """Let the command line say with how many threads a command computes."""
 
     @wraps(command)
     def told(*, threads: str | None, **given: Any) -> None:
-        cores.threads(None if threads is None else arguments.threads(threads))
+        if threads is None:
+            cores.default()  # refuses what the environment says, where that is no number
+        else:
+            cores.threads(arguments.threads(threads))
         command(**given)
 
     signature, by_name = inspect.signature(command), inspect.Parameter.KEYWORD_ONLY
@@ -44,38 +38,3 @@ def threaded(command: Callable[..., None]) -> Callable[..., None]:
     said = inspect.Parameter("threads", by_name, default=None, annotation=THREADS)
     told.__signature__ = signature.replace(parameters=[*parameters, said])  # type: ignore[attr-defined]
     return told
-
-
-def one_by_one(command: Callable[..., None]) -> Callable[..., None]:
-    """Let the command line give the fields of `Options` one by one, where a command has a parameter ``options``."""
-
-    @wraps(command)
-    def taking(**given: Any) -> None:
-        said = {name: given.pop(name) for name in _FIELDS}
-        values = {name: _TEXTS[name](value) for name, value in said.items() if name in _TEXTS and value is not None}
-        command(options=Options(**{**said, **values}), **given)
-
-    signature, by_name = inspect.signature(command), inspect.Parameter.KEYWORD_ONLY
-    own = [
-        inspect.Parameter(name, by_name, default=each.default, annotation=Annotated[_written(each), flag(name)])
-        for name, each in _FIELDS.items()
-    ]
-    parameters = [
-        one
-        for name, parameter in signature.parameters.items()
-        for one in (own if name == "options" else [parameter.replace(kind=by_name)])
-    ]
-    taking.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
-    return taking
-
-
-def _written(field: Field[Any]) -> Any:
-    """The type of an option as it is written."""
-    return str | None if field.name in _TEXTS else get_args(field.type)[0]
-
-
-def flag(name: str) -> typer.models.OptionInfo:
-    """What makes a field of `Options` an option of the command line."""
-    _, said = get_args(_FIELDS[name].type)
-    assert isinstance(said, Option)  # noqa: S101 - every field says what it is
-    return typer.Option(f"--{name.replace('_', '-')}", help=said.help, min=said.least)

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from lightcube import io
 from lightcube.cli import arguments
 from lightcube.cli.console import done, err, progress
-from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, flag
+from lightcube.cli.fields import flag
+from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, threaded
 from lightcube.errors import InputError
 from lightcube.jobs.cubes import load
 from lightcube.verbs import playing, staging
 
 
+@threaded
 def play(
     cube: Annotated[str, typer.Argument(help="A cube.")],
     output: Annotated[str, OUT],

@@ -6,11 +6,12 @@ import typer
 
 from lightcube import io
 from lightcube.cli.console import done, telling
-from lightcube.cli.options import JSON, OVERWRITE
+from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.jobs.cubes import load
 from lightcube.verbs import reporting
 
 
+@threaded
 def report(
     cube: Annotated[str, typer.Argument(help="A cube.")],
     frames: Annotated[

@@ -1,4 +1,4 @@
-"""The commands `lightcube score` and `info`."""
+"""The command `lightcube score`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,16 +6,16 @@ from typing import Annotated
 import typer
 
 from lightcube import io
-from lightcube.cli import arguments, printing
-from lightcube.cli.console import json_document, out, telling
-from lightcube.cli.options import JSON, OVERWRITE
+from lightcube.cli import printing
+from lightcube.cli.console import json_document, telling
+from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.errors import InputError
 from lightcube.jobs.cubes import load
-from lightcube.scoring import metrics
 from lightcube.verbs import scoring
 from lightcube.verbs.wanted import wanted_of
 
 
+@threaded
 def score(
     cube: Annotated[str, typer.Argument(help="A cube.")],
     frames: Annotated[
@@ -52,16 +52,3 @@ def score(
         json_document(found.scores)
     else:
         printing.scored(found.scores)
-
-
-def info(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
-    as_json: Annotated[bool, JSON] = False,
-) -> None:
-    """Say what is in a cube file."""
-    facts = metrics.facts(load(cube))
-    if as_json:
-        json_document(facts)
-        return
-    for name, value in facts.items():
-        out.print(f"{name:>26}  {arguments.short(value)}")

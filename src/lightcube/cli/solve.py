@@ -11,8 +11,9 @@ from lightcube.backward.job import Job
 from lightcube.backward.needs import job_memory
 from lightcube.backward.solution import Solution
 from lightcube.cli import arguments, printing
-from lightcube.cli.console import Stopped, done, err, json_line, listening, out
-from lightcube.cli.options import FRAMES, JSON, OUT, OVERWRITE, one_by_one
+from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening
+from lightcube.cli.fields import one_by_one
+from lightcube.cli.options import FRAMES, JSON, OUT, OVERWRITE, threaded
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, cubes, running
 from lightcube.jobs.partial import check_partial, open_partial
@@ -20,6 +21,7 @@ from lightcube.verbs import solving, staging, words
 from lightcube.verbs.options import Options
 
 
+@threaded
 @one_by_one
 def solve(
     frames: FRAMES,
@@ -50,11 +52,11 @@ def solve(
     which, units = (None, None) if unit is None else arguments.unit(unit)
     budget = None if memory is None else arguments.memory(memory)
     workers = 1 if scheduler is None else cluster.count_workers(scheduler)
-    job, said = _asked(frames, options, budget, units)
+    job, said = _asked(frames, options, budget, units, as_json=as_json)
     if units is None:
         job = solving.divided(job, output, workers, budget)
     if dry_run:
-        with err.status("timing a smaller cube"):
+        with err.status("timing a smaller cube"), compiling(as_json=as_json):
             needs = solving.needs(job)
         done(as_json, words.needed(needs), **needs)
         return
@@ -77,7 +79,8 @@ def solve(
             f"  lightcube publish {store.folder}"
         )
     if which is None:
-        solution = cubes.finish(job, store, output, overwrite=overwrite).solution
+        with compiling(as_json=as_json):
+            solution = cubes.finish(job, store, output, overwrite=overwrite).solution
         _solved(solution, output, time.monotonic() - began, as_json=as_json)
     else:
         done(as_json, f"unit {which} of {units} is in {store.folder}", out=str(store.folder), unit=which, units=units)
@@ -91,31 +94,17 @@ def _solved(solution: Solution, output: str, seconds: float, *, as_json: bool) -
         printing.solved(solution, output, seconds)
 
 
-def publish(
-    partial: Annotated[str, typer.Argument(help="The unfinished cube, NAME.zarr.partial.")],
-    overwrite: Annotated[bool, OVERWRITE] = False,
-    as_json: Annotated[bool, JSON] = False,
-) -> None:
-    """Make a cube of what there is of an unfinished one, and say whether it is whole."""
-    made = cubes.publish(partial, overwrite=overwrite)
-    if as_json:
-        facts = printing.facts(made.solution) if made.is_whole else {}
-        units = {"whole": made.is_whole, "units_done": made.done, "units": made.units}
-        json_line("result", out=str(made.path), **units, **facts)
-    elif made.is_whole:
-        printing.solved(made.solution, f"{made.path} is whole")
-    else:
-        out.print(words.holds(made))
-
-
-def _asked(frames: str, options: Options, memory: int | None, units: int | None) -> tuple[Job, Callable[[], list[str]]]:
+def _asked(
+    frames: str, options: Options, memory: int | None, units: int | None, *, as_json: bool
+) -> tuple[Job, Callable[[], list[str]]]:
     """The job that `solve` is asked for, and a function that makes what is to be said of it."""
     if io.is_stage(frames):
         stage, wanted = staging.read(frames, options)
         return staging.job(stage, wanted, options, memory=memory, units=units), lambda: staging.in_short(stage, wanted)
     options = solving.settled(options)
-    with err.status("rehearsing"):
-        planned = solving.prepare(frames, options)
+    pictures = solving.read(frames, options)
+    with err.status("rehearsing"), compiling(as_json=as_json):
+        planned = solving.prepare(pictures, options)
         order = solving.another_order(planned)
     job = solving.job(planned, memory=memory, units=units)
     return job, lambda: [*words.in_short(planned, order), *([] if options.paper else words.what_to_change(planned))]

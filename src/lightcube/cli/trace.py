@@ -7,10 +7,11 @@ import typer
 from lightcube import io
 from lightcube.cli import arguments
 from lightcube.cli.console import done, telling
-from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE
+from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, threaded
 from lightcube.verbs import tracing
 
 
+@threaded
 def trace(
     scene: Annotated[
         str, typer.Argument(help="A scene file (TOML), or the name of a scene that comes with lightcube.")

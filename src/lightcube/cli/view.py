@@ -8,11 +8,12 @@ import typer
 
 from lightcube import io
 from lightcube.cli.console import done, err, telling
-from lightcube.cli.options import JSON, OVERWRITE
+from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.jobs.cubes import load
 from lightcube.verbs import viewing
 
 
+@threaded
 def view(
     cube: Annotated[str, typer.Argument(help="A cube.")],
     output: Annotated[

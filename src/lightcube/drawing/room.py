@@ -6,7 +6,6 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
 
 from lightcube.drawing.camera import FINE, Camera, Canvas, Floats, Reals, Region, fitting
 from lightcube.drawing.standing import (
@@ -196,6 +195,8 @@ def _show_screen(canvas: Canvas, screen: PlacedScreen, picture: Floats) -> None:
     if (canvas.eye - screen.corner) @ screen.facing <= 0:
         canvas.light[region][inside] = _BACK
         return
+    from scipy.ndimage import map_coordinates  # here: it takes longer to load than a small cube to play
+
     places = np.stack([below[inside], across[inside]]) - np.float32(0.5)
     for channel in range(3):
         shown = picture[:rows, :columns, min(channel, picture.shape[2] - 1)]

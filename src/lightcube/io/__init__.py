@@ -1,26 +1,23 @@
 """Reading and writing files, by suffix."""
 
-from lightcube.io.cubes import bare_name, read_cube
-from lightcube.io.machine import free_memory
-from lightcube.io.movies import ClippedPictures
-from lightcube.io.outputs import Output, save
-from lightcube.io.pictures import TransparentPictures, read_pictures
-from lightcube.io.scenes import read_scene, scene_names
-from lightcube.io.stages import is_stage, read_stage, read_stage_frames, stage_pictures
+from lightcube.loading import when_used
 
-__all__ = [
-    "ClippedPictures",
-    "Output",
-    "TransparentPictures",
-    "bare_name",
-    "free_memory",
-    "is_stage",
-    "read_cube",
-    "read_pictures",
-    "read_scene",
-    "read_stage",
-    "read_stage_frames",
-    "save",
-    "scene_names",
-    "stage_pictures",
-]
+__getattr__, __dir__, __all__ = when_used(
+    __name__,
+    {
+        "bare_name": "cubes",
+        "read_cube": "cubes",
+        "free_memory": "machine",
+        "ClippedPictures": "movies",
+        "Output": "outputs",
+        "save": "outputs",
+        "TransparentPictures": "pictures",
+        "read_pictures": "pictures",
+        "read_scene": "scenes",
+        "scene_names": "scenes",
+        "is_stage": "stages",
+        "read_stage": "stages",
+        "read_stage_frames": "stages",
+        "stage_pictures": "stages",
+    },
+)

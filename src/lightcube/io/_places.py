@@ -15,7 +15,6 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
-from urllib.request import url2pathname
 from uuid import uuid4
 
 from lightcube.errors import InputError
@@ -51,6 +50,8 @@ def place(given: str | Path) -> Place:
     if not rest:
         raise InputError(f"{given} names no file and no folder: give one, such as {scheme}://bucket/name")
     if scheme == "file":
+        from urllib.request import url2pathname  # here: all that speaks HTTP comes with it
+
         rest = rest.removeprefix("localhost")
         if not rest.startswith("/"):
             raise InputError(f"{given} is no file URL: begin with three slashes, such as file:///tmp/{rest}")

@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
+from lightcube import cores
 from lightcube.backward.job import Job, shares
 from lightcube.backward.pieces import Step, solve_piece
 from lightcube.errors import InputError
 from lightcube.events import Progress, Said, Tell
 from lightcube.jobs.partial import DiskStore, load_job
-from lightcube.kernels import tasks
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster, Worker
@@ -117,6 +117,8 @@ def solve_there(place: str, name: str, written_by: str, topic: str, after: objec
     """
     from distributed import get_worker
 
+    from lightcube.kernels import tasks  # here: the compiler comes with it
+
     worker = get_worker()
     key, told = worker.get_current_task(), 0.0
 
@@ -130,7 +132,7 @@ def solve_there(place: str, name: str, written_by: str, topic: str, after: objec
     with _TURN:
         if _is_unwanted(worker, key):
             return
-        tasks.set_threads(min(worker.state.nthreads, tasks.default()))
+        tasks.set_threads(min(worker.state.nthreads, cores.default()))
         try:
             if version("lightcube") != written_by:
                 raise InputError(f"lightcube is {version('lightcube')} there, and {written_by} here")

@@ -15,6 +15,7 @@ from typing import Any
 
 from numba import config
 
+from lightcube import kernels
 from lightcube.kernels.compiled import say_what_is_forgotten
 
 #: Steps of work, about a nanosecond each, that a part of a loop has at least: it is worth waking a thread for.
@@ -109,15 +110,13 @@ class _Helpers:
 
 _helpers = _Helpers()
 _threads: int | None = None
-#: How many threads a loop has where nobody said so.
-default: Callable[[], int] = lambda: 1  # noqa: E731 - replaced by `lightcube.cores`, which knows the machine
 
 
 def threads() -> int:
     """How many threads work on a loop."""
     global _threads
     if _threads is None:
-        _threads = default()
+        _threads = 1 if kernels.default_threads is None else kernels.default_threads()
     return _threads
 
 

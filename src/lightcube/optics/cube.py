@@ -1,13 +1,14 @@
 """The light cube: extinction of every voxel and colour, and what it was made for."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics import showing
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
@@ -63,8 +64,6 @@ class Cube:
     provenance: Mapping[str, Any] = field(default_factory=dict)
     status: Status = "complete"
     hold_deg: float = 0.0
-    #: What a notebook shows of a cube, by MIME type; set by what can draw one, which stands above this module.
-    shown_by: ClassVar[Callable[["Cube"], dict[str, Any]] | None] = None
 
     def __post_init__(self) -> None:
         extinction = np.asarray(self.extinction, dtype=np.float32)
@@ -115,5 +114,4 @@ class Cube:
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
         """What a notebook shows of the cube; front ends choose among it."""
-        shown_by = type(self).shown_by
-        return {"text/plain": repr(self)} if shown_by is None else shown_by(self)
+        return {"text/plain": repr(self)} if showing.by is None else showing.by(self)

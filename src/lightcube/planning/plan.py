@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import ArrayLike
 
@@ -16,9 +16,11 @@ from lightcube.pictures.arranging import spread_over_screen
 from lightcube.pictures.fitting import RAISED, Fit, turntable_for
 from lightcube.pictures.fitting import fit as fitted
 from lightcube.pictures.frames import Frames, Pictures
-from lightcube.planning.order import Order, best_order
 from lightcube.planning.prediction import Prediction, predict
 from lightcube.scoring.metrics import GOOD_DB
+
+if TYPE_CHECKING:
+    from lightcube.planning.order import Order
 
 #: What hold may cost, dB; above so much no eye sees a loss.
 HOLD_COSTS_DB, BEST_SEEN_DB = 1.0, 45.0
@@ -58,7 +60,7 @@ class Plan:
     fit: Fit
     prediction: Prediction
     shift: int = 0
-    order: Order | None = None
+    order: "Order | None" = None
 
     def to_solve(self, frames: Frames) -> "Plan":
         """The same plan for frames that stand, or follow each other, in another way: predicted anew."""
@@ -151,6 +153,8 @@ def plan(
     if shift:
         best = replace(best, shift=shift).to_solve(spread(best, best.frames, shift))
     if order == "best":
+        from lightcube.planning.order import best_order  # here: the compiler comes with it
+
         found = best_order(best.frames, best.grid, best.recipe)
         best = replace(best, order=found).to_solve(found(best.frames))
     return best

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
-from scipy.sparse import csr_array
 
 from lightcube.errors import InputError
 from lightcube.kernels.layout import (
@@ -19,10 +18,10 @@ from lightcube.kernels.layout import (
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.views import Views
-from lightcube.projection.rays import Rays
-from lightcube.projection.stacked import StackedBeams, is_stacked
 
 if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
     from lightcube.projection.linear_operator import MatrixOperator
 
 Floats = NDArray[np.floating[Any]]
@@ -100,6 +99,9 @@ class Projector:
     """
 
     def __init__(self, grid: Grid, rig: Rig | Views, heard: NDArray[np.bool_] | None = None) -> None:
+        from lightcube.projection.rays import Rays  # here: the compiler comes with them
+        from lightcube.projection.stacked import StackedBeams, is_stacked
+
         views = rig if isinstance(rig, Views) else rig.views
         self.grid, self.views = grid, views
         self.domain_shape, self.range_shape = grid.shape, (len(views), *views.picture_shape)
@@ -177,7 +179,7 @@ class Projector:
             raise InputError(f"row {index} is not in the matrix of {self.shape[0]} rows")
         return self._engine.row(index)
 
-    def to_sparse(self) -> csr_array:
+    def to_sparse(self) -> "csr_array":
         """Return the same matrix, float64."""
         return self._engine.to_sparse()
 
@@ -259,7 +261,7 @@ class Transpose:
         """``A @ x``, the projector's `forward`."""
         return self.T.forward(x)
 
-    def to_sparse(self) -> csr_array:
+    def to_sparse(self) -> "csr_array":
         """Return the same matrix, float64."""
         return self.T.to_sparse().T.tocsr()
 

@@ -1,10 +1,9 @@
 """The matrix of rays in any direction: parallel or from a point, onto screens in any position."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from lightcube.kernels import rays
 from lightcube.kernels.layout import empty
@@ -12,6 +11,9 @@ from lightcube.kernels.ray import most_pieces
 from lightcube.kernels.ray_matrix import trace_all
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 Floats = NDArray[np.floating[Any]]
 
@@ -69,8 +71,10 @@ class Rays:
         count = rays.trace(*data, unknowns, lengths)
         return unknowns[:count], lengths[:count]
 
-    def to_sparse(self) -> csr_array:
+    def to_sparse(self) -> "csr_array":
         """Return the same matrix, float64."""
+        from scipy.sparse import csr_array  # here: it takes longer to load than a small cube to play
+
         data = self._lamps, self._screens, self._picture, self._heard, self.grid.shape, self.grid.voxel_mm
         offsets = np.zeros(self.shape[0] + 1, np.int64)
         trace_all(*data, offsets, np.empty(0, np.int64), np.empty(0))

@@ -4,11 +4,10 @@ All beams of a picture column are the same beam, moved up by whole voxels: one t
 """
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from lightcube.kernels import stacked
 from lightcube.kernels.beam import max_pieces
@@ -16,6 +15,9 @@ from lightcube.kernels.layout import LINE, empty, is_worth_lines
 from lightcube.kernels.tasks import threads
 from lightcube.optics.grid import PARALLEL, Grid
 from lightcube.optics.views import Views
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 Floats = NDArray[np.floating[Any]]
 
@@ -81,8 +83,10 @@ class StackedBeams:
         unknowns, inside = self._unknowns(voxels[:count], levels[:count] + lift)
         return unknowns[inside], lengths[:count][inside]
 
-    def to_sparse(self) -> csr_array:
+    def to_sparse(self) -> "csr_array":
         """Return the same matrix, float64."""
+        from scipy.sparse import csr_array  # here: it takes longer to load than a small cube to play
+
         rays = self.shape[0] // self._stacked
         offsets = np.zeros(rays + 1, np.int64)
         none = np.empty(0, np.int32)

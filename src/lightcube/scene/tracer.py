@@ -10,9 +10,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.views import Views, spread_angles
 from lightcube.pictures.frames import Frames
-from lightcube.scene.compiled import compiled, sight
 from lightcube.scene.description import ShadowCamera
-from lightcube.scene.kernels.render import shaded, shadowed
 from lightcube.scene.scene import Scene
 
 #: Called with (pictures made, pictures wanted).
@@ -64,6 +62,9 @@ def trace(
     ----------
     .. [1] J. F. Blinn, "Models of light reflection for computer synthesized pictures", SIGGRAPH 1977.
     """
+    from lightcube.scene.compiled import compiled, sight  # here: the compiler comes with them
+    from lightcube.scene.kernels.render import shaded
+
     if casts_shadows(scene):
         raise InputError(f"{scene.name} has a shadow camera: its pictures need the views of a cube (use shadows)")
     rows, columns = picture_shape
@@ -102,6 +103,9 @@ def shadows(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None
     InputError
         For a scene without a shadow camera.
     """
+    from lightcube.scene.compiled import compiled  # here: the compiler comes with them
+    from lightcube.scene.kernels.render import shadowed
+
     camera = scene.description.camera
     if not isinstance(camera, ShadowCamera):
         raise InputError(f"{scene.name} has no shadow camera: set camera.type to 'shadow' (or use trace)")

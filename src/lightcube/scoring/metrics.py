@@ -128,38 +128,3 @@ def check_same_views(cube: Cube, frames: Frames) -> None:
         raise InputError(
             f"frames ({given} pixels) do not fit the cube, which was made for {made_for}: give those it was made from"
         )
-
-
-def facts(cube: Cube) -> dict[str, Any]:
-    """What is worth knowing of a cube, by name, for people and JSON."""
-    nz, ny, nx = cube.grid.shape
-    rows, columns = cube.rig.picture_shape
-    return {
-        "status": cube.status,
-        "voxels": f"{nz} x {ny} x {nx} (z, y, x)",
-        "size_mm": " x ".join(f"{length:g}" for length in cube.grid.size_mm),
-        "voxel_mm": cube.grid.voxel_mm,
-        "views": len(cube.rig.views),
-        "pictures": len(cube.names),
-        "picture": f"{columns} x {rows} pixels",
-        **_where(cube),
-        "lamp_power": [float(cube.powers.min()), float(cube.powers.max())],
-        "extinction_mean": float(cube.extinction.mean()),
-        "extinction_max": float(cube.extinction.max()),
-        "hold": cube.hold_deg,
-        "transfer": cube.transfer,
-        "names": list(cube.names),
-        **{name: value for name, value in cube.scores.items() if name != "views"},
-        **{f"made_with_{name}": value for name, value in cube.provenance.items()},
-    }
-
-
-def _where(cube: Cube) -> dict[str, Any]:
-    """Where a cube's lamps and screens stand, by name."""
-    rig = cube.rig
-    return {
-        "angles": [float(angle) for angle in cube.angles],
-        "elevation": sorted({float(elevation) for elevation in rig.views.elevations[rig.views.lamps[:, 3] == 0]}),
-        "lamps": list(rig.lamps.names),
-        "screens": [rig.screens.names[screen] for screen in rig.stops.screen],
-    }

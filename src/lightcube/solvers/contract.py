@@ -2,13 +2,15 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from lightcube.optics.transfer import Transfer
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 Floats = NDArray[np.floating[Any]]
 #: Everything that a stopped solver needs to go on, beside what it was called with: plain arrays by name.
@@ -31,7 +33,7 @@ class Operator(Protocol):
     def adjoint(self, b: Floats) -> Floats:
         """``A.T @ b`` for `b` of shape ``(equations, columns)``, in its dtype: the exact transpose of `forward`."""
 
-    def to_sparse(self) -> csr_array:
+    def to_sparse(self) -> "csr_array":
         """The same matrix, float64, for methods that need single rows."""
 
 

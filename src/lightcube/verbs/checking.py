@@ -5,6 +5,7 @@ from typing import Any
 
 from lightcube import io
 from lightcube.optics.transfer import Transfer
+from lightcube.pictures.frames import Pictures
 from lightcube.planning.placement import doubtful, facts, impossible
 from lightcube.planning.reachable import sentences
 from lightcube.verbs import solving, staging, words
@@ -30,10 +31,9 @@ class Checked:
     impossible: list[str]
 
 
-def of_pictures(path: str, options: Options) -> Checked:
-    """What contradicts itself in pictures, how full the cube is, how good it will be, and what would help."""
-    options = solving.settled(options)
-    planned = solving.prepare(path, options)
+def of_pictures(pictures: Pictures, options: Options) -> Checked:
+    """What contradicts itself, how full the cube is, how good it will be, what would help; `options` are settled."""
+    planned = solving.prepare(pictures, options)
     order = solving.another_order(planned)
     advice = [] if options.paper else words.what_to_change(planned)  # all that would help contradicts it
     known = words.facts(planned, order)

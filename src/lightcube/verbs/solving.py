@@ -1,7 +1,7 @@
 """What `check` and `solve` share: from the options of the command line to a plan, and what is said of it."""
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lightcube import io
 from lightcube.backward.job import Job
@@ -11,10 +11,13 @@ from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.jobs.partial import begun_units
 from lightcube.optics.grid import Grid
-from lightcube.planning.order import Order, best_order
+from lightcube.pictures.frames import Pictures
 from lightcube.planning.plan import Plan, plan
 from lightcube.planning.prediction import as_json
 from lightcube.verbs.options import Options
+
+if TYPE_CHECKING:
+    from lightcube.planning.order import Order
 
 #: Orders of more pictures than this are looked for only when asked for: it takes too long.
 _QUICK = 40
@@ -52,13 +55,17 @@ def _as_in_the_paper(options: Options) -> Options:
     return replace(options, **white, shape=options.voxels, n=None)
 
 
-def prepare(path: str, options: Options) -> Plan:
-    """Read the pictures and plan the cube, for options that are settled; `InputError` for all that cannot be."""
-    shape = options.voxels
-    check_memory(memory_needed(options.method, Grid(shape), (1, 1), 1, units=3))
-    recipe = options.recipe
+def read(path: str, options: Options) -> Pictures:
+    """Read the pictures, for options that are settled; `InputError` where they or the cube cannot be."""
+    check_memory(memory_needed(options.method, Grid(options.voxels), (1, 1), 1, units=3))
+    return io.read_pictures(path, transfer=options.transfer)
+
+
+def prepare(pictures: Pictures, options: Options) -> Plan:
+    """Plan the cube, for options that are settled; `InputError` for all that cannot be."""
+    shape, recipe = options.voxels, options.recipe
     return plan(
-        io.read_pictures(path, transfer=options.transfer),
+        pictures,
         max(shape),
         recipe,
         size_mm=options.size_mm,
@@ -75,10 +82,12 @@ def prepare(path: str, options: Options) -> Plan:
     )
 
 
-def another_order(planned: Plan) -> Order | None:
+def another_order(planned: Plan) -> "Order | None":
     """The best order of a plan: its own, or one that is looked for where that does not take long."""
     if planned.order is not None or len(planned.pictures) > _QUICK:
         return planned.order
+    from lightcube.planning.order import best_order  # here: the compiler comes with it
+
     return best_order(planned.frames, planned.grid, planned.recipe)
 
 

@@ -1,7 +1,7 @@
 """What is said of plans, stages and jobs, in sentences and tables."""
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,9 +11,11 @@ from lightcube.optics.rig import POWER_MOST
 from lightcube.pictures.fitting import fit_report
 from lightcube.pictures.frames import Frames
 from lightcube.planning.consistency import advice, check
-from lightcube.planning.order import Order
 from lightcube.planning.plan import Plan, narrower
 from lightcube.planning.prediction import as_json, predict
+
+if TYPE_CHECKING:
+    from lightcube.planning.order import Order
 
 #: A picture below this PSNR, dB, is hardly recognised.
 POOR_DB = 25.0
@@ -36,7 +38,7 @@ def table(facts: dict[str, Any]) -> list[str]:
     return [f"{name:<16}{value}" for name, value in rows.items()]
 
 
-def facts(planned: Plan, order: Order | None) -> dict[str, Any]:
+def facts(planned: Plan, order: "Order | None") -> dict[str, Any]:
     """What can be known before solving, for JSON; `order` is the best one, if it was looked for."""
     found = check(planned.frames, planned.grid)
     return {
@@ -54,7 +56,7 @@ def facts(planned: Plan, order: Order | None) -> dict[str, Any]:
     }
 
 
-def in_short(planned: Plan, order: Order | None) -> list[str]:
+def in_short(planned: Plan, order: "Order | None") -> list[str]:
     """Lines that `solve` says before it starts; `order` is the best one, if it was looked for."""
     nz, ny, nx = planned.grid.shape
     hold = planned.recipe.hold_deg
@@ -76,7 +78,7 @@ def expected(planned: Plan) -> str:
     return f"PSNR of {prediction.psnr_mean:.0f} dB{more} expected (worst {prediction.psnr_min:.0f})"
 
 
-def gain(planned: Plan, order: Order | None) -> list[str]:
+def gain(planned: Plan, order: "Order | None") -> list[str]:
     """What another order would gain, or which one is used."""
     if order is None:
         return []

@@ -1,0 +1,79 @@
+"""Pictures in, a cube of coloured shadows out."""
+
+from lightcube.backward.recipe import Recipe
+from lightcube.backward.solution import Solution
+from lightcube.backward.solving import solve
+from lightcube.cores import threads
+from lightcube.errors import InputError
+from lightcube.forward.casting import cast, play, player
+from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save
+from lightcube.jobs.cubes import load, publish
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.material import Material
+from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
+from lightcube.optics.views import Views, spread_angles
+from lightcube.pictures.fitting import fit, turntable_for
+from lightcube.pictures.frames import Frames, Pictures
+from lightcube.planning.consistency import check
+from lightcube.planning.order import best_order
+from lightcube.planning.plan import Plan, plan
+from lightcube.planning.prediction import Prediction, predict
+from lightcube.projection.projector import Projector, dot_test
+from lightcube.scene.scene import Scene
+from lightcube.scene.tracer import scene_frames, scene_rig
+from lightcube.scoring.metrics import score
+from lightcube.solvers import METHODS
+from lightcube.solvers.contract import Result
+from lightcube.viewer.notebook import show
+from lightcube.viewer.page import page
+
+__all__ = [
+    "METHODS",
+    "Cube",
+    "Frames",
+    "Grid",
+    "InputError",
+    "Lamp",
+    "Material",
+    "Pictures",
+    "Plan",
+    "Prediction",
+    "Projector",
+    "Recipe",
+    "Result",
+    "Rig",
+    "Scene",
+    "Screen",
+    "Shot",
+    "Solution",
+    "Stage",
+    "Views",
+    "best_order",
+    "cast",
+    "check",
+    "dot_test",
+    "fit",
+    "load",
+    "page",
+    "plan",
+    "play",
+    "player",
+    "predict",
+    "publish",
+    "read_pictures",
+    "read_scene",
+    "read_stage",
+    "read_stage_frames",
+    "save",
+    "scene_frames",
+    "scene_rig",
+    "score",
+    "show",
+    "solve",
+    "spread_angles",
+    "threads",
+    "turntable",
+    "turntable_for",
+]
