@@ -126,6 +126,7 @@ import hashlib, numba, numpy as np
 from lightcube.optics.views import Grid, turntable
 from lightcube.projection.projector import Projector
 from lightcube.solvers import METHODS
+from lightcube.solvers.contract import Sums, Wanted
 grid = Grid((2, 19, 18))
 total = hashlib.sha256()
 for elevation, views in ((0.0, 1), (0.0, 9), (35.0, 4)):
@@ -135,7 +136,8 @@ for elevation, views in ((0.0, 1), (0.0, 9), (35.0, 4)):
     b = matrix.forward(x)
     light = np.exp(-b).clip(1e-3)
     bounds = (np.full((views, 3), 1e-3), np.full((views, 3), 4.0))
-    result = METHODS["display"](matrix, light, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=4)
+    wanted = Wanted(light, sums=Sums(np.arange(views)), lamp_bounds=bounds)
+    result = METHODS["display"].solve(matrix, wanted, iterations=4)
     for array in (b, matrix.adjoint(b), result.x, result.lamp_powers, result.residuals):
         total.update(np.ascontiguousarray(array).tobytes())
 print(total.hexdigest())

@@ -133,7 +133,7 @@ def test_solvers_see_the_plain_sum(lamp: Any, hold: float) -> None:
     assert cube.lighting is not None
     wanted = np.full((4, 5, 5, 3), 0.5, np.float32)
     problem = pose(Frames(wanted, cube.views, lighting=cube.lighting), GRID, hold, lamp, dtype=np.float64)
-    assert problem.mixture is not None
+    assert problem.sums.mixture is not None
     powers = cube.powers if lamp == "per-view" else powers_of(cube.lighting)[:3]
     each = powers if lamp == "per-view" else powers[cube.lighting.pairs[:, 1]]
     absorbed = problem.matrix.forward(problem.unknowns(cube.extinction.astype(np.float64)))

@@ -1,6 +1,5 @@
 """What a job needs: memory, units that fit into it, and time."""
 
-import inspect
 import math
 import time
 from dataclasses import replace
@@ -14,20 +13,12 @@ from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
 from lightcube.pictures.frames import Frames
 from lightcube.solvers import METHODS
+from lightcube.solvers.method import Method
 
 #: Bytes that a job may need unless it is said: a fixed number, so that cubes do not depend on machines.
 MEMORY = 4_000_000_000
 #: Bytes of the program itself, with numpy, numba and what they compile (measured).
 PROGRAM = 260_000_000
-#: Arrays as large as the unknowns, and as the pictures' beams, that a solver holds at its peak, what poses the problem
-#: included (measured).
-ARRAYS = {
-    "display": (4.3, 6.5),
-    "sirt": (7.7, 9.0),
-    "cgls": (16.0, 10.5),
-    "gauss-seidel": (5.0, 11.0),
-    "row-reduction": (5.0, 11.0),
-}
 #: Bytes for each equation of a column: which lamp it belongs to, and the like (measured).
 _EQUATION = 36
 #: Bytes for each voxel that a beam runs through, where the method holds the matrix (measured).
@@ -36,8 +27,6 @@ _ENTRY = 40
 _ANY = 35.0
 #: Bytes for each pixel of a view where light adds up: what falls on it, and how strong its shadow is (measured).
 _MIXED = 16
-#: Methods that hold the matrix.
-_SPARSE = ("gauss-seidel", "row-reduction")
 #: The time of a pass is measured where it has about so many multiply-adds, over so many passes.
 _REHEARSED, _TIMED = 1e9, 12
 
@@ -77,17 +66,17 @@ def memory_needed(
     cube = 4 * channels * math.prod(grid.shape)
     parts = split(grid.shape, channels, units, level=raised is None)
     share = max(part.columns for part in parts) / sum(part.columns for part in parts)
-    needed = _solver(method, grid.shape, picture_shape, views * angles, channels * size * share, raised)
+    needed = _solver(METHODS[method], grid.shape, picture_shape, views * angles, channels * size * share, raised)
     if levels:
         half, small = coarse_shape(grid.shape, 1), (-(-rows // 2), -(-columns // 2))
-        level = pictures / 4 + _solver(method, half, small, views * angles, channels * size, raised)
+        level = pictures / 4 + _solver(METHODS[method], half, small, views * angles, channels * size, raised)
         needed = max(needed + size * channels * (math.prod(half) + math.prod(grid.shape) * share), level)
     merging = cube * (1 + max(0.25, size / 2 * share)) + pictures / 4
     return int(PROGRAM + pictures + max(needed, merging))
 
 
 def _solver(
-    method: str,
+    method: Method,
     shape: tuple[int, int, int],
     picture_shape: tuple[int, int],
     views: int,
@@ -95,14 +84,14 @@ def _solver(
     elevation: float | None,
 ) -> float:
     """Bytes that a solver holds, `depth` of them for each voxel and each pixel; elevation None = slice by slice."""
-    unknowns, beams = ARRAYS[method]
+    unknowns, beams = method.arrays
     rows, columns = picture_shape
     nz, ny, nx = shape
     equations = views * columns * (1 if elevation is None else rows)
-    if elevation is None and method not in _SPARSE and is_worth_lines(nz * depth):
+    if elevation is None and not method.holds_matrix and is_worth_lines(nz * depth):
         beams += 1  # a product's copy with whole lines
     arrays = depth * (unknowns * nz * ny * nx + beams * views * rows * columns) + _EQUATION * equations
-    if method not in _SPARSE:
+    if not method.holds_matrix:
         return arrays
     pieces = 1.3 * max(ny, nx)
     if elevation is not None:
@@ -142,10 +131,9 @@ def fewest_units(job: Job, memory: int) -> int:
 
 def expected_passes(job: Job) -> float | None:
     """At most so many passes of the whole cube, coarse ones counting by their work; None for a direct method."""
-    if job.method == "row-reduction":
+    if METHODS[job.method].passes is None:
         return None
-    own = inspect.signature(METHODS[job.method]).parameters["iterations"].default
-    return sum(shares(replace(job, iterations=job.iterations or own)).values())
+    return sum(shares(replace(job, iterations=job.iterations or METHODS[job.method].passes)).values())
 
 
 def seconds_a_pass(job: Job) -> float:
@@ -160,17 +148,12 @@ def seconds_a_pass(job: Job) -> float:
     problem = pose(frames, grid, job.hold, job.lamp, job.black, job.dtype)
     low, high = job.lamp_bounds
     marks: list[float] = []
-    METHODS[job.method](
+    METHODS[job.method].solve(
         problem.matrix,
-        problem.light,
-        weights=problem.weights,
-        view_of_row=problem.lamp_of_row,
-        lamp_bounds=(high, high) if job.frozen else (low, high),
+        problem.wanted((high, high) if job.frozen else (low, high)),
         bounds=(0.0, job.max_extinction),
         iterations=_TIMED,
         callback=lambda progress: marks.append(time.perf_counter()),
-        transfer=frames.transfer,
-        mixture=problem.mixture,
     )
     if len(marks) < 2:
         return 0.0

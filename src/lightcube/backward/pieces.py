@@ -84,18 +84,13 @@ def solve_piece(
     state = _handed(store.state(name))
     watch = _Watch(job, name, problem, store, callback, checkpoints=checkpoints)
     options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
-    result = METHODS[job.method](
+    result = METHODS[job.method].solve(
         problem.matrix,
-        problem.light,
-        weights=problem.weights,
-        view_of_row=problem.lamp_of_row,
-        lamp_bounds=bounds,
+        problem.wanted(bounds),
         x0=None if state is not None else start(),
         bounds=(0.0, job.max_extinction),
         callback=watch,
-        transfer=job.frames.transfer,
         state=state,
-        mixture=problem.mixture,
         **options,
     )
     if watch.stopped:
@@ -125,7 +120,12 @@ def _posed(
             return None
         return problem.unknowns(start_of(job, store, level, problem.part))
 
-    return problem, start, (low, high), job.coarse_passes if kind == "level" else job.iterations
+    return (
+        problem,
+        start,
+        (low, high),
+        job.coarse_passes if kind == "level" else job.iterations or METHODS[job.method].passes,
+    )
 
 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats:
@@ -200,7 +200,7 @@ class _Watch:
         self._level, self._most = name.startswith("level"), job.iterations or 0
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
         self._wanted = -1.0  # an exact 0 is not enough by itself
-        if not self._level and job.method == "display" and job.enough_db < np.inf:
+        if not self._level and METHODS[job.method].residual == "display" and job.enough_db < np.inf:
             weight = float(np.sum(problem.weights, dtype=np.float64))
             self._wanted = 0.5 * 10 ** (-job.enough_db / 10) * weight
         self.enough = self.stopped = False

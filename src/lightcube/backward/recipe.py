@@ -9,7 +9,7 @@ from lightcube.errors import InputError
 from lightcube.optics.rig import LAMP_MIN
 from lightcube.optics.transfer import BLACK
 from lightcube.solvers import METHODS
-from lightcube.solvers.contract import Solver
+from lightcube.solvers.method import Method
 
 #: Each view and colour has its own power, each colour one, each its own as found at half the size, or all a given one.
 Powers = Literal["per-view", "global", "coarse", "fixed"]
@@ -24,8 +24,8 @@ Quality = Literal["draft", "normal", "best"]
 QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 36.0), "normal": (200, 42.0), "best": (1000, np.inf)}
 
 
-def find_method(name: str) -> Solver:
-    """Return the solver called `name`, or raise `InputError` naming those there are."""
+def find_method(name: str) -> Method:
+    """Return the method called `name`, or raise `InputError` naming those there are."""
     if name not in METHODS:
         raise InputError(f"unknown method {name!r}: use one of {', '.join(METHODS)}")
     return METHODS[name]

@@ -17,6 +17,7 @@ from lightcube.kernels.layout import clear_volume
 from lightcube.optics.cube import Cube
 from lightcube.pictures.fitting import targets
 from lightcube.pictures.resampling import enlarged
+from lightcube.solvers import METHODS
 
 Floats = NDArray[np.floating[Any]]
 
@@ -145,14 +146,14 @@ def _enlarged(job: Job, level: int, found: Arrays, part: Part) -> Floats:
 
 
 def _together(job: Job, histories: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """One history of several: objectives of method display add up, the norms of the others as their squares do."""
+    """One history of several: objectives add up, norms as their squares do."""
     if not histories:
         return np.empty(0)
     if len(histories) == 1:
         return histories[0]
     longest = max(map(len, histories))
     padded = np.array([np.pad(history, (0, longest - len(history)), "edge") for history in histories])
-    return np.sum(padded, axis=0) if job.method == "display" else np.sqrt(np.sum(padded**2, axis=0))
+    return np.sqrt(np.sum(padded**2, axis=0)) if METHODS[job.method].residual == "norm" else np.sum(padded, axis=0)
 
 
 def _slowest(reasons: list[str]) -> str:
