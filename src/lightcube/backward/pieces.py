@@ -20,8 +20,9 @@ from lightcube.solvers.contract import Progress, Result
 FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
 #: Checkpoints that take long are rarer: between two lie so many times as many seconds as one took, at most so many.
 _PATIENCE, _LATEST_S = 20.0, 60.0
-#: What a checkpoint holds beside the solver's own arrays, none of which is called so.
-POWERS = "lamp-powers"
+#: What is kept of a finished piece, beside its figures: voxels ``(channel, z, y, x)``, and its lamps' powers. Those are
+#: in a checkpoint too, beside the solver's own arrays, none of which is called so.
+VOXELS, POWERS = "extinction", "lamp-powers"
 
 Floats = NDArray[np.floating[Any]]
 
@@ -130,9 +131,26 @@ def _posed(
 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats:
     """Extinction of a part of the cube halved `level` times, enlarged from the next smaller one, which is finished."""
-    smaller = coarse_shape(job.grid.shape, level + 1)
-    whole = volume_from_unknowns(_finished(store, level_name(level + 1))["x"], smaller, job.channels)
+    whole = _finished(store, level_name(level + 1))[VOXELS]
     return enlarged(whole[part.colours], coarse_shape(job.grid.shape, level), part.slices)
+
+
+def known(job: Job, store: Store, name: str) -> Arrays | None:
+    """What there is of a piece: its result, else voxels, powers and history of its checkpoint, else None."""
+    found = store.finished(name)
+    if found is not None:
+        return found
+    state = store.state(name)
+    if state is None:
+        return None
+    kind, number = name.split("-")
+    shape, channels = coarse_shape(job.grid.shape, int(number)), job.channels
+    if kind == "unit":
+        part = job.parts[int(number)]
+        shape = (part.slices.stop - part.slices.start, *job.grid.shape[1:])
+        channels = part.colours.stop - part.colours.start
+    voxels = volume_from_unknowns(state["x"], shape, channels)
+    return {VOXELS: voxels, POWERS: state[POWERS], "history": state["history"]}
 
 
 def _handed(arrays: Arrays | None) -> Mapping[str, NDArray[Any]] | None:
@@ -166,9 +184,9 @@ def _finished(store: Store, name: str) -> Arrays:
 
 
 def _bundle(problem: Problem, result: Result, stop_reason: str) -> dict[str, NDArray[Any]]:
-    """What is kept of a piece that is finished; ``"x"`` are the unknowns as in its checkpoints."""
+    """What is kept of a piece that is finished."""
     bundle: dict[str, NDArray[Any]] = {
-        "x": result.x,
+        VOXELS: problem.extinction(result.x),
         POWERS: result.lamp_powers,
         "history": result.residuals,
         "rejected": problem.pixels(result.rejected),
