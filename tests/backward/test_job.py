@@ -292,11 +292,11 @@ def test_memory_grows_with_the_cube_the_pictures_and_the_matrix() -> None:
     def needed(*arguments: Any) -> int:
         return needs.memory_needed(*arguments) - needs.PROGRAM
 
-    small = needed("display", Grid((8, 8, 8)), (8, 8), 4)
-    assert needed("display", Grid((16, 16, 16)), (8, 8), 4) > 4 * small
-    assert needed("display", Grid((8, 8, 8)), (16, 16), 64) > 4 * small
-    assert needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4) > small
-    assert needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4, 35.0) > 2 * small
+    small = needed(METHODS["display"], Grid((8, 8, 8)), (8, 8), 4)
+    assert needed(METHODS["display"], Grid((16, 16, 16)), (8, 8), 4) > 4 * small
+    assert needed(METHODS["display"], Grid((8, 8, 8)), (16, 16), 64) > 4 * small
+    assert needed(METHODS["gauss-seidel"], Grid((8, 8, 8)), (8, 8), 4) > small
+    assert needed(METHODS["gauss-seidel"], Grid((8, 8, 8)), (8, 8), 4, 35.0) > 2 * small
 
 
 @pytest.mark.parametrize("kind", [LEVEL, RAISED], ids=["level", "raised"])

@@ -30,6 +30,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views, turntable
 from lightcube.pictures.frames import Frames
+from lightcube.solvers import METHODS
 
 SUFFIXES = (".zarr", ".zarr.zip", ".npz")
 MANY = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -470,7 +471,7 @@ def begun(out: Path, *pieces: str) -> Job:
     """A partial folder with some pieces of a job in it."""
     views = turntable(Grid((3, 5, 7)), [10.0, 80.0], picture_shape=(3, 5))
     frames = Frames(np.full((2, 3, 5, 3), 0.5, np.float32), views)
-    job = Job(frames, Grid((3, 5, 7)), method="sirt", lamp="fixed", lamp_power=1.0, iterations=2, units=2)
+    job = Job(frames, Grid((3, 5, 7)), method=METHODS["sirt"], lamp="fixed", lamp_power=1.0, iterations=2, units=2)
     store = open_partial(out, job)
     for name in pieces:
         solve_piece(job, name, store)

@@ -16,6 +16,8 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import LAMP_MIN, Lighting
 from lightcube.optics.transfer import BLACK
 from lightcube.pictures.frames import Frames
+from lightcube.solvers.display import DISPLAY
+from lightcube.solvers.method import Method
 
 #: Passes at each of the coarser sizes at most; no more than of the cube itself.
 COARSE_PASSES = 100
@@ -33,7 +35,7 @@ class Job:
     frames, grid
         The pictures and the cube.
     method
-        A name in `lightcube.solvers.METHODS`.
+        What solves.
     lamp, lamp_power
         Kind of the lamp, and its power where it is fixed, else the largest one.
     hold, black, max_extinction, enough_db
@@ -51,7 +53,7 @@ class Job:
 
     frames: Frames
     grid: Grid
-    method: str = "display"
+    method: Method = DISPLAY
     lamp: Powers = "per-view"
     lamp_power: float = 16.0
     hold: float = 0.0
@@ -76,7 +78,7 @@ class Job:
     @property
     def levels(self) -> int:
         """How often the cube is halved for its start; smaller cubes come first."""
-        return max(halvings(self.grid), int(self.frozen)) if self.method == "display" else 0
+        return max(halvings(self.grid), int(self.frozen)) if self.method.coarse_to_fine else 0
 
     @property
     def coarse_passes(self) -> int:
@@ -155,7 +157,7 @@ def fingerprint(job: Job) -> Fingerprint:
         "voxels": f"{nz} x {ny} x {nx}",
         "voxel side": job.grid.voxel_mm,
         "transfer": frames.transfer,
-        "method": job.method,
+        "method": job.method.name,
         "lamp": job.lamp,
         "lamp power": float(job.lamp_power),
         "hold": float(job.hold),

@@ -12,7 +12,6 @@ from lightcube.backward.units import coarse_shape, coarser, most_units, split
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
 from lightcube.pictures.frames import Frames
-from lightcube.solvers import METHODS
 from lightcube.solvers.method import Method
 
 #: Bytes that a job may need unless it is said: a fixed number, so that cubes do not depend on machines.
@@ -32,7 +31,7 @@ _REHEARSED, _TIMED = 1e9, 12
 
 
 def memory_needed(
-    method: str,
+    method: Method,
     grid: Grid,
     picture_shape: tuple[int, int],
     views: int,
@@ -66,10 +65,10 @@ def memory_needed(
     cube = 4 * channels * math.prod(grid.shape)
     parts = split(grid.shape, channels, units, level=raised is None)
     share = max(part.columns for part in parts) / sum(part.columns for part in parts)
-    needed = _solver(METHODS[method], grid.shape, picture_shape, views * angles, channels * size * share, raised)
+    needed = _solver(method, grid.shape, picture_shape, views * angles, channels * size * share, raised)
     if levels:
         half, small = coarse_shape(grid.shape, 1), (-(-rows // 2), -(-columns // 2))
-        level = pictures / 4 + _solver(METHODS[method], half, small, views * angles, channels * size, raised)
+        level = pictures / 4 + _solver(method, half, small, views * angles, channels * size, raised)
         needed = max(needed + size * channels * (math.prod(half) + math.prod(grid.shape) * share), level)
     merging = cube * (1 + max(0.25, size / 2 * share)) + pictures / 4
     return int(PROGRAM + pictures + max(needed, merging))
@@ -131,9 +130,9 @@ def fewest_units(job: Job, memory: int) -> int:
 
 def expected_passes(job: Job) -> float | None:
     """At most so many passes of the whole cube, coarse ones counting by their work; None for a direct method."""
-    if METHODS[job.method].passes is None:
+    if job.method.passes is None:
         return None
-    return sum(shares(replace(job, iterations=job.iterations or METHODS[job.method].passes)).values())
+    return sum(shares(replace(job, iterations=job.iterations or job.method.passes)).values())
 
 
 def seconds_a_pass(job: Job) -> float:
@@ -148,7 +147,7 @@ def seconds_a_pass(job: Job) -> float:
     problem = pose(frames, grid, job.hold, job.lamp, job.black, job.dtype)
     low, high = job.lamp_bounds
     marks: list[float] = []
-    METHODS[job.method].solve(
+    job.method.solve(
         problem.matrix,
         problem.wanted((high, high) if job.frozen else (low, high)),
         bounds=(0.0, job.max_extinction),

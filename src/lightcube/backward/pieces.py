@@ -13,7 +13,6 @@ from lightcube.backward.problem import Problem, pose, volume_from_unknowns
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape, coarser
 from lightcube.pictures.resampling import enlarged
-from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Progress, Result
 
 #: Seconds from the start of a piece to its first checkpoint, and at most between later ones; gaps double in between.
@@ -85,7 +84,7 @@ def solve_piece(
     state = _handed(store.state(name))
     watch = _Watch(job, name, problem, store, callback, checkpoints=checkpoints)
     options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
-    result = METHODS[job.method].solve(
+    result = job.method.solve(
         problem.matrix,
         problem.wanted(bounds),
         x0=None if state is not None else start(),
@@ -121,12 +120,7 @@ def _posed(
             return None
         return problem.unknowns(start_of(job, store, level, problem.part))
 
-    return (
-        problem,
-        start,
-        (low, high),
-        job.coarse_passes if kind == "level" else job.iterations or METHODS[job.method].passes,
-    )
+    return problem, start, (low, high), job.coarse_passes if kind == "level" else job.iterations or job.method.passes
 
 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats:
@@ -218,7 +212,7 @@ class _Watch:
         self._level, self._most = name.startswith("level"), job.iterations or 0
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
         self._wanted = -1.0  # an exact 0 is not enough by itself
-        if not self._level and METHODS[job.method].residual == "display" and job.enough_db < np.inf:
+        if not self._level and job.method.residual == "display" and job.enough_db < np.inf:
             weight = float(np.sum(problem.weights, dtype=np.float64))
             self._wanted = 0.5 * 10 ** (-job.enough_db / 10) * weight
         self.enough = self.stopped = False

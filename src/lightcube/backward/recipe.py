@@ -8,7 +8,8 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.rig import LAMP_MIN
 from lightcube.optics.transfer import BLACK
-from lightcube.solvers import METHODS
+from lightcube.solvers import find_method
+from lightcube.solvers.contract import Solver
 from lightcube.solvers.method import Method
 
 #: Each view and colour has its own power, each colour one, each its own as found at half the size, or all a given one.
@@ -24,21 +25,14 @@ Quality = Literal["draft", "normal", "best"]
 QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 36.0), "normal": (200, 42.0), "best": (1000, np.inf)}
 
 
-def find_method(name: str) -> Method:
-    """Return the method called `name`, or raise `InputError` naming those there are."""
-    if name not in METHODS:
-        raise InputError(f"unknown method {name!r}: use one of {', '.join(METHODS)}")
-    return METHODS[name]
-
-
-def _check_lamp(method: str, lamp: Powers | None, lamp_power: float | None, lamp_max: float | None) -> Powers:
+def _check_lamp(method: Method, lamp: Powers | None, lamp_power: float | None, lamp_max: float | None) -> Powers:
     """Return the kind of lamp that is meant, or raise `InputError` where its options contradict each other."""
     if lamp is None:
-        lamp = "per-view" if method == "display" and lamp_power is None else "fixed"
+        lamp = "per-view" if method.chooses_lamps and lamp_power is None else "fixed"
     if lamp not in get_args(Powers):
         raise InputError(f"unknown lamp {lamp!r}: use one of {', '.join(get_args(Powers))}")
-    if method != "display" and (lamp != "fixed" or lamp_max is not None):
-        raise InputError(f"method {method} cannot choose lamp powers: give one lamp power, or use method display")
+    if not method.chooses_lamps and (lamp != "fixed" or lamp_max is not None):
+        raise InputError(f"method {method.name} cannot choose lamp powers: give one lamp power, or use method display")
     if lamp == "fixed" and lamp_max is not None:
         raise InputError("a fixed lamp has no largest power: leave that out, or use a lamp per-view or global")
     if lamp != "fixed" and lamp_power is not None:
@@ -51,7 +45,7 @@ def _check_lamp(method: str, lamp: Powers | None, lamp_power: float | None, lamp
 
 
 def check_options(
-    method: str,
+    method: str | Solver | Method,
     lamp: Powers | None = None,
     lamp_power: float | None = None,
     lamp_max: float | None = None,
@@ -60,11 +54,10 @@ def check_options(
     black: float = BLACK,
 ) -> Powers:
     """Return the kind of lamp that is meant, or raise `InputError` where `solve` would refuse its options."""
-    find_method(method)
     if not max_extinction > 0:
         raise InputError(f"the largest extinction must be a positive number (1/mm), not {max_extinction}")
     if not BLACK <= black < 1:
         raise InputError(f"black must be a display value from {BLACK:.4f}, half a level, to below 1, not {black:g}")
     if iterations is not None and iterations < 1:
         raise InputError(f"a solver needs at least 1 iteration, not {iterations}")
-    return _check_lamp(method, lamp, lamp_power, lamp_max)
+    return _check_lamp(find_method(method), lamp, lamp_power, lamp_max)

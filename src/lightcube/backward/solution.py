@@ -17,7 +17,6 @@ from lightcube.kernels.layout import clear_volume
 from lightcube.optics.cube import Cube
 from lightcube.pictures.fitting import targets
 from lightcube.pictures.resampling import enlarged
-from lightcube.solvers import METHODS
 
 Floats = NDArray[np.floating[Any]]
 
@@ -151,7 +150,7 @@ def _together(job: Job, histories: list[NDArray[np.float64]]) -> NDArray[np.floa
         return histories[0]
     longest = max(map(len, histories))
     padded = np.array([np.pad(history, (0, longest - len(history)), "edge") for history in histories])
-    return np.sqrt(np.sum(padded**2, axis=0)) if METHODS[job.method].residual == "norm" else np.sum(padded, axis=0)
+    return np.sqrt(np.sum(padded**2, axis=0)) if job.method.residual == "norm" else np.sum(padded, axis=0)
 
 
 def _slowest(reasons: list[str]) -> str:
@@ -169,7 +168,7 @@ def _made_with(job: Job) -> dict[str, Any]:
     """What the cube remembers of how it was made."""
     return {
         "lightcube": version("lightcube"),
-        "method": job.method,
+        "method": job.method.name,
         "lamp": job.lamp,
         **_lamp_power(job),
         "max_extinction": None if np.isinf(job.max_extinction) else float(job.max_extinction),

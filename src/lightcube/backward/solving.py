@@ -20,13 +20,16 @@ from lightcube.optics.rig import Lighting
 from lightcube.optics.transfer import BLACK
 from lightcube.pictures.frames import Frames
 from lightcube.projection.stacked import is_stacked
+from lightcube.solvers import find_method
+from lightcube.solvers.contract import Solver
+from lightcube.solvers.method import Method
 
 
 def solve(
     frames: Frames,
     grid: Grid,
     *,
-    method: str = "display",
+    method: str | Solver | Method = "display",
     lamp: Powers | None = None,
     lamp_power: float | None = None,
     lamp_max: float | None = None,
@@ -44,8 +47,9 @@ def solve(
 ) -> Solution:
     """Find the cube whose shadows are the frames.
 
-    Method ``display`` solves a cube more than 48 voxels long at half the size first (and that one at a quarter, and
-    so on) and starts from there: the lamps and the coarse structure come at an eighth of the price.
+    Method ``display``, and others unless they say that it does not help them, solve a cube more than 48 voxels long at
+    half the size first (and that one at a quarter, and so on) and start from there: the lamps and the coarse structure
+    come at an eighth of the price.
 
     Parameters
     ----------
@@ -54,7 +58,8 @@ def solve(
     grid
         The block of voxels.
     method
-        A name in `lightcube.solvers.METHODS`.
+        A name in `lightcube.METHODS`, or a function (docs/your-own-method.md); as `lightcube.solvers.find_method`
+        takes it.
     lamp
         ``"per-view"``: each view and colour has the lamp power that suits it best; ``"global"``: each colour has one
         for all views; ``"coarse"``: as per-view, but found at half the size and then kept; ``"fixed"``: all have
@@ -129,7 +134,7 @@ def make_job(
     frames: Frames,
     grid: Grid,
     *,
-    method: str = "display",
+    method: str | Solver | Method = "display",
     lamp: Powers | None = None,
     lamp_power: float | None = None,
     lamp_max: float | None = None,
@@ -144,6 +149,7 @@ def make_job(
     provenance: Mapping[str, Any] | None = None,
 ) -> Job:
     """Check what `solve` is asked for, and leave nothing open; parameters and errors as there."""
+    method = find_method(method)
     kind = check_options(method, lamp, lamp_power, lamp_max, max_extinction, iterations, black)
     check_frames(frames, grid)
     if frames.lighting is not None:
@@ -159,7 +165,7 @@ def make_job(
         hold=float(hold),
         black=float(black),
         max_extinction=float(max_extinction),
-        iterations=iterations or (QUALITIES["normal"][0] if method == "display" else None),
+        iterations=iterations or (QUALITIES["normal"][0] if method.residual == "display" else None),
         enough_db=float(enough_db),
         dtype=np.dtype(dtype).name,
         provenance=dict(provenance or {}),
@@ -170,15 +176,15 @@ def make_job(
     return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)
 
 
-def _check_method_on_stage(method: str, lighting: Lighting) -> None:
+def _check_method_on_stage(method: Method, lighting: Lighting) -> None:
     """Raise `InputError` where a method cannot do what a stage asks for."""
     free = lighting.lamp_names[int(np.argmax(lighting.least < lighting.most))]
-    if method != "display" and np.any(lighting.least < lighting.most):
+    if not method.chooses_lamps and np.any(lighting.least < lighting.most):
         raise InputError(
-            f"method {method} cannot choose the power of lamp {free!r}: give it one, or use method display"
+            f"method {method.name} cannot choose the power of lamp {free!r}: give it one, or use method display"
         )
-    if method != "display" and not lighting.is_plain:
-        raise InputError(f"method {method} takes logarithms, and light that adds up has none: use method display")
+    if not method.takes_sums and not lighting.is_plain:
+        raise InputError(f"method {method.name} cannot do with light that adds up: use method display")
 
 
 def check_frames(frames: Frames, grid: Grid) -> None:

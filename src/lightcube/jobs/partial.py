@@ -45,6 +45,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 from lightcube.optics.views import Views
 from lightcube.pictures.frames import Frames
+from lightcube.solvers import check_lasting, find_method
 
 #: Of the folders that this version writes and reads.
 FORMAT_VERSION = 1
@@ -176,8 +177,9 @@ def open_partial(out: str | Path, job: Job, *, overwrite: bool = False) -> DiskS
     ------
     InputError
         Naming what changed, where the folder was begun for another job; or where it is something else, is damaged, or
-        cannot be written.
+        cannot be written; or where no name leads to the job's method, so that nobody could go on.
     """
+    check_lasting(job.method)
     folder = check_partial(out)
     if isinstance(folder, Path):
         _make(folder)
@@ -249,10 +251,11 @@ def load_job(partial: str | Path) -> Job:
     Raises
     ------
     InputError
-        Where there is no such folder, no job in it yet, or it is damaged.
+        Where there is no such folder, no job in it yet, its method cannot be imported, or it is damaged.
     """
     folder = place(partial)
     said, path = _read_job(folder), child(folder, _FRAMES)
+    method = find_method(said.method)
     arrays = _read_arrays(path)
     if arrays is None:
         raise _damaged(path, "it is missing")
@@ -262,6 +265,7 @@ def load_job(partial: str | Path) -> Job:
         views = Views(**geometry, picture_shape=(pictures.shape[1], pictures.shape[2]))
         lighting = None if said.lighting is None else said.lighting.lighting()
         job = Job(
+            method=method,
             frames=Frames(pictures, views, weights, tuple(said.names), said.transfer, lighting),
             grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),
             max_extinction=np.inf if said.max_extinction is None else said.max_extinction,
@@ -277,7 +281,7 @@ def load_job(partial: str | Path) -> Job:
 
 
 #: Fields of a job that are JSON as they are.
-_PLAIN = ("method", "lamp", "lamp_power", "hold", "black", "iterations", "dtype", "units", "provenance")
+_PLAIN = ("lamp", "lamp_power", "hold", "black", "iterations", "dtype", "units", "provenance")
 
 
 def _write_job(folder: Place, job: Job) -> None:
@@ -293,6 +297,7 @@ def _write_job(folder: Place, job: Job) -> None:
         "names": list(frames.names),
         "transfer": frames.transfer,
         "lighting": lighting_to_json(frames.lighting),
+        "method": job.method.name,
         "max_extinction": None if np.isinf(job.max_extinction) else job.max_extinction,
         "enough_db": None if np.isinf(job.enough_db) else job.enough_db,
         **{name: plain(getattr(job, name)) for name in _PLAIN},

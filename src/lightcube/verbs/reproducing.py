@@ -15,11 +15,13 @@ from lightcube import io
 from lightcube.backward import recipe
 from lightcube.backward.job import Job
 from lightcube.backward.needs import MEMORY, fewest_units
+from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import spread_angles, turntable
 from lightcube.pictures.frames import Frames
 from lightcube.report.page import Command, Origin
+from lightcube.solvers import find_method
 
 #: Longest side of a cube, mm, unless the command line says another.
 _SIZE_MM = 100.0
@@ -155,12 +157,16 @@ def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
 
 
 def _usual_units(cube: Cube, frames: Frames) -> int:
-    """In how many units the cube would be solved if nothing is said of them."""
+    """In how many units the cube would be solved if nothing is said of them; 1 where its method is not to be found."""
     made = cube.provenance
+    try:
+        method = find_method(made.get("method", "display"))
+    except InputError:
+        return 1
     job = Job(
         frames,
         cube.grid,
-        method=made.get("method", "display"),
+        method=method,
         lamp=made.get("lamp", "per-view"),
         hold=cube.hold_deg,
         iterations=made.get("passes"),

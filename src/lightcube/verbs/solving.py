@@ -15,6 +15,7 @@ from lightcube.pictures.arranging import shifted, spread_over_screen
 from lightcube.planning.order import best_order
 from lightcube.planning.plan import Prepared, plan
 from lightcube.planning.prediction import as_json, predict
+from lightcube.solvers import find_method
 from lightcube.verbs.options import Options
 
 #: Orders of more pictures than this are looked for only when asked for: it takes too long.
@@ -65,7 +66,7 @@ def _as_in_the_paper(options: Options) -> Options:
 def prepare(path: str, options: Options) -> Prepared:
     """Read the pictures and plan the cube, for options that are settled; `InputError` for all that cannot be."""
     shape = options.voxels
-    check_memory(memory_needed(options.method, Grid(shape), (1, 1), 1, units=3))
+    check_memory(memory_needed(find_method(options.method), Grid(shape), (1, 1), 1, units=3))
     pictures = io.read_pictures(path, transfer=options.transfer)
     lamps = options.lamps
     planned = plan(
