@@ -3,7 +3,6 @@
 import sys
 from collections.abc import Iterator
 from functools import partial
-from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
@@ -47,9 +46,11 @@ def someones(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def registered(someones: None, monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Entry points of these modules; which groups were looked for."""
-    looked: list[str] = []
+def registered(someones: None, tmp_path: Path) -> None:
+    """What an installed package says of these modules."""
+    said = tmp_path / "someones-1.0.dist-info"
+    said.mkdir()
+    (said / "METADATA").write_text("Metadata-Version: 2.1\nName: someones\nVersion: 1.0\n")
     entries = {
         "plain": PLACE,
         "told": "someones_methods:TOLD",
@@ -58,14 +59,9 @@ def registered(someones: None, monkeypatch: pytest.MonkeyPatch) -> list[str]:
         "few": "someones_methods:few",
         "sirt": PLACE,
     }
-
-    def found(*, group: str) -> list[EntryPoint]:
-        looked.append(group)
-        return [EntryPoint(name, place, group) for name, place in entries.items()]
-
-    monkeypatch.setattr("lightcube.solvers.entry_points", found)
+    lines = [f"{name} = {place}" for name, place in entries.items()]
+    (said / "entry_points.txt").write_text("\n".join(["[lightcube.methods]", *lines]))
     solvers._registered.cache_clear()
-    return looked
 
 
 def test_the_table_has_the_packages_own() -> None:
@@ -82,11 +78,11 @@ def test_the_table_has_the_packages_own() -> None:
         find_method("magic")
 
 
-def test_registered_methods_are_in_the_table_and_the_broken_ones_are_not(registered: list[str]) -> None:
-    assert registered == []  # nothing is looked for before it is asked for
+@pytest.mark.usefixtures("registered")
+def test_registered_methods_are_in_the_table_and_the_broken_ones_are_not() -> None:
     assert METHODS["sirt"].solve is not plain_descent  # own names are nobody else's
+    assert solvers._registered.cache_info().currsize == 0  # and nothing is looked for before it is asked for
     assert list(METHODS) == [*OWN, "plain", "told"]
-    assert set(registered) == {"lightcube.methods"}
     assert find_method("plain") == Method(plain_descent, "plain")
     told = find_method("told")
     assert (told.name, told.coarse_to_fine, told.arrays) == ("told", False, (3.0, 4.0))
@@ -104,7 +100,8 @@ def test_registered_methods_are_in_the_table_and_the_broken_ones_are_not(registe
         ("few", r"method few .* does not take what a solver is given, .* unexpected keyword argument 'x0'"),
     ],
 )
-def test_a_broken_one_is_named_when_it_is_asked_for(registered: list[str], name: str, why: str) -> None:
+@pytest.mark.usefixtures("registered")
+def test_a_broken_one_is_named_when_it_is_asked_for(name: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
         find_method(name)
     with pytest.raises(InputError, match=why):
