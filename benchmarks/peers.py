@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import lightcube as lc
+from lightcube.solvers.contract import Wanted
 
 Array = NDArray[np.floating[Any]]
 #: Largest absorbance of a beam.
@@ -107,7 +108,7 @@ def slice_of(n: int, views: int) -> Slice:
 
 def by_lightcube(given: Slice, passes: int, method: str, least: float = 0.0, slices: int = 1) -> Array:
     light = np.tile(np.exp(-given.absorbance.reshape(-1, 1)), slices)
-    found = lc.METHODS[method](given.matrix, light, bounds=(least, np.inf), iterations=passes)
+    found = lc.METHODS[method].solve(given.matrix, Wanted(light), bounds=(least, np.inf), iterations=passes)
     return found.x[:, 0].reshape(given.phantom.shape)
 
 

@@ -164,22 +164,14 @@ def starts(n: int, passes: int) -> Iterator[Row]:
         screens = tuple(replace(screen, pitch_mm=screen.pitch_mm * coarser) for screen in stage.screens)
         stage = replace(stage, grid=lc.Grid((n, n, n), stage.grid.voxel_mm * coarser), screens=screens)
         problem = pose(frames_of(stage, samples.photographs(8)), stage.grid, Recipe())
-        assert problem.mixture is not None  # noqa: S101
-        lamps = len(np.unique(problem.lamp_of_view))
+        assert problem.sums.mixture is not None  # noqa: S101
+        lamps = problem.sums.lamps
         bounds = np.full((lamps, 3), 1e-4), np.full((lamps, 3), float(stage.lamps[0].power_max))
         for seed in range(4):
             random = np.random.default_rng(seed)
             x0 = random.gamma(0.3, 0.1 * seed, (problem.matrix.shape[1], 3)).astype(np.float32)
             began = time.perf_counter()
-            result = METHODS["display"](
-                problem.matrix,
-                problem.light,
-                weights=problem.weights,
-                lamp_bounds=bounds,
-                x0=x0,
-                iterations=passes,
-                mixture=problem.mixture,
-            )
+            result = METHODS["display"].solve(problem.matrix, problem.wanted(bounds), x0=x0, iterations=passes)
             error = 2 * float(result.residuals[-1]) / float(np.sum(problem.weights, dtype=np.float64))
             yield {
                 "name": f"{name}, start {seed or 'empty'}",

@@ -295,11 +295,11 @@ def test_memory_grows_with_the_cube_the_pictures_and_the_matrix() -> None:
     def needed(*arguments: Any) -> int:
         return needs.memory_needed(*arguments) - needs.PROGRAM
 
-    small = needed("display", Grid((8, 8, 8)), (8, 8), 4)
-    assert needed("display", Grid((16, 16, 16)), (8, 8), 4) > 4 * small
-    assert needed("display", Grid((8, 8, 8)), (16, 16), 64) > 4 * small
-    assert needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4) > small
-    assert needed("gauss-seidel", Grid((8, 8, 8)), (8, 8), 4, 35.0) > 2 * small
+    small = needed(METHODS["display"], Grid((8, 8, 8)), (8, 8), 4)
+    assert needed(METHODS["display"], Grid((16, 16, 16)), (8, 8), 4) > 4 * small
+    assert needed(METHODS["display"], Grid((8, 8, 8)), (16, 16), 64) > 4 * small
+    assert needed(METHODS["gauss-seidel"], Grid((8, 8, 8)), (8, 8), 4) > small
+    assert needed(METHODS["gauss-seidel"], Grid((8, 8, 8)), (8, 8), 4, 35.0) > 2 * small
 
 
 @pytest.mark.parametrize("kind", [LEVEL, RAISED], ids=["level", "raised"])
@@ -387,3 +387,26 @@ def test_units_of_every_method_with_a_fixed_lamp(method: str) -> None:
     assert np.allclose(one.cube.extinction, two.cube.extinction, atol=2e-3)
     assert two.residuals[-1] == pytest.approx(one.residuals[-1], rel=1e-2)
     assert one.undetermined == two.undetermined
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_what_there_is_of_a_stopped_job_is_a_cube(method: str) -> None:
+    """Also where a checkpoint has arrays that are called as the figures of a finished piece are."""
+    frames, grid = some_frames(size=(4, 5), elevation=0.0), Grid(SHAPE, 0.7)
+    made = make_job(**asked(frames, grid, method=method, lamp_power=1.0, units=2, passes=3))
+    store = MemoryStore()
+    stopped = run(made, store, lambda step: True)
+    assert stopped.cube.status == "interrupted"
+    assert stopped.rejected.shape == (0, 4)
+    assert same(run(made, store), run(made))
+
+
+def test_a_finished_piece_is_a_volume() -> None:
+    """Of a slab of the cube, and of all of it at half the size."""
+    made, store = job(**LEVEL), MemoryStore()
+    cube = run(made, store).cube
+    half, slab = (store.finished(name) for name in ("level-1", "unit-1"))
+    assert half is not None
+    assert half["extinction"].shape == (3, 2, 4, 3)
+    assert slab is not None
+    assert np.array_equal(slab["extinction"], cube.extinction[:, made.parts[1].slices])

@@ -79,21 +79,13 @@ def test_no_start_gets_stuck(room: str) -> None:
     """The problem is not convex; yet from anywhere the objective ends as low."""
     _, frames = known(stage(room), ROOMS[room][2])
     problem = pose(frames, GRID, Recipe())
-    assert problem.mixture is not None
+    assert problem.sums.mixture is not None
     pairs = len(frames.rig.pairs)
     bounds = np.full((pairs, 3), 1e-4), np.full((pairs, 3), 16.0)
     ends, begun = [], 0.0
     for seed in range(3):
         x0 = np.random.default_rng(seed).exponential(0.05 * 3**seed, (problem.matrix.shape[1], 3)).astype(np.float32)
-        result = display_values(
-            problem.matrix,
-            problem.light,
-            weights=problem.weights,
-            lamp_bounds=bounds,
-            mixture=problem.mixture,
-            x0=x0,
-            iterations=PASSES,
-        )
+        result = display_values(problem.matrix, problem.wanted(bounds), x0=x0, iterations=PASSES)
         ends.append(float(result.residuals[-1]))
         begun = max(begun, float(result.residuals[0]))
     assert max(ends) < (0.5 if INTERPRETED else 0.02) * begun

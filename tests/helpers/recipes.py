@@ -11,6 +11,7 @@ from lightcube.optics.material import Material
 from lightcube.optics.rig import power_bounds
 from lightcube.pictures.fitting import Fit, fit, turntable_for
 from lightcube.pictures.frames import Frames, Pictures
+from lightcube.solvers import find_method
 
 _OWN = {each.name for each in fields(Recipe)}
 _LIGHT = ("lamp_power", "lamp_max", "black")
@@ -21,7 +22,7 @@ def asked(frames: Frames, grid: Grid, **options: Any) -> dict[str, Any]:
     own = {name: value for name, value in options.items() if name in _OWN}
     light = {name: value for name, value in options.items() if name in _LIGHT}
     others = {name: value for name, value in options.items() if name not in (*_OWN, *_LIGHT)}
-    if options.get("method", "display") != "display" and not light:
+    if not find_method(options.get("method", "display")).chooses_lamps and not light:
         light["lamp_power"] = 1.0  # they cannot choose it
     if "max_extinction" in others:
         own["material"] = Material(others.pop("max_extinction"))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from lightcube.solvers.contract import Floats
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
 
 Matrix = NDArray[np.float64]
 
@@ -71,3 +71,42 @@ def random_system(rng: np.random.Generator, equations: int, unknowns: int) -> Ma
 def light(matrix: Matrix, x: Matrix, dtype: type[np.floating] = np.float64) -> Floats:
     """What a lamp of power 1 shows through `x`."""
     return np.asarray(np.exp(-matrix @ x).astype(dtype))
+
+
+def full_rank(
+    columns: int, dtype: type[np.floating] = np.float64, seed: int = 0
+) -> tuple[DenseOperator, Matrix, Floats]:
+    """A grid of 3 x 5 seen in 11 views of 7 beams, full rank: the matrix, a cube and its shadows."""
+    matrix = projections((3, 5), 11, 7)
+    assert np.linalg.matrix_rank(matrix) == 15
+    x = np.random.default_rng(seed).uniform(0.1, 1.0, (15, columns)) / 3
+    return DenseOperator(matrix), x, light(matrix, x, dtype)
+
+
+def plain_descent(
+    A: Operator,
+    wanted: Wanted,
+    *,
+    x0: Floats | None = None,
+    bounds: tuple[float, float] = (0.0, np.inf),
+    iterations: int = 100,
+    callback: Callback | None = None,
+    state: State | None = None,
+) -> Result:
+    """Half the least squares of absorbance by projected gradient: a method as somebody else would write one."""
+    b, weights, powers = wanted.absorbance(), wanted.weights, wanted.lamp_bounds[1]
+    sums = A.adjoint(weights * A.forward(np.ones((A.shape[1], 1), b.dtype)))
+    steps = np.divide(1, sums, out=np.zeros_like(sums), where=sums > 0)
+    start = np.zeros((A.shape[1], b.shape[1])) if x0 is None else x0
+    x, history = np.clip(start, *bounds).astype(b.dtype), []
+    if state is not None:
+        x, history = state["x"], state["history"].tolist()
+    ax, asked = A.forward(x), False
+    while not asked and len(history) < iterations:
+        x = np.clip(x + steps * A.adjoint(weights * (b - ax)), *bounds)
+        ax = A.forward(x)
+        history.append(float(0.5 * np.sum(weights * (b - ax) ** 2, dtype=np.float64)))
+        kept = {"x": x, "history": np.array(history)}
+        progress = Progress(len(history), iterations, x, ax, history[-1], powers, kept.copy)
+        asked = callback is not None and bool(callback(progress))
+    return Result(x, powers, np.array(history), stop_reason="callback" if asked else "iterations")

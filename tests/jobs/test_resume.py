@@ -305,7 +305,7 @@ def test_damage_is_one_sentence(tmp_path: Path, name: str, harm: str) -> None:
     data = bytearray(file.read_bytes())
     middle = len(data) // 2
     if name.startswith("unit"):
-        numbers = (store.finished("unit-0") or {})["x"].tobytes()
+        numbers = (store.finished("unit-0") or {})["extinction"].tobytes()
         middle = data.find(numbers) + len(numbers) // 2
     data[middle] ^= 255
     spoilt = {"cut": bytes(data[:middle]), "flip": bytes(data), "empty": b"", "text": b"dear diary"}

@@ -104,14 +104,7 @@ def test_units_are_independent_once_the_lamp_is_known(elevation: float, size: tu
     problem = pose(frames, grid, Recipe(powers="coarse"))
     powers = apart.cube.powers
     assert np.max(powers) <= 4 * (1 + 1e-6)
-    together = METHODS["display"](
-        problem.matrix,
-        problem.light,
-        weights=problem.weights,
-        view_of_row=problem.lamp_of_row,
-        lamp_bounds=(powers, powers),
-        iterations=400,
-    )
+    together = METHODS["display"].solve(problem.matrix, problem.wanted((powers, powers)), iterations=400)
     assert apart.residuals[-1] == pytest.approx(together.residuals[-1], rel=0.05, abs=1e-4)
     assert apart.lower_bound is not None
     assert apart.lower_bound <= apart.residuals[-1] * (1 + 1e-5)

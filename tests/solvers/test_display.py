@@ -10,11 +10,14 @@ from lightcube.kernels import descent
 from lightcube.kernels.display import conjugate, curvature, display_of_log, residual
 from lightcube.kernels.display import curve as curve_of
 from lightcube.optics.grid import Grid
-from lightcube.optics.transfer import encode
+from lightcube.optics.transfer import Transfer, encode
 from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
-from lightcube.solvers.contract import Progress
+from lightcube.solvers.contract import Progress, Sums, Wanted
 from lightcube.solvers.display import display_values
+
+#: Lamps of three and of four views, each with its own.
+THREE, FOUR = (Sums(np.arange(views)) for views in (3, 4))
 
 
 def plain_objective(matrix: np.ndarray, x: np.ndarray, wanted: np.ndarray, power: float, weight: np.ndarray) -> float:
@@ -93,13 +96,7 @@ def small_problem() -> tuple[Projector, np.ndarray, np.ndarray, np.ndarray, np.n
 def test_matches_a_generic_bounded_optimiser(bounds: tuple[float, float]) -> None:
     matrix, wanted, weight, powers, dense = small_problem()
     result = display_values(
-        matrix,
-        wanted,
-        weights=weight,
-        view_of_row=matrix.view_of_row,
-        lamp_bounds=(powers, powers),
-        bounds=bounds,
-        iterations=400,
+        matrix, Wanted(wanted, weights=weight, sums=THREE, lamp_bounds=(powers, powers)), bounds=bounds, iterations=400
     )
 
     def flat_objective(flat: np.ndarray) -> float:
@@ -122,8 +119,7 @@ def test_matches_a_generic_bounded_optimiser(bounds: tuple[float, float]) -> Non
 def test_the_objective_at_the_end_is_a_minimum_in_every_direction() -> None:
     """Convex and optimal: no feasible step of any unknown lowers the objective by more than rounding."""
     matrix, wanted, weight, powers, dense = small_problem()
-    args = {"weights": weight, "view_of_row": matrix.view_of_row, "lamp_bounds": (powers, powers)}
-    result = display_values(matrix, wanted, iterations=400, **args)  # type: ignore[arg-type]
+    result = display_values(matrix, Wanted(wanted, weight, THREE, (powers, powers)), iterations=400)
     best = plain_objective(dense, result.x, wanted, 1.5, weight)
     for index in np.ndindex(*result.x.shape):
         for step in (-0.02, 0.02):
@@ -138,21 +134,21 @@ def test_a_beam_that_is_much_too_dark_comes_back() -> None:
     matrix = Projector(grid, turntable_views(grid, [30.0, 100.0]))
     truth = np.random.default_rng(1).random((6, 3)) * 0.3
     wanted = np.exp(-matrix.forward(truth))
-    result = display_values(matrix, wanted, x0=np.full((6, 3), 20.0), iterations=800)
+    result = display_values(matrix, Wanted(wanted), x0=np.full((6, 3), 20.0), iterations=800)
     assert np.max(np.abs(encode(np.exp(-matrix.forward(result.x))) - encode(wanted))) < 0.01
 
 
 def test_bright_beams_beyond_the_lamp_pull_to_transparent() -> None:
     grid = Grid((1, 2, 3))
     matrix = Projector(grid, turntable_views(grid, [30.0]))
-    result = display_values(matrix, np.full((matrix.shape[0], 1), 2.0), x0=np.full((6, 1), 0.5), iterations=50)
+    result = display_values(matrix, Wanted(np.full((matrix.shape[0], 1), 2.0)), x0=np.full((6, 1), 0.5), iterations=50)
     assert np.allclose(result.x, 0)
 
 
 def test_voxels_that_no_weighted_beam_meets_stay_where_they_are() -> None:
     grid = Grid((1, 4, 6))
     matrix = Projector(grid, turntable_views(grid, [0.0], picture_shape=(1, 2)))
-    result = display_values(matrix, np.full((matrix.shape[0], 1), 0.5), iterations=5)
+    result = display_values(matrix, Wanted(np.full((matrix.shape[0], 1), 0.5)), iterations=5)
     unseen = np.asarray(matrix.to_sparse().sum(axis=0)).ravel() == 0
     assert unseen.any()
     assert np.all(result.x[unseen] == 0)
@@ -168,7 +164,7 @@ def test_the_callback_sees_the_absorbance_of_x_and_stops() -> None:
         seen.append(progress.iteration)
         return progress.iteration == 4
 
-    result = display_values(matrix, wanted, callback=callback)
+    result = display_values(matrix, Wanted(wanted), callback=callback)
     assert seen == [1, 2, 3, 4]
     assert result.stop_reason == "callback"
 
@@ -187,7 +183,7 @@ def lamp_problem() -> tuple[Projector, np.ndarray, np.ndarray]:
 def test_lamp_powers_are_found_where_beams_beside_the_cube_show_them() -> None:
     matrix, light, powers = lamp_problem()
     bounds = (np.full((4, 2), 1e-3), np.full((4, 2), 16.0))
-    result = display_values(matrix, light, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=2000)
+    result = display_values(matrix, Wanted(light, sums=FOUR, lamp_bounds=bounds), iterations=2000)
     assert np.allclose(result.lamp_powers, powers, rtol=1e-2)
     assert result.residuals[-1] < 1e-6
 
@@ -197,8 +193,7 @@ def test_started_at_the_cube_it_stays_there_and_finds_the_lamps_at_once() -> Non
     truth = np.random.default_rng(4).uniform(0, 0.4, (matrix.shape[1], 2))
     light = powers[matrix.view_of_row] * np.exp(-matrix.forward(truth))
     bounds = (np.full((4, 2), 1e-3), np.full((4, 2), 16.0))
-    args = {"view_of_row": matrix.view_of_row, "lamp_bounds": bounds, "x0": truth, "iterations": 1}
-    result = display_values(matrix, light, **args)  # type: ignore[arg-type]
+    result = display_values(matrix, Wanted(light, None, FOUR, bounds), x0=truth, iterations=1)
     assert np.allclose(result.x, truth, atol=1e-6)
     assert np.allclose(result.lamp_powers, powers, rtol=1e-6)
 
@@ -206,7 +201,7 @@ def test_started_at_the_cube_it_stays_there_and_finds_the_lamps_at_once() -> Non
 def test_lamp_powers_keep_their_bounds_and_none_within_is_better() -> None:
     matrix, light, _ = lamp_problem()
     low, high = np.full((4, 2), 0.8), np.full((4, 2), 2.0)
-    result = display_values(matrix, light, view_of_row=matrix.view_of_row, lamp_bounds=(low, high), iterations=300)
+    result = display_values(matrix, Wanted(light, sums=FOUR, lamp_bounds=(low, high)), iterations=300)
     assert np.all((result.lamp_powers >= low * (1 - 1e-9)) & (result.lamp_powers <= high * (1 + 1e-9)))
     dense = matrix.to_sparse().toarray()
 
@@ -233,18 +228,18 @@ def test_lamp_powers_keep_their_bounds_and_none_within_is_better() -> None:
 def test_a_free_lamp_is_never_worse_than_a_fixed_one() -> None:
     matrix, light, _ = lamp_problem()
     one = np.ones((4, 2))
-    args = {"view_of_row": matrix.view_of_row, "iterations": 500}
-    fixed = display_values(matrix, light, lamp_bounds=(one, one), **args)  # type: ignore[arg-type]
-    free = display_values(matrix, light, lamp_bounds=(0.1 * one, 4 * one), **args)  # type: ignore[arg-type]
+    fixed = display_values(matrix, Wanted(light, None, FOUR, (one, one)), iterations=500)
+    free = display_values(matrix, Wanted(light, None, FOUR, (0.1 * one, 4 * one)), iterations=500)
     assert free.residuals[-1] < fixed.residuals[-1]
 
 
 def test_views_may_share_a_lamp() -> None:
     """Rows of several views that name the same lamp get one power, the best for all of them."""
     matrix, light, _ = lamp_problem()
-    shared = matrix.view_of_row // 2
     bounds = (np.full((2, 2), 0.1), np.full((2, 2), 8.0))
-    result = display_values(matrix, light, view_of_row=shared, lamp_bounds=bounds, iterations=300)
+    result = display_values(
+        matrix, Wanted(light, sums=Sums(np.array([0, 0, 1, 1])), lamp_bounds=bounds), iterations=300
+    )
     assert result.lamp_powers.shape == (2, 2)
 
 
@@ -252,9 +247,10 @@ def test_linear_pictures_are_fitted_in_linear_light() -> None:
     """On pictures that no cube can cast, each curve's own optimum is the better one in its own display values."""
     matrix, wanted, _, powers, _ = small_problem()
     errors = {}
-    for transfer in ("srgb", "linear"):
-        args = {"view_of_row": matrix.view_of_row, "lamp_bounds": (powers, powers), "transfer": transfer}
-        x = display_values(matrix, np.minimum(wanted, 1.5), iterations=400, **args).x  # type: ignore[arg-type]
+    transfers: tuple[Transfer, ...] = ("srgb", "linear")
+    for transfer in transfers:
+        goal = Wanted(np.minimum(wanted, 1.5), None, THREE, (powers, powers), transfer)
+        x = display_values(matrix, goal, iterations=400).x
         shown = 1.5 * np.exp(-matrix.forward(x))
         errors[transfer] = np.sum((shown - np.minimum(wanted, 1.5)) ** 2)
     assert errors["linear"] < 0.99 * errors["srgb"]
@@ -262,9 +258,9 @@ def test_linear_pictures_are_fitted_in_linear_light() -> None:
 
 def test_the_scale_of_all_weights_changes_nothing() -> None:
     matrix, wanted, weight, powers, _ = small_problem()
-    args = {"view_of_row": matrix.view_of_row, "lamp_bounds": (powers, powers), "iterations": 60}
-    one = display_values(matrix, wanted, weights=weight, **args)  # type: ignore[arg-type]
-    small = display_values(matrix, wanted, weights=weight * 2.0**-30, **args)  # type: ignore[arg-type]
+    lamps = powers, powers
+    one = display_values(matrix, Wanted(wanted, weight, THREE, lamps), iterations=60)
+    small = display_values(matrix, Wanted(wanted, weight * 2.0**-30, THREE, lamps), iterations=60)
     assert len(one.residuals) == len(small.residuals)
     assert np.allclose(one.x, small.x, atol=1e-9)
 
@@ -273,17 +269,15 @@ def test_a_lamp_that_nothing_speaks_for_stays_where_it_starts() -> None:
     matrix, light, _ = lamp_problem()
     weights = np.where(matrix.view_of_row == 1, 0.0, 1.0)[:, None]
     bounds = (np.full((4, 2), 0.1), np.full((4, 2), 16.0))
-    result = display_values(
-        matrix, light, weights=weights, view_of_row=matrix.view_of_row, lamp_bounds=bounds, iterations=5
-    )
+    result = display_values(matrix, Wanted(light, weights=weights, sums=FOUR, lamp_bounds=bounds), iterations=5)
     assert np.allclose(result.lamp_powers[1], 1)
 
 
 def test_fixed_lamp_powers_come_back_to_the_last_digit() -> None:
     matrix, wanted, _, powers, _ = small_problem()
     odd = powers * 1.1
-    args = {"view_of_row": matrix.view_of_row, "iterations": 2}
-    assert np.array_equal(display_values(matrix, wanted, lamp_bounds=(odd, odd), **args).lamp_powers, odd)  # type: ignore[arg-type]
+    result = display_values(matrix, Wanted(wanted, None, THREE, (odd, odd)), iterations=2)
+    assert np.array_equal(result.lamp_powers, odd)
 
 
 @pytest.mark.parametrize(("lamp", "bounds"), [(1.0, (0.0, np.inf)), (8.0, (0.0, np.inf)), (8.0, (0.02, 0.5))])
@@ -291,8 +285,8 @@ def test_no_cube_and_no_lamp_comes_below_the_lower_bound(lamp: float, bounds: tu
     """It holds after few iterations, and after many it is nearly reached: then the optimum is known."""
     matrix, wanted, weight, _, _ = small_problem()
     powers = (np.full((3, 2), 0.3), np.full((3, 2), lamp))
-    args = {"weights": weight, "view_of_row": matrix.view_of_row, "lamp_bounds": powers, "bounds": bounds}
-    results = [display_values(matrix, wanted, iterations=count, **args) for count in (1, 5, 20, 2000)]  # type: ignore[arg-type]
+    goal = Wanted(wanted, weight, THREE, powers)
+    results = [display_values(matrix, goal, bounds=bounds, iterations=count) for count in (1, 5, 20, 2000)]
     best = float(results[-1].residuals[-1])
     for result in results:
         assert result.lower_bound is not None

@@ -8,7 +8,7 @@ from scipy.optimize import lsq_linear, nnls
 from lightcube.solvers._checks import linear_problem
 from lightcube.solvers._momentum import run_ahead
 from lightcube.solvers.cgls import cgls
-from lightcube.solvers.contract import Progress, Solver
+from lightcube.solvers.contract import Progress, Solver, Wanted
 from lightcube.solvers.sirt import sirt
 from tests.helpers.solver_problems import DenseOperator, projections, random_system
 
@@ -60,7 +60,7 @@ def test_without_bounds_they_are_lstsq(name: str, matrix: np.ndarray, weighted: 
     B = inconsistent(matrix, 3)
     weights = some_weights(B.shape) if weighted else np.ones(B.shape)
     result = SOLVERS[name](
-        DenseOperator(matrix), B, weights=weights if weighted else None, bounds=FREE, iterations=5000
+        DenseOperator(matrix), Wanted(B, weights=weights if weighted else None), bounds=FREE, iterations=5000
     )
     assert result.stop_reason == "converged"
     for column in range(3):
@@ -75,7 +75,7 @@ def test_without_bounds_they_are_lstsq(name: str, matrix: np.ndarray, weighted: 
 def test_above_0_they_are_nnls(name: str, matrix: np.ndarray, weighted: bool) -> None:
     B = inconsistent(matrix, 3)
     weights = some_weights(B.shape) if weighted else np.ones(B.shape)
-    result = SOLVERS[name](DenseOperator(matrix), B, weights=weights if weighted else None, iterations=5000)
+    result = SOLVERS[name](DenseOperator(matrix), Wanted(B, weights=weights if weighted else None), iterations=5000)
     assert result.stop_reason == "converged"
     at_bound = 0
     for column in range(3):
@@ -91,7 +91,7 @@ def test_above_0_they_are_nnls(name: str, matrix: np.ndarray, weighted: bool) ->
 def test_between_bounds_they_are_lsq_linear(name: str, matrix: np.ndarray) -> None:
     B = inconsistent(matrix, 3)
     weights, bounds = some_weights(B.shape), (0.02, 0.15)
-    result = SOLVERS[name](DenseOperator(matrix), B, weights=weights, bounds=bounds, iterations=5000)
+    result = SOLVERS[name](DenseOperator(matrix), Wanted(B, weights=weights), bounds=bounds, iterations=5000)
     assert result.stop_reason == "converged"
     for column in range(3):
         a, b = scaled(name, matrix, B, weights, column)
@@ -105,10 +105,10 @@ def test_between_bounds_they_are_lsq_linear(name: str, matrix: np.ndarray) -> No
 def test_float32_comes_as_close_as_it_can(name: str, bounds: tuple[float, float]) -> None:
     matrix = MATRICES["random 41 x 12"]
     B = inconsistent(matrix, 3, np.float32)
-    result = SOLVERS[name](DenseOperator(matrix), B, bounds=bounds, iterations=5000)
+    result = SOLVERS[name](DenseOperator(matrix), Wanted(B), bounds=bounds, iterations=5000)
     assert result.x.dtype == np.float32
     assert result.stop_reason == "converged"
-    exact = SOLVERS[name](DenseOperator(matrix), B.astype(np.float64), bounds=bounds, iterations=5000)
+    exact = SOLVERS[name](DenseOperator(matrix), Wanted(B.astype(np.float64)), bounds=bounds, iterations=5000)
     np.testing.assert_allclose(result.x, exact.x, atol=1e-4)
 
 
@@ -117,8 +117,8 @@ def test_float32_comes_as_close_as_it_can(name: str, bounds: tuple[float, float]
 def test_started_at_the_minimum_they_stay_there(name: str, bounds: tuple[float, float]) -> None:
     matrix = MATRICES["grid 7 x 4"]
     B = inconsistent(matrix, 3)
-    there = SOLVERS[name](DenseOperator(matrix), B, bounds=bounds, iterations=5000).x
-    result = SOLVERS[name](DenseOperator(matrix), B, x0=there, bounds=bounds, iterations=50)
+    there = SOLVERS[name](DenseOperator(matrix), Wanted(B), bounds=bounds, iterations=5000).x
+    result = SOLVERS[name](DenseOperator(matrix), Wanted(B), x0=there, bounds=bounds, iterations=50)
     np.testing.assert_allclose(result.x, there, atol=1e-10)
     assert len(result.residuals) <= 2
 
@@ -136,13 +136,7 @@ def test_residuals_are_the_stated_norm(name: str, bounds: tuple[float, float]) -
         norms.append(float(np.sqrt(np.sum(factors * (np.log(B) + matrix @ progress.x) ** 2))))
 
     result = SOLVERS[name](
-        DenseOperator(matrix),
-        B,
-        weights=weights,
-        x0=start,
-        bounds=bounds,
-        iterations=25,
-        callback=look,
+        DenseOperator(matrix), Wanted(B, weights=weights), x0=start, bounds=bounds, iterations=25, callback=look
     )
     np.testing.assert_allclose(result.residuals, norms, rtol=1e-10)
 
@@ -152,7 +146,7 @@ def test_residuals_are_the_stated_norm(name: str, bounds: tuple[float, float]) -
 def test_cgls_never_goes_uphill(matrix: np.ndarray, bounds: tuple[float, float]) -> None:
     B = inconsistent(matrix, 1)
     start = np.random.default_rng(3).uniform(0, 0.5, (matrix.shape[1], 1))
-    result = cgls(DenseOperator(matrix), B, x0=start, bounds=bounds, iterations=200)
+    result = cgls(DenseOperator(matrix), Wanted(B), x0=start, bounds=bounds, iterations=200)
     assert np.all(np.diff(result.residuals) <= 1e-12)
     assert result.residuals[-1] < result.residuals[0]
 
@@ -162,7 +156,7 @@ def test_cgls_never_goes_uphill_where_clipping_would(seed: int) -> None:
     """Dense columns and far too much shadow: a whole step, clipped, often ends higher than it began."""
     rng = np.random.default_rng(seed)
     matrix, B = rng.uniform(0, 1, (6, 4)), np.exp(-rng.uniform(0, 1, (6, 1)))
-    result = cgls(DenseOperator(matrix), B, x0=rng.uniform(0, 1, (4, 1)), bounds=(0.0, 1.0), iterations=50)
+    result = cgls(DenseOperator(matrix), Wanted(B), x0=rng.uniform(0, 1, (4, 1)), bounds=(0.0, 1.0), iterations=50)
     assert np.all(np.diff(result.residuals) <= 1e-12)
     wanted = lsq_linear(matrix, -np.log(B[:, 0]), (0.0, 1.0), method="bvls").x
     np.testing.assert_allclose(result.x[:, 0], wanted, atol=1e-9)
@@ -173,7 +167,7 @@ def test_cgls_without_bounds_is_cgls() -> None:
     matrix = MATRICES["grid 7 x 4"]
     B = inconsistent(matrix, 1)
     seen: list[np.ndarray] = []
-    cgls(DenseOperator(matrix), B, bounds=FREE, iterations=8, callback=lambda p: seen.append(p.x[:, 0].copy()))
+    cgls(DenseOperator(matrix), Wanted(B), bounds=FREE, iterations=8, callback=lambda p: seen.append(p.x[:, 0].copy()))
 
     x, r = np.zeros(matrix.shape[1]), -np.log(B[:, 0])
     s = matrix.T @ r
@@ -191,7 +185,7 @@ def test_the_first_step_of_sirt_is_sirt() -> None:
     matrix = MATRICES["grid 7 x 4"]
     B, start = inconsistent(matrix, 2), np.full((28, 2), 0.05)
     weights = some_weights(B.shape)
-    result = sirt(DenseOperator(matrix), B, weights=weights, x0=start, bounds=FREE, iterations=1)
+    result = sirt(DenseOperator(matrix), Wanted(B, weights=weights), x0=start, bounds=FREE, iterations=1)
     sums = matrix.sum(axis=1)
     R = np.divide(1, sums, out=np.zeros_like(sums), where=sums > 0)
     for column in range(2):
@@ -206,7 +200,7 @@ def test_sirt_runs_ahead_as_nesterov_says() -> None:
     matrix = projections((3, 5), 4, 7)
     B = inconsistent(matrix, 1)
     seen: list[np.ndarray] = []
-    sirt(DenseOperator(matrix), B, iterations=6, callback=lambda p: seen.append(p.x[:, 0].copy()))
+    sirt(DenseOperator(matrix), Wanted(B), iterations=6, callback=lambda p: seen.append(p.x[:, 0].copy()))
 
     R, C = 1 / np.maximum(matrix.sum(axis=1), 1e-9), 1 / matrix.sum(axis=0)
     x = y = np.zeros(15)
@@ -224,7 +218,7 @@ def test_where_many_are_least_they_find_the_stated_one(name: str, scale: bool) -
     matrix = projections((3, 5), 3, 7)
     B = inconsistent(matrix, 2)
     assert np.linalg.matrix_rank(matrix) < 15
-    result = SOLVERS[name](DenseOperator(matrix), B, bounds=FREE, iterations=5000)
+    result = SOLVERS[name](DenseOperator(matrix), Wanted(B), bounds=FREE, iterations=5000)
     C = 1 / matrix.sum(axis=0) if scale else np.ones(15)
     for column in range(2):
         a, b = scaled(name, matrix, B, np.ones(B.shape), column)
@@ -239,7 +233,7 @@ def test_voxels_that_no_weighted_beam_meets_keep_their_start(name: str) -> None:
     B = inconsistent(matrix, 2)
     weights = np.ones(B.shape)
     weights[matrix[:, 7] > 0, 1] = 0
-    result = SOLVERS[name](DenseOperator(matrix), B, weights=weights, x0=np.full((15, 2), 0.07), iterations=500)
+    result = SOLVERS[name](DenseOperator(matrix), Wanted(B, weights=weights), x0=np.full((15, 2), 0.07), iterations=500)
     np.testing.assert_array_equal(result.x[4], [0.07, 0.07])
     assert result.x[7, 1] == 0.07
     assert result.x[7, 0] != 0.07
@@ -252,8 +246,8 @@ def test_black_and_white_columns_do_not_spoil_the_others(name: str) -> None:
     B = inconsistent(matrix, 3)
     B[:, 1] = 1
     start = np.zeros((15, 3))
-    start[:, 0] = SOLVERS[name](DenseOperator(matrix), B[:, :1], iterations=5000).x[:, 0]
-    result = SOLVERS[name](DenseOperator(matrix), B, x0=start, iterations=5000)
+    start[:, 0] = SOLVERS[name](DenseOperator(matrix), Wanted(B[:, :1]), iterations=5000).x[:, 0]
+    result = SOLVERS[name](DenseOperator(matrix), Wanted(B), x0=start, iterations=5000)
     assert result.stop_reason == "converged"
     np.testing.assert_allclose(result.x[:, 0], start[:, 0], atol=1e-9)
     if name == "cgls":
@@ -267,7 +261,7 @@ def test_a_larger_cube_matches_nnls(name: str) -> None:
     size = 5 if config.DISABLE_JIT else 11  # type: ignore[attr-defined]
     matrix = projections((size, size + 2), 3 * size, size + 6)
     B = inconsistent(matrix, 2)
-    result = SOLVERS[name](DenseOperator(matrix), B, iterations=3000)
+    result = SOLVERS[name](DenseOperator(matrix), Wanted(B), iterations=3000)
     for column in range(2):
         wanted = nnls(*scaled(name, matrix, B, np.ones(B.shape), column))[0]
         np.testing.assert_allclose(result.x[:, column], wanted, atol=1e-6)
@@ -286,6 +280,6 @@ def test_momentum_runs_further_ahead_until_it_restarts() -> None:
 
 def test_a_problem_owns_its_start_and_keeps_it_within_bounds() -> None:
     A, start = DenseOperator(np.ones((2, 3))), np.array([[-1.0], [0.2], [9.0]])
-    problem = linear_problem("sirt", A, np.full((2, 1), 0.5), None, None, None, start, (0.0, 1.0))
+    problem = linear_problem("sirt", A, Wanted(np.full((2, 1), 0.5)), start, (0.0, 1.0))
     np.testing.assert_array_equal(problem.x, [[0], [0.2], [1]])
     assert not np.shares_memory(problem.x, start)

@@ -59,7 +59,7 @@ class Job:
     @property
     def levels(self) -> int:
         """How often the cube is halved for its start; smaller cubes come first."""
-        return max(halvings(self.grid), int(self.frozen)) if self.recipe.chooses_powers else 0
+        return max(halvings(self.grid), int(self.frozen)) if self.recipe.solver.coarse_to_fine else 0
 
     @property
     def coarse_passes(self) -> int:

@@ -1,6 +1,5 @@
 """What a job needs: memory, units that fit into it, and time."""
 
-import inspect
 import math
 import time
 from dataclasses import replace
@@ -13,21 +12,12 @@ from lightcube.backward.units import coarse_shape, coarser, most_units, split
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
 from lightcube.pictures.frames import Frames
-from lightcube.solvers import METHODS
+from lightcube.solvers.method import Method
 
 #: Bytes that a job may need unless it is said: a fixed number, so that cubes do not depend on machines.
 MEMORY = 4_000_000_000
 #: Bytes of the program itself, with numpy, numba and what they compile (measured).
 PROGRAM = 260_000_000
-#: Arrays as large as the unknowns, and as the pictures' beams, that a solver holds at its peak, what poses the problem
-#: included (measured).
-ARRAYS = {
-    "display": (4.3, 6.5),
-    "sirt": (7.7, 9.0),
-    "cgls": (16.0, 10.5),
-    "gauss-seidel": (5.0, 11.0),
-    "row-reduction": (5.0, 11.0),
-}
 #: Bytes for each equation of a column: which lamp it belongs to, and the like (measured).
 _EQUATION = 36
 #: Bytes for each voxel that a beam runs through, where the method holds the matrix (measured).
@@ -36,14 +26,12 @@ _ENTRY = 40
 _ANY = 35.0
 #: Bytes for each pixel of a view where light adds up: what falls on it, and how strong its shadow is (measured).
 _MIXED = 16
-#: Methods that hold the matrix.
-_SPARSE = ("gauss-seidel", "row-reduction")
 #: The time of a pass is measured where it has about so many multiply-adds, over so many passes.
 _REHEARSED, _TIMED = 1e9, 12
 
 
 def memory_needed(
-    method: str,
+    method: Method,
     grid: Grid,
     picture_shape: tuple[int, int],
     views: int,
@@ -87,7 +75,7 @@ def memory_needed(
 
 
 def _solver(
-    method: str,
+    method: Method,
     shape: tuple[int, int, int],
     picture_shape: tuple[int, int],
     views: int,
@@ -95,14 +83,14 @@ def _solver(
     elevation: float | None,
 ) -> float:
     """Bytes that a solver holds, `depth` of them for each voxel and each pixel; elevation None = slice by slice."""
-    unknowns, beams = ARRAYS[method]
+    unknowns, beams = method.arrays
     rows, columns = picture_shape
     nz, ny, nx = shape
     equations = views * columns * (1 if elevation is None else rows)
-    if elevation is None and method not in _SPARSE and is_worth_lines(nz * depth):
+    if elevation is None and not method.holds_matrix and is_worth_lines(nz * depth):
         beams += 1  # a product's copy with whole lines
     arrays = depth * (unknowns * nz * ny * nx + beams * views * rows * columns) + _EQUATION * equations
-    if method not in _SPARSE:
+    if not method.holds_matrix:
         return arrays
     pieces = 1.3 * max(ny, nx)
     if elevation is not None:
@@ -118,7 +106,7 @@ def job_memory(job: Job) -> int:
     angles = len(held(rig, job.recipe, job.grid)) // len(rig)
     mixed = 0 if rig.is_thin else _MIXED * angles * len(views) * math.prod(views.picture_shape)
     return mixed + memory_needed(
-        job.recipe.method,
+        job.recipe.solver,
         job.grid,
         views.picture_shape,
         len(views),
@@ -141,10 +129,11 @@ def fewest_units(job: Job, memory: int) -> int:
 
 def expected_passes(job: Job) -> float | None:
     """At most so many passes of the whole cube, coarse ones counting by their work; None for a direct method."""
-    if job.recipe.method == "row-reduction":
+    method = job.recipe.solver
+    if method.passes is None:
         return None
-    own = inspect.signature(METHODS[job.recipe.method]).parameters["iterations"].default
-    return sum(shares(replace(job, recipe=replace(job.recipe, passes=job.recipe.passes or own))).values())
+    recipe = replace(job.recipe, passes=job.recipe.passes or method.passes)
+    return sum(shares(replace(job, recipe=recipe)).values())
 
 
 def seconds_a_pass(job: Job) -> float:
@@ -159,17 +148,12 @@ def seconds_a_pass(job: Job) -> float:
     problem = pose(frames, grid, job.recipe)
     low, high = job.lamp_bounds
     marks: list[float] = []
-    METHODS[job.recipe.method](
+    job.recipe.solver.solve(
         problem.matrix,
-        problem.light,
-        weights=problem.weights,
-        view_of_row=problem.lamp_of_row,
-        lamp_bounds=(high, high) if job.frozen else (low, high),
+        problem.wanted((high, high) if job.frozen else (low, high)),
         bounds=(0.0, job.max_extinction),
         iterations=_TIMED,
         callback=lambda progress: marks.append(time.perf_counter()),
-        transfer=frames.transfer,
-        mixture=problem.mixture,
     )
     if len(marks) < 2:
         return 0.0

@@ -13,15 +13,15 @@ from lightcube.backward.problem import Problem, pose, volume_from_unknowns
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape, coarser
 from lightcube.pictures.resampling import enlarged
-from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Progress, Result
 
 #: Seconds from the start of a piece to its first checkpoint, and at most between later ones; gaps double in between.
 FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
 #: Checkpoints that take long are rarer: between two lie so many times as many seconds as one took, at most so many.
 _PATIENCE, _LATEST_S = 20.0, 60.0
-#: What a checkpoint holds beside the solver's own arrays, none of which is called so.
-POWERS = "lamp-powers"
+#: What is kept of a finished piece, beside its figures: voxels ``(channel, z, y, x)``, and its lamps' powers. Those are
+#: in a checkpoint too, beside the solver's own arrays, none of which is called so.
+VOXELS, POWERS = "extinction", "lamp-powers"
 
 Floats = NDArray[np.floating[Any]]
 
@@ -84,18 +84,13 @@ def solve_piece(
     state = _handed(store.state(name))
     watch = _Watch(job, name, problem, store, callback, checkpoints=checkpoints)
     options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
-    result = METHODS[job.recipe.method](
+    result = job.recipe.solver.solve(
         problem.matrix,
-        problem.light,
-        weights=problem.weights,
-        view_of_row=problem.lamp_of_row,
-        lamp_bounds=bounds,
+        problem.wanted(bounds),
         x0=None if state is not None else start(),
         bounds=(0.0, job.max_extinction),
         callback=watch,
-        transfer=job.frames.transfer,
         state=state,
-        mixture=problem.mixture,
         **options,
     )
     if watch.stopped:
@@ -125,14 +120,32 @@ def _posed(
             return None
         return problem.unknowns(start_of(job, store, level, problem.part))
 
-    return problem, start, (low, high), job.coarse_passes if kind == "level" else job.recipe.passes
+    passes = job.coarse_passes if kind == "level" else job.recipe.passes or job.recipe.solver.passes
+    return problem, start, (low, high), passes
 
 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats:
     """Extinction of a part of the cube halved `level` times, enlarged from the next smaller one, which is finished."""
-    smaller = coarse_shape(job.grid.shape, level + 1)
-    whole = volume_from_unknowns(_finished(store, level_name(level + 1))["x"], smaller, job.channels)
+    whole = _finished(store, level_name(level + 1))[VOXELS]
     return enlarged(whole[part.colours], coarse_shape(job.grid.shape, level), part.slices)
+
+
+def known(job: Job, store: Store, name: str) -> Arrays | None:
+    """What there is of a piece: its result, else voxels, powers and history of its checkpoint, else None."""
+    found = store.finished(name)
+    if found is not None:
+        return found
+    state = store.state(name)
+    if state is None:
+        return None
+    kind, number = name.split("-")
+    shape, channels = coarse_shape(job.grid.shape, int(number)), job.channels
+    if kind == "unit":
+        part = job.parts[int(number)]
+        shape = (part.slices.stop - part.slices.start, *job.grid.shape[1:])
+        channels = part.colours.stop - part.colours.start
+    voxels = volume_from_unknowns(state["x"], shape, channels)
+    return {VOXELS: voxels, POWERS: state[POWERS], "history": state["history"]}
 
 
 def _handed(arrays: Arrays | None) -> Mapping[str, NDArray[Any]] | None:
@@ -166,9 +179,9 @@ def _finished(store: Store, name: str) -> Arrays:
 
 
 def _bundle(problem: Problem, result: Result, stop_reason: str) -> dict[str, NDArray[Any]]:
-    """What is kept of a piece that is finished; ``"x"`` are the unknowns as in its checkpoints."""
+    """What is kept of a piece that is finished."""
     bundle: dict[str, NDArray[Any]] = {
-        "x": result.x,
+        VOXELS: problem.extinction(result.x),
         POWERS: result.lamp_powers,
         "history": result.residuals,
         "rejected": problem.pixels(result.rejected),
@@ -200,7 +213,7 @@ class _Watch:
         self._level, self._most = name.startswith("level"), job.recipe.passes or 0
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
         self._wanted = -1.0  # an exact 0 is not enough by itself
-        if not self._level and job.recipe.chooses_powers and job.recipe.enough_db < np.inf:
+        if not self._level and job.recipe.solver.residual == "display" and job.recipe.enough_db < np.inf:
             weight = float(np.sum(problem.weights, dtype=np.float64))
             self._wanted = 0.5 * 10 ** (-job.recipe.enough_db / 10) * weight
         self.enough = self.stopped = False

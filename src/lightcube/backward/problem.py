@@ -21,14 +21,14 @@ from lightcube.optics.transfer import Transfer, decode
 from lightcube.optics.views import Views
 from lightcube.pictures.frames import Frames
 from lightcube.projection.projector import Projector
-from lightcube.solvers.contract import Mixture
+from lightcube.solvers.contract import Mixture, Sums, Wanted
 
 Floats = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """The matrix, the wanted light of every beam, and which lamp it belongs to, for a part of the cube.
+    """The matrix, the wanted light of every beam, and which lamp it is of, for a part of the cube.
 
     Columns are independent of each other.
 
@@ -39,10 +39,8 @@ class Problem:
     light, weights
         Linear light above 0, and at least 0: of every beam, ``(matrix.shape[0], columns)``, or where beams add up, of
         every pixel.
-    lamp_of_view
-        ``(views,)``: the lamp power that each view of the matrix has.
-    mixture
-        How views add up to pictures, or None where each one is a picture.
+    sums
+        The lamp power that each view of the matrix has, and how views add up to pictures.
     part
         Colours and slices of the cube; their columns are all that is here.
     rows
@@ -56,8 +54,7 @@ class Problem:
     matrix: Projector
     light: Floats
     weights: Floats
-    lamp_of_view: NDArray[np.intp]
-    mixture: Mixture | None
+    sums: Sums
     part: Part
     rows: slice
     stops: int
@@ -82,10 +79,9 @@ class Problem:
         """Inverse of `extinction`."""
         return columns_from_volume(extinction).reshape(self.matrix.shape[1], -1)
 
-    @property
-    def lamp_of_row(self) -> NDArray[np.intp]:
-        """``(matrix.shape[0],)``: the lamp power that each equation has."""
-        return self.lamp_of_view[self.matrix.view_of_row]
+    def wanted(self, lamp_bounds: tuple[Floats, Floats]) -> Wanted:
+        """What a solver is to reach with lamps whose powers are within these bounds, each ``(lamps, channels)``."""
+        return Wanted(self.light, self.weights, self.sums, lamp_bounds, self.transfer)
 
     def shown(self, absorbance: Floats, powers: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
         """What ``A x`` and the lamps' powers, ``(lamps, channels)``, show at the stops themselves, linear light.
@@ -99,11 +95,12 @@ class Problem:
         def at_stops(values: Floats) -> Floats:
             return values.reshape(self.stops, self.angles, shape[1], -1)[:, self.angles // 2]
 
-        if self.mixture is None:
+        of_views = powers[self.sums.lamp]
+        if self.sums.mixture is None:
             light = np.exp(-at_stops(absorbance))
-            light *= np.tile(powers[self.lamp_of_view[self.angles // 2 :: self.angles]], shape[0])[:, None, :]
+            light *= np.tile(of_views[self.angles // 2 :: self.angles], shape[0])[:, None, :]
         else:
-            light = at_stops(mixed_light(self.mixture, powers, absorbance))
+            light = at_stops(mixed_light(self.sums.mixture, of_views, absorbance))
         pictures = pictures_from_columns(light.reshape(self.stops * shape[1], -1), shape, self.channels)
         return pictures.astype(np.float32)
 
@@ -157,16 +154,12 @@ def pose(frames: Frames, grid: Grid, recipe: Recipe, part: Part | None = None) -
         importance[[0, -1]] = 2
     weights = block(np.repeat(frames.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
     weights *= np.repeat(np.tile(importance, len(frames)), len(weights) // (len(frames) * angles))[:, None]
-    lamp_of_view = lamp_numbers(frames.rig, rig, recipe.powers)
-    mixture = None
-    if not rig.is_thin:
-        mixture = mixture_of(rig, lamp_of_view, channels, part.colours, rows)
+    mixture = None if rig.is_thin else mixture_of(rig, channels, part.colours, rows)
     return Problem(
         matrix=matrix,
         light=block(np.maximum(frames.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
         weights=weights,
-        lamp_of_view=lamp_of_view,
-        mixture=mixture,
+        sums=Sums(lamp_numbers(frames.rig, rig, recipe.powers), mixture),
         part=part,
         rows=rows,
         stops=len(frames),
@@ -192,19 +185,12 @@ def lamp_numbers(rig: Rig, held_rig: Rig, powers: Powers) -> NDArray[np.intp]:
 
 def mixture_of(
     rig: Rig,
-    lamp_of_view: NDArray[np.intp],
     channels: int,
     colours: slice = slice(None),
     rows: slice = slice(None),
 ) -> Mixture:
-    """How views add up, for solvers: pixels in the order of the matrix's equations and columns; some colours and rows.
-
-    Parameters
-    ----------
-    lamp_of_view
-        Which lamp power each view has.
-    """
+    """How views add up, for solvers: pixels in the order of the matrix's equations and columns; some colours, rows."""
     light, shadow = (
         columns_from_pictures(each[:, rows, :, None]).reshape(len(rig.views), -1) for each in falling_light(rig)
     )
-    return Mixture(rig.starts, lamp_of_view, rig.sums.of_colours(channels)[:, colours], light, shadow)
+    return Mixture(rig.starts, rig.sums.of_colours(channels)[:, colours], light, shadow)

@@ -10,7 +10,9 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.material import Material
-from lightcube.solvers import METHODS
+from lightcube.solvers import find_method
+from lightcube.solvers.contract import Solver
+from lightcube.solvers.method import Method
 
 #: Each picture and colour has a power of its own, all pictures share one of each colour, or each has its own as it was
 #: found at half the size.
@@ -23,12 +25,13 @@ QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 36.0), "normal":
 
 @dataclass(frozen=True)
 class Recipe:
-    """How a cube is solved: two cubes of the same recipe, pictures, grid and views are the same, bit for bit.
+    """How a cube is solved: two cubes of the same recipe, pictures, grid and rig are the same, bit for bit.
 
     Parameters
     ----------
     method
-        A name in `lightcube.METHODS`.
+        A name in `lightcube.METHODS`, or a function (docs/your-own-method.md); as `lightcube.solvers.find_method`
+        takes it.
     powers
         ``"per-picture"``: each picture and colour has the lamp power that suits it best; ``"shared"``: each colour has
         one for all pictures; ``"coarse"``: as per-picture, but found at half the size and then kept.
@@ -51,7 +54,7 @@ class Recipe:
         For what cannot be: an unknown method, numbers out of their range, a method that cannot do what is asked for.
     """
 
-    method: str = "display"
+    method: str | Solver | Method = "display"
     powers: Powers = "per-picture"
     hold_deg: float = 0.0
     material: Material = field(default_factory=Material)
@@ -60,12 +63,11 @@ class Recipe:
     dtype: str = "float32"
 
     def __post_init__(self) -> None:
-        if self.method not in METHODS:
-            raise InputError(f"unknown method {self.method!r}: use one of {', '.join(METHODS)}")
+        solver = self.solver
         if self.powers not in get_args(Powers):
             raise InputError(f"unknown lamp powers {self.powers!r}: use one of {', '.join(get_args(Powers))}")
-        if not self.chooses_powers and self.powers != "per-picture":
-            raise InputError(f"method {self.method} cannot choose lamp powers: use method display")
+        if not solver.chooses_lamps and self.powers != "per-picture":
+            raise InputError(f"method {solver.name} cannot choose lamp powers: use method display")
         if not self.hold_deg >= 0:
             raise InputError(f"a hold must be a number of degrees of at least 0, not {self.hold_deg:g}")
         if self.passes is not None and self.passes < 1:
@@ -83,9 +85,9 @@ class Recipe:
         return cls(passes=passes, enough_db=enough, **more)
 
     @property
-    def chooses_powers(self) -> bool:
-        """Whether the method finds lamp powers."""
-        return self.method == "display"
+    def solver(self) -> Method:
+        """The method that is meant, and what is to be known of it."""
+        return find_method(self.method)
 
     def by_display(self, passes: int) -> "Recipe":
         """The same powers, hold and material by so many passes of method display: what a rehearsal solves."""
@@ -93,8 +95,9 @@ class Recipe:
 
     def plain(self) -> dict[str, str | float | None]:
         """Every field by name, as JSON has it: infinity, which it has not, is None."""
-        flat = {**asdict(self), **asdict(self.material)}
+        flat = {each.name: getattr(self, each.name) for each in fields(self)}
         del flat["material"]
+        flat |= {"method": self.solver.name, **asdict(self.material)}
         return {name: None if value in _NONE else value for name, value in flat.items()}
 
 

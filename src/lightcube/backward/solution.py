@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.backward.job import Job, level_name
-from lightcube.backward.pieces import POWERS
-from lightcube.backward.problem import held, volume_from_unknowns
+from lightcube.backward.pieces import POWERS, VOXELS, known
+from lightcube.backward.problem import held
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
 from lightcube.kernels.layout import clear_volume
@@ -101,15 +101,13 @@ def _place(
     job: Job, store: Store, name: str, part: Part, extinction: NDArray[np.float32], powers: NDArray[np.float64]
 ) -> Arrays:
     """Write what there is of a unit into the cube and the lamp powers; returns what else is known of it."""
-    found = store.finished(name) or store.state(name)
+    found = known(job, store, name)
     if found is None:
         newest = _newest_level(job, store)
         if newest is not None:
             extinction[part.colours, part.slices] = _enlarged(job, *newest, part)
         return {}
-    shape = (part.slices.stop - part.slices.start, *job.grid.shape[1:])
-    volume = volume_from_unknowns(found["x"], shape, part.colours.stop - part.colours.start)
-    extinction[part.colours, part.slices] = volume
+    extinction[part.colours, part.slices] = found[VOXELS]
     powers[:, part.colours] = found[POWERS]
     return {key: found[key] for key in _FACTS if key in found}
 
@@ -121,7 +119,7 @@ _FACTS = ("history", "rejected", "undetermined", "stop_reason", "lower_bound")
 def _newest_level(job: Job, store: Store) -> tuple[int, Arrays] | None:
     """The largest of the coarse cubes that there is anything of: how often it is halved, and what there is."""
     for level in range(1, job.levels + 1):
-        found = store.finished(level_name(level)) or store.state(level_name(level))
+        found = known(job, store, level_name(level))
         if found is not None:
             return level, found
     return None
@@ -135,21 +133,21 @@ def _coarse_powers(job: Job, store: Store) -> NDArray[np.float64]:
 
 def _enlarged(job: Job, level: int, found: Arrays, part: Part) -> Floats:
     """A coarse cube through all sizes up to the cube itself; this part of it."""
-    volume = volume_from_unknowns(found["x"], coarse_shape(job.grid.shape, level), job.channels)[part.colours]
+    volume = found[VOXELS][part.colours]
     for larger in range(level - 1, -1, -1):
         volume = enlarged(volume, coarse_shape(job.grid.shape, larger), part.slices if larger == 0 else None)
     return volume
 
 
 def _together(job: Job, histories: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """One history of several: objectives of method display add up, the norms of the others as their squares do."""
+    """One history of several: objectives add up, norms as their squares do."""
     if not histories:
         return np.empty(0)
     if len(histories) == 1:
         return histories[0]
     longest = max(map(len, histories))
     padded = np.array([np.pad(history, (0, longest - len(history)), "edge") for history in histories])
-    return np.sum(padded, axis=0) if job.recipe.chooses_powers else np.sqrt(np.sum(padded**2, axis=0))
+    return np.sqrt(np.sum(padded**2, axis=0)) if job.recipe.solver.residual == "norm" else np.sum(padded, axis=0)
 
 
 def _slowest(reasons: list[str]) -> str:

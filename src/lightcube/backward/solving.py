@@ -32,8 +32,9 @@ def solve(
 ) -> Solution:
     """Find the cube whose shadows are the frames.
 
-    Method ``display`` solves a cube more than 48 voxels long at half the size first (and that one at a quarter, and
-    so on) and starts from there: the lamps and the coarse structure come at an eighth of the price.
+    Method ``display``, and others unless they say that it does not help them, solve a cube more than 48 voxels long at
+    half the size first (and that one at a quarter, and so on) and start from there: the lamps and the coarse structure
+    come at an eighth of the price.
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def make_job(
     recipe = recipe or Recipe()
     check_frames(frames, grid)
     _check_method(recipe, frames.rig)
-    if recipe.passes is None and recipe.chooses_powers:
+    if recipe.passes is None and recipe.solver.residual == "display":
         recipe = replace(recipe, passes=QUALITIES["normal"][0])
     job = Job(frames, grid, recipe, provenance=dict(provenance or {}))
     most = most_units(grid.shape, job.channels, level=job.level)
@@ -98,17 +99,14 @@ def make_job(
 
 def _check_method(recipe: Recipe, rig: Rig) -> None:
     """Raise `InputError` where a recipe's method cannot do what a rig asks for."""
-    if recipe.chooses_powers:
-        return
-    if not rig.lamps.are_fixed:
+    method = recipe.solver
+    if not method.chooses_lamps and not rig.lamps.are_fixed:
         free = rig.lamps.names[int(np.argmax(rig.lamps.least < rig.lamps.most))]
         raise InputError(
-            f"method {recipe.method} cannot choose the power of lamp {free!r}: give it one, or use method display"
+            f"method {method.name} cannot choose the power of lamp {free!r}: give it one, or use method display"
         )
-    if not rig.is_thin:
-        raise InputError(
-            f"method {recipe.method} takes logarithms, and light that adds up has none: use method display"
-        )
+    if not method.takes_sums and not rig.is_thin:
+        raise InputError(f"method {method.name} cannot do with light that adds up: use method display")
 
 
 def check_frames(frames: Frames, grid: Grid) -> None:

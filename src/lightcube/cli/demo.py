@@ -29,6 +29,7 @@ from lightcube.projection.projector import Projector
 from lightcube.scene.tracer import scene_frames
 from lightcube.scoring import metrics
 from lightcube.solvers import METHODS
+from lightcube.solvers.contract import Wanted
 from lightcube.viewer.page import page
 
 _SIDE = 64
@@ -126,19 +127,14 @@ def paper(folder: Path) -> None:
     out.print(f"A random cube of 3 x 3 x 3 voxels turns: {columns} x {rows} pictures in {folder}/paper.gif")
     views = turntable(grid, spread_angles(8))
     matrix = Projector(grid, views)
-    pictures = transmittance(matrix.forward(x))
+    wanted = Wanted(transmittance(matrix.forward(x)))
     out.print("Its pictures at 8 angles over 180 degrees, and back (float64):")
     for method in ("row-reduction", "gauss-seidel"):
-        found = METHODS[method](matrix, pictures, view_of_row=matrix.view_of_row, **_lamp(len(views)), iterations=5000)
+        found = METHODS[method].solve(matrix, wanted, iterations=5000)
         wrong = _largest_error(volume_from_columns(found.x, grid.shape, 3), truth)
         out.print(
             f"  {method:>14}: largest error of a voxel {wrong:.1e} of the darkest, {len(found.rejected)} rejected"
         )
-
-
-def _lamp(views: int) -> dict[str, Any]:
-    white = np.ones((views, 3))
-    return {"lamp_bounds": (white, white)}
 
 
 def _largest_error(found: NDArray[np.floating], truth: NDArray[np.floating]) -> float:

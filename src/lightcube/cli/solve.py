@@ -1,4 +1,4 @@
-"""The commands that make cubes: `solve` and `publish`."""
+"""The command `lightcube solve`."""
 
 import time
 from collections.abc import Callable

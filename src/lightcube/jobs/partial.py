@@ -44,6 +44,7 @@ from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 from lightcube.pictures.frames import Frames
+from lightcube.solvers import check_lasting, find_method
 
 #: Of the folders that this version writes and reads.
 FORMAT_VERSION = 2
@@ -166,8 +167,9 @@ def open_partial(out: str | Path, job: Job, *, overwrite: bool = False) -> DiskS
     ------
     InputError
         Naming what changed, where the folder was begun for another job; or where it is something else, is damaged, or
-        cannot be written.
+        cannot be written; or where no name leads to the job's method, so that nobody could go on.
     """
+    check_lasting(job.recipe.solver)
     folder = check_partial(out)
     if isinstance(folder, Path):
         _make(folder)
@@ -239,10 +241,11 @@ def load_job(partial: str | Path) -> Job:
     Raises
     ------
     InputError
-        Where there is no such folder, no job in it yet, or it is damaged.
+        Where there is no such folder, no job in it yet, its method cannot be imported, or it is damaged.
     """
     folder = place(partial)
     said, path = _read_job(folder), child(folder, _FRAMES)
+    find_method(str(said.recipe.get("method") or "display"))  # by its own words where it cannot be found
     arrays = _read_arrays(path)
     if arrays is None:
         raise _damaged(path, "it is missing")

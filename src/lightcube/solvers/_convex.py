@@ -8,10 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.kernels import convex, display
-from lightcube.optics.absorption import absorbance
-from lightcube.optics.transfer import Transfer
-from lightcube.solvers._checks import check_lamp, check_shapes, check_views, check_weights
-from lightcube.solvers.contract import Floats, Operator
+from lightcube.solvers.contract import Floats, Operator, Wanted
 
 #: The curvatures used hold as long as no beam's ln light rises by more than this.
 ROOM = 0.1
@@ -19,12 +16,14 @@ ROOM = 0.1
 
 @dataclass(frozen=True)
 class ConvexObjective:
-    """What is wanted of the screen, and the lamps that shine on it; lamp powers as ln P, ``(views, channels)``."""
+    """What is wanted of the screen, and the lamps that shine on it; lamp powers as ln P, ``(lamps, channels)``."""
 
+    #: ln light.
     wanted: Floats
     weights: Floats
-    views: NDArray[np.integer[Any]]
-    #: The equations of view v are ``rows[starts[v]:starts[v + 1]]``.
+    #: ``(equations,)``.
+    lamps: NDArray[np.integer[Any]]
+    #: The equations of lamp l are ``rows[starts[l]:starts[l + 1]]``.
     rows: NDArray[np.integer[Any]]
     starts: NDArray[np.integer[Any]]
     low: NDArray[np.float64]
@@ -35,33 +34,21 @@ class ConvexObjective:
     curve: display.Curve
 
     @classmethod
-    def of(
-        cls,
-        A: Operator,
-        B: Floats,
-        weights: Floats | None,
-        view_of_row: NDArray[np.integer[Any]] | None,
-        lamp_bounds: tuple[Floats, Floats] | None,
-        transfer: Transfer,
-    ) -> "ConvexObjective":
-        """Check what the solver was given; `InputError` names what cannot be used."""
-        check_shapes(A, B)
-        low, high = check_lamp(lamp_bounds, check_views(view_of_row, A.shape[0]))
-        views = np.zeros(len(B), np.intp) if view_of_row is None else view_of_row
-        rows = np.argsort(views, kind="stable")
-        starts = np.searchsorted(views[rows], np.arange(len(low) + 1))
-        wanted = np.ascontiguousarray(absorbance(B))
-        np.negative(wanted, out=wanted)
+    def of(cls, wanted: Wanted) -> "ConvexObjective":
+        """Lay out what is wanted of pictures of one view each."""
+        low, high = wanted.lamp_bounds
+        lamps = wanted.sums.lamp_of_row(len(wanted.light))
+        rows = np.argsort(lamps, kind="stable")
         return cls(
-            wanted,
-            check_weights(weights, B),
-            views,
+            np.ascontiguousarray(np.log(wanted.light)),
+            wanted.weights,
+            lamps,
             rows,
-            starts,
+            np.searchsorted(lamps[rows], np.arange(len(low) + 1)),
             np.log(low),
             np.log(high),
             (low, high),
-            display.curve(transfer == "srgb", B.dtype.type),
+            display.curve(wanted.transfer == "srgb", wanted.light.dtype.type),
         )
 
     def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -81,16 +68,16 @@ class ConvexObjective:
         self, last: Floats, ax: Floats, lamp: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
-        return convex.arrive(last, ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.curve)
+        return convex.arrive(last, ax, lamp.astype(ax.dtype), self.lamps, self.wanted, self.weights, self.curve)
 
     def descend(self, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Write over `ax`, and return, the objective's derivative by the absorbance."""
-        convex.descend(ax, lamp.astype(ax.dtype), self.views, self.wanted, self.weights, self.curve, ax)
+        convex.descend(ax, lamp.astype(ax.dtype), self.lamps, self.wanted, self.weights, self.curve, ax)
         return ax
 
     def curved(self, values: Floats, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
-        data = (self.views, self.wanted, self.weights, self.curve)
+        data = (self.lamps, self.wanted, self.weights, self.curve)
         convex.curvatures(ax, lamp.astype(ax.dtype), *data, ax.dtype.type(ROOM), values)
         return values
 
@@ -111,9 +98,9 @@ class ConvexObjective:
         least = -lower * float(np.sum(np.minimum(back, 0), dtype=np.float64))
         if upper < np.inf:
             least -= upper * float(np.sum(np.maximum(back, 0), dtype=np.float64))
-        rows_of_view = (self.rows[first:last] for first, last in pairwise(self.starts))
-        per_view = np.stack([np.sum(pull[rows], axis=0, dtype=np.float64) for rows in rows_of_view])
-        per_lamp = per_view.reshape(len(self.low), -1, self.low.shape[1]).sum(axis=1)
+        rows_of_lamp = (self.rows[first:last] for first, last in pairwise(self.starts))
+        per_column = np.stack([np.sum(pull[rows], axis=0, dtype=np.float64) for rows in rows_of_lamp])
+        per_lamp = per_column.reshape(len(self.low), -1, self.low.shape[1]).sum(axis=1)
         least += float(np.sum(np.minimum(per_lamp * self.low, per_lamp * self.high)))
         bound = 0.0
         for part in (0.3, 0.5, 0.7, 0.85, 1.0):  # concave, and 0 at 0: once it falls, it falls on

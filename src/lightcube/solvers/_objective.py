@@ -7,13 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from lightcube.errors import InputError
 from lightcube.kernels import display, objective
-from lightcube.optics.absorption import absorbance
-from lightcube.optics.transfer import Transfer
-from lightcube.solvers._checks import check_lamp, check_weights
 from lightcube.solvers._convex import ROOM
-from lightcube.solvers.contract import Floats, Mixture, Operator
+from lightcube.solvers.contract import Floats, Mixture, Operator, Wanted
 
 #: Newton's steps for the lamps' powers in each pass, at most; the longest one, and one so short that it is the last.
 _STEPS, _LONGEST, _SHORT = 10, 1.0, 1e-3
@@ -24,7 +20,9 @@ class Objective:
     """What is wanted of the screen, and the views that add up on it; lamp powers as ln P, ``(lamps, channels)``."""
 
     mixture: Mixture
-    #: ``(pictures, entries)``.
+    #: ``(views,)``.
+    lamp_of_view: NDArray[np.integer[Any]]
+    #: ln light, ``(pictures, entries)``.
     wanted: Floats
     weights: Floats
     low: NDArray[np.float64]
@@ -36,29 +34,15 @@ class Objective:
     columns: int
 
     @classmethod
-    def of(
-        cls,
-        A: Operator,
-        B: Floats,
-        weights: Floats | None,
-        mixture: Mixture,
-        lamp_bounds: tuple[Floats, Floats] | None,
-        transfer: Transfer,
-    ) -> "Objective":
-        """Check what the solver was given; `InputError` names what cannot be used."""
-        views, pictures = len(mixture.lamp), len(mixture.starts) - 1
-        if B.ndim != 2 or B.dtype not in (np.float32, np.float64) or len(B) * views != A.shape[0] * pictures:
-            raise InputError(
-                f"B of shape {B.shape} does not fit {pictures} pictures that {views} views with {A.shape[0]} "
-                "equations make: give it a float row for each equation of a picture"
-            )
-        low, high = check_lamp(lamp_bounds, int(mixture.lamp.max()) + 1)
-        wanted = np.negative(absorbance(B)).reshape(pictures, -1)
-        if mixture.light.shape != (views, wanted.shape[1] // low.shape[1]):
-            raise InputError(f"light of shape {mixture.light.shape} does not fit {views} views of these pictures")
-        heavy = np.ascontiguousarray(check_weights(weights, B)).reshape(pictures, -1) * _lit(mixture)
-        curve = display.curve(transfer == "srgb", B.dtype.type)
-        return cls(mixture, wanted, heavy, np.log(low), np.log(high), (low, high), curve, B.shape[1])
+    def of(cls, wanted: Wanted, mixture: Mixture) -> "Objective":
+        """Lay out what is wanted of pictures that views add up to."""
+        low, high = wanted.lamp_bounds
+        pictures = wanted.sums.pictures
+        logs = np.log(wanted.light).reshape(pictures, -1)
+        heavy = np.ascontiguousarray(wanted.weights).reshape(pictures, -1) * _lit(mixture)
+        curve = display.curve(wanted.transfer == "srgb", wanted.light.dtype.type)
+        columns = wanted.light.shape[1]
+        return cls(mixture, wanted.sums.lamp, logs, heavy, np.log(low), np.log(high), (low, high), curve, columns)
 
     def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return P of ln P, within the bounds to the last digit."""
@@ -69,8 +53,8 @@ class Objective:
         lamp = np.clip(start, self.low, self.high)
         if np.array_equal(self.low, self.high):
             return lamp
-        groups = np.cumsum(np.diff(self._picture * len(self.low) + self.mixture.lamp, prepend=-1) != 0) - 1
-        lamp_of_group = self.mixture.lamp[np.unique(groups, return_index=True)[1]]
+        groups = np.cumsum(np.diff(self._picture * len(self.low) + self.lamp_of_view, prepend=-1) != 0) - 1
+        lamp_of_group = self.lamp_of_view[np.unique(groups, return_index=True)[1]]
         for _ in range(_STEPS):
             sums = np.zeros((2, objective.PARTS, len(lamp_of_group), lamp.shape[1]))
             objective.pulls(self._mixed(lamp, ax), groups, *self._data(ax), sums)
@@ -88,7 +72,7 @@ class Objective:
         self, last: Floats, ax: Floats, lamp: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
-        before = last.reshape(len(self.mixture.lamp), -1)
+        before = last.reshape(len(self.lamp_of_view), -1)
         return objective.arrive(self._mixed(lamp, ax), before, *self._data(ax))
 
     def descend(self, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
@@ -100,7 +84,7 @@ class Objective:
     def curved(self, values: Floats, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
         room = ax.dtype.type(ROOM)
-        objective.curvatures(self._mixed(lamp, ax), *self._data(ax), room, values.reshape(len(self.mixture.lamp), -1))
+        objective.curvatures(self._mixed(lamp, ax), *self._data(ax), room, values.reshape(len(self.lamp_of_view), -1))
         return values
 
     def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: tuple[float, float]) -> None:
@@ -111,10 +95,10 @@ class Objective:
         return np.repeat(np.arange(len(self.wanted)), np.diff(self.mixture.starts))
 
     def _mixed(self, lamp: NDArray[np.float64], ax: Floats) -> objective.Mixture:
-        return for_kernels(self.mixture, np.exp(lamp), ax.dtype)
+        return for_kernels(self.mixture, np.exp(lamp)[self.lamp_of_view], ax.dtype)
 
     def _data(self, ax: Floats) -> tuple[Floats, int, Floats, Floats, display.Curve]:
-        return ax.reshape(len(self.mixture.lamp), -1), self.columns, self.wanted, self.weights, self.curve
+        return ax.reshape(len(self.lamp_of_view), -1), self.columns, self.wanted, self.weights, self.curve
 
 
 def _lit(mixture: Mixture) -> NDArray[np.bool_]:
@@ -124,20 +108,20 @@ def _lit(mixture: Mixture) -> NDArray[np.bool_]:
 
 
 def mixed_light(mixture: Mixture, powers: NDArray[np.floating[Any]], absorbance: Floats) -> Floats:
-    """What the screen shows at the absorbance of all views, under lamps of powers ``(lamps, channels)``.
+    """What the screen shows at the absorbance of all views, whose lamps have powers ``(views, channels)``.
 
     Returns
     -------
     ``(pictures, entries)``, linear light, the entries of a picture in the order of a view's in `absorbance`.
     """
-    absorbed = absorbance.reshape(len(mixture.lamp), -1)
+    absorbed = absorbance.reshape(len(powers), -1)
     logs = np.empty((len(mixture.starts) - 1, absorbed.shape[1]), absorbance.dtype)
     objective.shine(for_kernels(mixture, powers, absorbance.dtype), absorbed, absorbance.shape[1], logs)
     return np.exp(logs, out=logs)
 
 
 def for_kernels(mixture: Mixture, powers: NDArray[np.floating[Any]], dtype: DTypeLike) -> objective.Mixture:
-    """What the kernels want to know of the views and the power of their lamps."""
-    strength = (powers[mixture.lamp] * mixture.share).astype(dtype)
+    """What the kernels want to know of the views and the power of each one's lamp."""
+    strength = (powers * mixture.share).astype(dtype)
     light, shadow = (each.astype(dtype, copy=False) for each in (mixture.light, mixture.shadow))
     return objective.Mixture(mixture.starts, strength, light, shadow)

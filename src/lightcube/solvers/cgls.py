@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.optics.transfer import Transfer
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
-from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: A column has converged once the gradient that the bounds leave is this part of ``A.T W b``, in the 2-norm.
 _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -17,20 +16,15 @@ PerColumn = NDArray[np.float64]
 
 def cgls(
     A: Operator,
-    B: Floats,
+    wanted: Wanted,
     *,
-    weights: Floats | None = None,
-    view_of_row: NDArray[np.integer[Any]] | None = None,
-    lamp_bounds: tuple[Floats, Floats] | None = None,
     x0: Floats | None = None,
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
-    transfer: Transfer = "srgb",
     state: State | None = None,
-    mixture: Mixture | None = None,
 ) -> Result:
-    """Minimise ``sum_i w_i (b - A x)_i^2`` within the bounds, ``b = ln P - ln B``, each column with its own steps.
+    """Minimise ``sum_i w_i (b - A x)_i^2`` within the bounds, ``b = ln P - ln light``, each column with its own steps.
 
     The parameters are those of `lightcube.solvers.contract.Solver`; `A` must hold no negative number and the lamp
     powers must be fixed. Without bounds this is CGLS: ``p <- g + (|g|^2 / |g before|^2) p``,
@@ -54,23 +48,23 @@ def cgls(
     A. Bjorck, Numerical Methods for Least Squares Problems (1996), 7.4; J. J. More, G. Toraldo, SIAM J. Optim. 1
     (1991); Z. Dostal, J. Schoberl, Comput. Optim. Appl. 30 (2005), for weighing the two parts of the gradient.
     """
-    problem = linear_problem("cgls", A, B, weights, view_of_row, lamp_bounds, x0, bounds, mixture)
+    problem = linear_problem("cgls", A, wanted, x0, bounds)
     iterations = check_iterations(iterations)
-    b, w, x, dtype = problem.b, problem.weights, problem.x, B.dtype
+    b, w, x, dtype = problem.b, problem.weights, problem.x, problem.x.dtype
     d = A.adjoint(w * A.forward(np.ones((A.shape[1], 1), dtype)))
     if state is None:
         ax, p = A.forward(x), np.zeros_like(x)
         small = _TOLERANCE[dtype] * np.maximum(_norms(A.adjoint(w * b)), _norms(A.adjoint(w * ax)))
-        fresh, free_before = np.ones(B.shape[1], np.bool_), np.ones(B.shape[1])
+        fresh, free_before = np.ones(x.shape[1], np.bool_), np.ones(x.shape[1])
         residuals: list[float] = []
     else:
-        kept = check_state(state, iterations, _needed(x, B))
-        x, ax, p, small, fresh, free_before = (kept[name] for name in _needed(x, B))
+        kept = check_state(state, iterations, _needed(x, b))
+        x, ax, p, small, fresh, free_before = (kept[name] for name in _needed(x, b))
         residuals = kept["history"].tolist()
 
     def keep() -> State:
         values = (x, ax, p, small, fresh, free_before)
-        return dict(zip(_needed(x, B), values, strict=True)) | {"history": np.array(residuals)}
+        return dict(zip(_needed(x, b), values, strict=True)) | {"history": np.array(residuals)}
 
     reason = ""
     while not reason:
@@ -95,12 +89,13 @@ def cgls(
     return Result(x, problem.lamp_powers, np.array(residuals), stop_reason=reason)
 
 
-def _needed(x: Floats, B: Floats) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]:
+#: The method as the table has it; how many arrays it holds is measured.
+def _needed(x: Floats, b: Floats) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]:
     """Shapes and dtypes of what iterates. A x is among it: steps add up in it."""
     per_column, number, flag = (x.shape[1],), np.dtype(np.float64), np.dtype(np.bool_)
     return {
         "x": (x.shape, x.dtype),
-        "ax": (B.shape, x.dtype),
+        "ax": (b.shape, x.dtype),
         "p": (x.shape, x.dtype),
         "small": (per_column, number),
         "fresh": (per_column, flag),

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.errors import InputError
+from lightcube.optics.absorption import absorbance
 from lightcube.optics.transfer import Transfer
 
 if TYPE_CHECKING:
@@ -39,27 +41,221 @@ class Operator(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """Views that add up to pictures: the equations of a view follow each other, and so do the views of a picture.
+    """How views add up to pictures: those of a picture follow each other.
 
-    A picture shows the sum over its views of ``P share light (1 - shadow (1 - e^-(A x)))``.
+    A picture shows the sum over its views of ``P share light (1 - shadow (1 - e^-(A x)))``, P the power of the lamp.
 
     Parameters
     ----------
     starts
         ``(pictures + 1,)``: the views of picture p are those from ``starts[p]`` to before ``starts[p + 1]``.
-    lamp
-        ``(views,)``: which of the lamp powers P each view has.
     share
         ``(views, channels)`` of at least 0.
     light, shadow
         ``(views, pixels)``, of at least 0 and in [0, 1]: a view's pixels in the order of its equations and columns.
+
+    Raises
+    ------
+    InputError
+        Where these are not of the same views, or out of range.
     """
 
     starts: NDArray[np.intp]
-    lamp: NDArray[np.intp]
     share: NDArray[np.float64]
     light: Floats
     shadow: Floats
+
+    def __post_init__(self) -> None:
+        views = self.light.shape[0]
+        if self.light.ndim != 2 or self.shadow.shape != self.light.shape or self.share.shape[:1] != (views,):
+            raise InputError(
+                f"light of shape {self.light.shape}, shadow of shape {self.shadow.shape} and share of shape "
+                f"{self.share.shape} are not of the same views"
+            )
+        if [*self.starts[:1], *self.starts[-1:]] != [0, views] or np.any(np.diff(self.starts) < 1):
+            raise InputError(f"pictures must begin at views from 0 up to {views}, each with one at least")
+        for name, values, most in (
+            ("share", self.share, np.inf),
+            ("light", self.light, np.inf),
+            ("shadow", self.shadow, 1),
+        ):
+            if not _within(values, 0, most):
+                raise InputError(f"{name} must be finite and {'at least 0' if most == np.inf else 'from 0 to 1'}")
+
+
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """Which lamp shines in each view, and how views add up to pictures.
+
+    The equations of a view follow each other, and each view has as many.
+
+    Parameters
+    ----------
+    lamp
+        ``(views,)`` whole numbers from 0: which of the lamps each view has.
+    mixture
+        How views add up; None where each one is a picture, under all of its lamp's light.
+
+    Raises
+    ------
+    InputError
+        Where these are not whole numbers, or not of the same views.
+    """
+
+    lamp: NDArray[np.integer[Any]]
+    mixture: Mixture | None = None
+
+    def __post_init__(self) -> None:
+        if self.lamp.ndim != 1 or self.lamp.size == 0 or not np.issubdtype(self.lamp.dtype, np.integer):
+            raise InputError(
+                f"lamps must be whole numbers, one per view, not {self.lamp.dtype} of shape {self.lamp.shape}"
+            )
+        if self.lamp.min() < 0:
+            raise InputError(f"lamps must count from 0, not from {self.lamp.min()}")
+        if self.mixture is not None and len(self.mixture.light) != len(self.lamp):
+            raise InputError(f"{len(self.lamp)} views have lamps, but {len(self.mixture.light)} add up to pictures")
+
+    @property
+    def lamps(self) -> int:
+        """How many lamps are named."""
+        return int(self.lamp.max()) + 1
+
+    @property
+    def pictures(self) -> int:
+        """How many pictures the views make."""
+        return len(self.lamp if self.mixture is None else self.mixture.starts[1:])
+
+    def lamp_of_row(self, equations: int) -> NDArray[np.intp]:
+        """``(equations,)``: the lamp of each of all views' equations."""
+        return np.repeat(self.lamp.astype(np.intp, copy=False), equations // len(self.lamp))
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Wanted:
+    """What a solver is to reach: light on the screen, how much each pixel counts, and the lamps there are.
+
+    Parameters
+    ----------
+    light
+        What the screen shall show, linear light above 0, float32 or float64: ``(equations, columns)``, or where views
+        add up as many rows as one view has for each picture. The colour channel of column ``j`` is ``j % channels``.
+    weights
+        At least 0, broadcastable to `light`, and then of its shape and dtype; 0 = don't care; None = all 1.
+    sums
+        Lamps and sums of the views; None = a single view.
+    lamp_bounds
+        Lower and upper bound of the lamps' powers, each ``(lamps, channels)``; equal where a lamp is fixed.
+        None = one channel, power 1.
+    transfer
+        How display values follow from light, for methods that reckon in display levels.
+
+    Raises
+    ------
+    InputError
+        Where these do not fit together, or are out of range.
+    """
+
+    light: Floats
+    weights: Floats
+    sums: Sums
+    lamp_bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
+    transfer: Transfer
+
+    def __init__(
+        self,
+        light: Floats,
+        weights: Floats | None = None,
+        sums: Sums | None = None,
+        lamp_bounds: tuple[Floats, Floats] | None = None,
+        transfer: Transfer = "srgb",
+    ) -> None:
+        views = Sums(np.zeros(1, np.intp)) if sums is None else sums
+        _check_light(light, views)
+        if transfer not in get_args(Transfer):
+            raise InputError(f"unknown transfer {transfer!r}: use one of {', '.join(get_args(Transfer))}")
+        powers = _lamp_bounds(lamp_bounds, views)
+        _check_mixture(views, light, powers[0].shape[1])
+        given = {"light": light, "weights": _weights(weights, light), "sums": views, "lamp_bounds": powers}
+        for name, value in (given | {"transfer": transfer}).items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def channels(self) -> int:
+        """Colours: column ``j`` is of the colour ``j % channels``."""
+        return self.lamp_bounds[0].shape[1]
+
+    @property
+    def equations(self) -> int:
+        """How many rows the matrix has of all views."""
+        return len(self.light) // self.sums.pictures * len(self.sums.lamp)
+
+    @property
+    def has_fixed_lamps(self) -> bool:
+        """Whether no lamp's power is left to choose."""
+        return np.array_equal(*self.lamp_bounds)
+
+    def absorbance(self) -> Floats:
+        """``ln P - ln light``, ``(equations, columns)``, of pictures of one view each under lamps that are fixed.
+
+        Negative where more light is wanted than the lamp has.
+        """
+        powers = self.lamp_bounds[1][self.sums.lamp_of_row(len(self.light))]
+        lamp = powers[:, np.arange(self.light.shape[1]) % self.channels]
+        return absorbance(self.light / lamp.astype(self.light.dtype))
+
+
+def _check_light(light: Floats, sums: Sums) -> None:
+    if light.ndim != 2 or light.size == 0 or light.dtype not in (np.float32, np.float64):
+        raise InputError(
+            f"the light wanted must be float32 or float64 of shape (equations, columns), not {light.dtype} of shape "
+            f"{light.shape}"
+        )
+    if len(light) % sums.pictures:
+        raise InputError(f"light of {len(light)} rows does not fit {sums.pictures} pictures: give each as many")
+    if not (light.min() > 0 and light.max() < np.inf):  # also refuses NaN
+        raise InputError("light must be positive and finite: raise black pixels to the screen's black first")
+
+
+def _check_mixture(sums: Sums, light: Floats, channels: int) -> None:
+    mixture = sums.mixture
+    if mixture is None:
+        return
+    pixels = mixture.light.shape[1]
+    if mixture.share.shape[1:] != (channels,) or pixels * channels * sums.pictures != light.size:
+        raise InputError(
+            f"views of {pixels} pixels, and shares of shape {mixture.share.shape}, do not fit light of shape "
+            f"{light.shape} in {sums.pictures} pictures of {channels} channels"
+        )
+
+
+def _weights(weights: Floats | None, light: Floats) -> Floats:
+    given = np.asarray(1.0 if weights is None else weights)
+    try:
+        whole = np.broadcast_to(given.astype(light.dtype, copy=False), light.shape)
+    except ValueError as error:
+        raise InputError(f"weights of shape {given.shape} do not fit light of shape {light.shape}") from error
+    if not _within(given, 0, np.inf):
+        raise InputError("weights must be finite and at least 0: use 0 for don't care")
+    return whole
+
+
+def _lamp_bounds(bounds: tuple[Floats, Floats] | None, sums: Sums) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if bounds is None:
+        return np.ones((sums.lamps, 1)), np.ones((sums.lamps, 1))
+    low, high = (np.asarray(bound, dtype=np.float64) for bound in bounds)
+    for powers in (low, high):
+        if powers.ndim != 2 or powers.shape != low.shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):
+            raise InputError("lamp powers must be positive and finite, in an array of shape (lamps, channels)")
+    if len(low) < sums.lamps:
+        raise InputError(f"views name {sums.lamps} lamps, but there are powers for {len(low)}")
+    if np.any(low > high):
+        raise InputError("a lower bound of the lamp powers is above the upper one: swap them")
+    return low, high
+
+
+def _within(values: NDArray[Any], least: float, most: float) -> bool:
+    """Whether all numbers are finite and within bounds; False where one is NaN."""
+    return values.size == 0 or bool(values.min() >= least and values.max() <= most and values.max() < np.inf)
 
 
 @dataclass(frozen=True)
@@ -73,7 +269,7 @@ class Progress:
     absorbance: Floats
     #: What the solver minimises, or the norm it reports.
     residual: float
-    #: ``(views, channels)`` of this `x`.
+    #: ``(lamps, channels)`` of this `x`.
     lamp_powers: Floats
     #: What `Solver` takes as `state` to go on from here, ``"x"`` and the residuals so far, ``"history"``, among it.
     #: These too are the solver's own arrays: write them out or copy them before the callback returns.
@@ -93,7 +289,7 @@ class Result:
     x
         ``(unknowns, columns)``, extinction in 1/mm.
     lamp_powers
-        ``(views, channels)``.
+        ``(lamps, channels)``.
     residuals
         One figure per iteration, in the norm that the solver's docstring states.
     rejected
@@ -118,22 +314,14 @@ class Result:
 
 
 class Solver(Protocol):
-    """One signature for all methods.
+    """What every method is: a function with these parameters.
 
     Parameters
     ----------
     A
         The matrix.
-    B
-        ``(equations, columns)``, what the screen shall show, linear light above 0: lamp power times transmittance.
-        The colour channel of column ``j`` is ``j % channels``.
-    weights
-        At least 0, broadcastable to `B`; 0 = don't care; None = all 1.
-    view_of_row
-        ``(equations,)`` whole numbers: the view that each equation belongs to; None = all view 0.
-    lamp_bounds
-        Lower and upper bound of the lamp powers, each ``(views, channels)``; equal where the lamp is fixed.
-        None = one channel per view, power 1.
+    wanted
+        What it is to reach.
     x0
         ``(unknowns, columns)`` to start from; None = all 0 (fully transparent).
     bounds
@@ -142,30 +330,20 @@ class Solver(Protocol):
         At most so many.
     callback
         Called after each iteration.
-    transfer
-        How display values follow from light, for methods that reckon in display levels.
     state
         What `Progress.state` gave after some iteration of the same problem: go on from there instead of from `x0`.
         The result is the same, bit for bit, as that of a run that never stopped, history included. Arrays beyond
-        those that the method keeps are ignored, none is written to.
-    mixture
-        Where several views add up to a picture: `B` and `weights` then have the equations of the pictures,
-        `view_of_row` is not needed, and `lamp_bounds` is ``(lamps, channels)``. Only methods that reckon in light can.
+        those that the method keeps are ignored, none is written to, and each is taken once: the giver may forget it.
     """
 
     def __call__(  # noqa: D102
         self,
         A: Operator,
-        B: Floats,
+        wanted: Wanted,
         *,
-        weights: Floats | None = None,
-        view_of_row: NDArray[np.integer[Any]] | None = None,
-        lamp_bounds: tuple[Floats, Floats] | None = None,
         x0: Floats | None = None,
         bounds: tuple[float, float] = (0.0, np.inf),
         iterations: int = 100,
         callback: Callback | None = None,
-        transfer: Transfer = "srgb",
         state: State | None = None,
-        mixture: Mixture | None = None,
     ) -> Result: ...

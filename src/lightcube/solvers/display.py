@@ -16,11 +16,10 @@ from numpy.typing import DTypeLike, NDArray
 
 from lightcube.kernels import descent, momentum
 from lightcube.kernels.layout import copied, empty
-from lightcube.optics.transfer import Transfer
-from lightcube.solvers._checks import check_bounds, check_iterations, check_start, check_state
+from lightcube.solvers._checks import check_bounds, check_fits, check_iterations, check_start, check_state
 from lightcube.solvers._convex import ConvexObjective
 from lightcube.solvers._objective import Objective
-from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: The metric is renewed after 1, 2, 4, 7, 11, 17, 26, ... iterations: each time costs as much as an iteration.
 _RENEWAL = 1.5
@@ -36,18 +35,13 @@ _PATIENCE, _TOLERANCE, _PERFECT = 20, 1e-4, 1e-9
 
 def display_values(
     A: Operator,
-    B: Floats,
+    wanted: Wanted,
     *,
-    weights: Floats | None = None,
-    view_of_row: NDArray[np.integer[Any]] | None = None,
-    lamp_bounds: tuple[Floats, Floats] | None = None,
     x0: Floats | None = None,
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 200,
     callback: Callback | None = None,
-    transfer: Transfer = "srgb",
     state: State | None = None,
-    mixture: Mixture | None = None,
 ) -> Result:
     """Minimise half the weighted sum of squared two-sided residuals over ``lower <= x <= upper`` and the lamp powers.
 
@@ -62,7 +56,7 @@ def display_values(
 
     Parameters
     ----------
-    A, B, weights, view_of_row, lamp_bounds, x0, bounds, iterations, callback, transfer, state, mixture
+    A, wanted, x0, bounds, iterations, callback, state
         As in `lightcube.solvers.contract.Solver`.
 
     Returns
@@ -72,7 +66,7 @@ def display_values(
 
     Notes
     -----
-    With a `mixture` the ln light is that of a sum, ``u = ln sum_v P_v (1 - a_v (1 - e^-(A x)_v))``: the objective is
+    Where views add up the ln light is that of a sum, ``u = ln sum_v P_v (1 - a_v (1 - e^-(A x)_v))``: the objective is
     no longer convex, no lower bound is known, and lamps are found by bounded Newton steps, a few in each pass. All
     else is the same, with curvatures that bound those of the sum (`lightcube.kernels.objective`).
 
@@ -85,19 +79,17 @@ def display_values(
     and greedier, SIAM J. Sci. Comput. 44 (2022) A1069-A1091, for momentum and stride.
     G. Golub, V. Pereyra, Separable nonlinear least squares, Inverse Problems 19 (2003) R1-R26, for the lamp.
     """
-    goal: ConvexObjective | Objective
-    if mixture is None:
-        goal = ConvexObjective.of(A, B, weights, view_of_row, lamp_bounds, transfer)
-    else:
-        goal = Objective.of(A, B, weights, mixture, lamp_bounds, transfer)
+    check_fits(A, wanted)
+    mixture = wanted.sums.mixture
+    goal = ConvexObjective.of(wanted) if mixture is None else Objective.of(wanted, mixture)
     bounds = check_bounds(bounds)
     iterations = check_iterations(iterations)
-    shape = A.shape[1], B.shape[1]
-    limits: tuple[Any, ...] = tuple(B.dtype.type(bound) for bound in bounds)
+    shape, dtype = (A.shape[1], wanted.light.shape[1]), wanted.light.dtype
+    limits: tuple[Any, ...] = tuple(dtype.type(bound) for bound in bounds)
     if state is None:
-        at = _State.first(check_start(x0, shape, bounds, B.dtype), goal.low, goal.high)
+        at = _State.first(check_start(x0, shape, bounds, dtype), goal.low, goal.high)
     else:
-        at = _State.kept(state, iterations, shape, B.dtype, goal.low.shape)
+        at = _State.kept(state, iterations, shape, dtype, goal.low.shape)
     ax = A.forward(at.x)
     ay = A.forward(at.before) if np.any(at.ahead) else copied(ax)
     momentum.run_ahead(ay, ax, at.ahead)
@@ -130,6 +122,7 @@ def display_values(
     return Result(x, goal.powers(lamp), history, stop_reason=stop_reason, lower_bound=bound)
 
 
+#: The method as the table has it; how many arrays it holds is measured.
 @dataclass
 class _State:
     """What iterates: from this, and nothing else, the solver can go on."""
@@ -142,7 +135,7 @@ class _State:
     stride: Floats
     ahead: Floats
     objective: NDArray[np.float64]
-    #: ln P, ``(views, channels)``.
+    #: ln P, ``(lamps, channels)``.
     lamp: NDArray[np.float64]
     #: The objective of all columns after each iteration.
     history: list[float]

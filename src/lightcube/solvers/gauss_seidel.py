@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from lightcube.kernels.row_action import sweep
-from lightcube.optics.transfer import Transfer
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
-from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: A column has settled once a sweep changes it by at most this part of its largest number.
 _SETTLED = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -26,20 +25,15 @@ _BATCH = 0.6
 
 def gauss_seidel(
     A: Operator,
-    B: Floats,
+    wanted: Wanted,
     *,
-    weights: Floats | None = None,
-    view_of_row: NDArray[np.integer[Any]] | None = None,
-    lamp_bounds: tuple[Floats, Floats] | None = None,
     x0: Floats | None = None,
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
-    transfer: Transfer = "srgb",
     state: State | None = None,
-    mixture: Mixture | None = None,
 ) -> Result:
-    """Solve ``A x = b``, ``b = ln P - ln B``, by row actions within the bounds, throwing out what is inconsistent.
+    """Solve ``A x = b``, ``b = ln P - ln light``, by row actions within the bounds, throwing out what is inconsistent.
 
     The parameters are those of `lightcube.solvers.contract.Solver`; an iteration is a sweep over all equations,
     and the lamp powers must be fixed. The row action of beam ``a`` is ``x <- clip(x + a (b - a x) / |a|^2)``, as in
@@ -72,11 +66,11 @@ def gauss_seidel(
     ----------
     S. Kaczmarz, Bull. Acad. Polon. Sci. A35 (1937); Y. Censor, SIAM Review 23 (1981), for relaxation and least squares.
     """
-    problem = linear_problem("gauss-seidel", A, B, weights, view_of_row, lamp_bounds, x0, bounds, mixture)
+    problem = linear_problem("gauss-seidel", A, wanted, x0, bounds)
     iterations = check_iterations(iterations)
-    x, dtype = problem.x, B.dtype
+    x, dtype = problem.x, problem.x.dtype
     rows = _Rows.of(A, dtype)
-    judge = _Judge(problem, rows, half_level(B, transfer))
+    judge = _Judge(problem, rows, half_level(wanted.light, wanted.transfer))
     limits = dtype.type(problem.lower), dtype.type(problem.upper)
     start, settled = x, False
     residuals: list[float] = []
@@ -112,6 +106,7 @@ def gauss_seidel(
     return Result(x, problem.lamp_powers, np.array(residuals), np.argwhere(judge.rejected), undetermined, reason)
 
 
+#: The method as the table has it; how many arrays it holds is measured.
 @dataclass(frozen=True)
 class _Rows:
     """The matrix as the sweep takes it."""

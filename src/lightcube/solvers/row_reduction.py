@@ -1,7 +1,6 @@
 """The paper's row reduction for rectangular systems."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import scipy
@@ -9,10 +8,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, eye_array, hstack
 
 from lightcube.errors import InputError
-from lightcube.optics.transfer import Transfer
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
-from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: The largest matrix, in equations times unknowns.
 LARGEST = 250_000
@@ -29,20 +27,15 @@ Mask = NDArray[np.bool_]
 
 def row_reduction(
     A: Operator,
-    B: Floats,
+    wanted: Wanted,
     *,
-    weights: Floats | None = None,
-    view_of_row: NDArray[np.integer[Any]] | None = None,
-    lamp_bounds: tuple[Floats, Floats] | None = None,
     x0: Floats | None = None,
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
-    transfer: Transfer = "srgb",
     state: State | None = None,
-    mixture: Mixture | None = None,
 ) -> Result:
-    """Solve ``A x = b``, ``b = ln P - ln B``, by Gauss-Jordan elimination in float64, for small cubes.
+    """Solve ``A x = b``, ``b = ln P - ln light``, by Gauss-Jordan elimination in float64, for small cubes.
 
     The parameters are those of `lightcube.solvers.contract.Solver`; the lamp powers must be fixed. The method is
     direct: `iterations` do not count, and `x0` is only what columns show before they are finished. The callback is
@@ -81,12 +74,12 @@ def row_reduction(
             f"method row-reduction takes at most {LARGEST} numbers (equations times unknowns), not "
             f"{A.shape[0]} x {A.shape[1]}: use a smaller cube, or method gauss-seidel, sirt, cgls or display"
         )
-    problem = linear_problem("row-reduction", A, B, weights, view_of_row, lamp_bounds, x0, bounds, mixture)
+    problem = linear_problem("row-reduction", A, wanted, x0, bounds)
     check_iterations(iterations)
-    columns = B.shape[1]
     x = problem.x
+    columns = x.shape[1]
     undetermined = np.ones(x.shape, np.bool_)
-    rejected = np.zeros(B.shape, np.bool_)
+    rejected = np.zeros(problem.b.shape, np.bool_)
     finished = np.zeros(columns, np.bool_)
     residuals: list[float] = []
     if state is not None:
@@ -102,7 +95,8 @@ def row_reduction(
         return {**arrays, "history": np.array(residuals)}
 
     reason = "converged"
-    matrix, tolerance = A.to_sparse().toarray(), half_level(B, transfer).astype(np.float64)
+    matrix = A.to_sparse().toarray()
+    tolerance = half_level(wanted.light, wanted.transfer).astype(np.float64)
     for some, values, free, out in _solve(matrix, problem, tolerance, finished.copy()):
         x[:, some] = np.clip(np.where(free, 0, values), problem.lower, problem.upper)
         undetermined[:, some], rejected[:, some], finished[some] = free, out, True
@@ -116,6 +110,7 @@ def row_reduction(
     return Result(x, problem.lamp_powers, np.array(residuals), np.argwhere(rejected), undetermined, reason)
 
 
+#: The method as the table has it; how many arrays it holds is measured.
 def _solve(
     matrix: Matrix, problem: LinearProblem, tolerance: Matrix, finished: Mask
 ) -> Iterator[tuple[NDArray[np.intp], Matrix, Mask, Mask]]:

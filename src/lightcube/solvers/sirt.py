@@ -1,14 +1,11 @@
 """Simultaneous iterative reconstruction: all beams correct all voxels at once."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.optics.transfer import Transfer
 from lightcube.solvers._checks import check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
-from lightcube.solvers.contract import Callback, Floats, Mixture, Operator, Progress, Result, State
+from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: A column has converged once a step is shorter than this part of its right-hand side (both in the method's norms).
 _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -16,20 +13,15 @@ _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
 
 def sirt(
     A: Operator,
-    B: Floats,
+    wanted: Wanted,
     *,
-    weights: Floats | None = None,
-    view_of_row: NDArray[np.integer[Any]] | None = None,
-    lamp_bounds: tuple[Floats, Floats] | None = None,
     x0: Floats | None = None,
     bounds: tuple[float, float] = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
-    transfer: Transfer = "srgb",
     state: State | None = None,
-    mixture: Mixture | None = None,
 ) -> Result:
-    """Minimise ``sum_i w_i / r_i * (b - A x)_i^2`` within the bounds, ``b = ln P - ln B`` and ``r`` the row sums of A.
+    """Minimise ``sum_i w_i / r_i * (b - A x)_i^2`` within bounds, ``b = ln P - ln light`` and ``r`` the row sums of A.
 
     The parameters are those of `lightcube.solvers.contract.Solver`; `A` must hold no negative number and the
     lamp powers must be fixed. The update is ``x <- clip(y + C A^T R W (b - A y))`` with ``R = 1 / r`` and ``C``
@@ -49,16 +41,17 @@ def sirt(
     P. Gilbert, J. Theor. Biol. 36 (1972); A. van der Sluis, H. A. van der Vorst, Linear Algebra Appl. 130 (1990);
     B. O'Donoghue, E. Candes, Found. Comput. Math. 15 (2015), for the restart.
     """
-    problem = linear_problem("sirt", A, B, weights, view_of_row, lamp_bounds, x0, bounds, mixture)
+    problem = linear_problem("sirt", A, wanted, x0, bounds)
     iterations = check_iterations(iterations)
-    b, x, columns = problem.b, problem.x, (B.shape[1],)
-    row_weights = problem.weights * _inverse(A.forward(np.ones((A.shape[1], 1), B.dtype)))
+    b, x, dtype = problem.b, problem.x, problem.x.dtype
+    columns = x.shape[1:]
+    row_weights = problem.weights * _inverse(A.forward(np.ones((A.shape[1], 1), dtype)))
     column_sums = _column_sums(A, problem.weights)
     C = _inverse(column_sums)
     if state is None:
         before, ahead, momentum = x, np.zeros(columns), np.ones(columns)
         ax = ax_before = A.forward(x)
-        small = _TOLERANCE[B.dtype] * np.maximum(_norms(row_weights, b), _norms(row_weights, ax))
+        small = _TOLERANCE[dtype] * np.maximum(_norms(row_weights, b), _norms(row_weights, ax))
         residuals: list[float] = []
         settled = False
     else:
@@ -75,8 +68,8 @@ def sirt(
 
     asked = False
     while not (asked or settled or len(residuals) == iterations):
-        y = x + ahead.astype(B.dtype) * (x - before)
-        ay = ax + ahead.astype(B.dtype) * (ax - ax_before)
+        y = x + ahead.astype(dtype) * (x - before)
+        ay = ax + ahead.astype(dtype) * (ax - ax_before)
         before, ax_before = x, ax
         x = np.clip(y + C * A.adjoint(row_weights * (b - ay)), problem.lower, problem.upper)
         ax = A.forward(x)
@@ -92,6 +85,7 @@ def sirt(
     return Result(x, problem.lamp_powers, np.array(residuals), stop_reason=reason)
 
 
+#: The method as the table has it; how many arrays it holds is measured.
 def _column_sums(A: Operator, weights: Floats) -> Floats:
     """Column sums of ``W A``, ``(unknowns, columns)``, or ``(unknowns, 1)`` where all columns have the same weights."""
     same = np.array_equal(weights, np.broadcast_to(weights[:, :1], weights.shape))

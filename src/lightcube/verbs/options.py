@@ -90,13 +90,13 @@ class Options:
             raise InputError("a lamp of one given power has no largest one: leave --lamp-power or --lamp-max out")
         if self.lamp_power is not None and self.powers not in (None, "per-picture"):
             raise InputError(f"a lamp of one given power has none that are {self.powers}: leave out one of the two")
-        if not self.recipe.chooses_powers and self.lamp_max is not None:
+        if not self.recipe.solver.chooses_lamps and self.lamp_max is not None:
             raise InputError(
                 f"method {self.method} cannot choose lamp powers: give --lamp-power, or use method display"
             )
         power_bounds(self.lamp_power, self.lamp_max)
         said = {"power": self.lamp_power, "power_max": self.lamp_max, "black": self.black}
-        if not self.recipe.chooses_powers:
+        if not self.recipe.solver.chooses_lamps:
             said["power"] = self.lamp_power or 1.0
         return {name: value for name, value in said.items() if value is not None}
 

@@ -15,6 +15,7 @@ from lightcube import io
 from lightcube.backward.job import Job
 from lightcube.backward.needs import MEMORY, fewest_units
 from lightcube.backward.recipe import QUALITIES, Recipe, recipe_of
+from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.rig import POWER_MAX, turntable
 from lightcube.optics.transfer import BLACK
@@ -93,7 +94,7 @@ def _lamp(cube: Cube) -> Iterator[str]:
     least, most, black = (
         float(part[0]) for part in (cube.rig.lamps.least, cube.rig.lamps.most, cube.rig.screens.black)
     )
-    if least == most and (recipe_of(cube).chooses_powers or most != 1):
+    if least == most and (recipe_of(cube).solver.chooses_lamps or most != 1):
         yield from ("--lamp-power", _number(most))
     elif least != most and most != POWER_MAX:
         yield from ("--lamp-max", _number(most))
@@ -113,13 +114,13 @@ def _stage_options(cube: Cube) -> Iterator[str]:
 def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
     """Method, lamp, bounds and passes."""
     made, usual = recipe_of(cube), Recipe()
-    if made.method != usual.method:
-        yield from ("--method", made.method)
+    if made.solver != usual.solver:
+        yield from ("--method", made.solver.name)
     if made.powers != usual.powers:
         yield from ("--powers", made.powers)
     if made.material != usual.material:
         yield from ("--max-extinction", _number(made.material.most(cube.grid)))
-    yield from _passes(cube.provenance, made.method, command)
+    yield from _passes(cube.provenance, made.solver.name, command)
 
 
 def _passes(made: Mapping[str, Any], method: str, command: Command) -> Iterator[str]:
@@ -164,8 +165,11 @@ def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
 
 
 def _usual_units(cube: Cube, frames: Frames) -> int:
-    """In how many units the cube would be solved if nothing is said of them."""
-    job = Job(frames, cube.grid, recipe_of(cube))
+    """In how many units the cube would be solved if nothing is said of them; 1 where its method is not to be found."""
+    try:
+        job = Job(frames, cube.grid, recipe_of(cube))
+    except InputError:
+        return 1
     return fewest_units(job, MEMORY)
 
 

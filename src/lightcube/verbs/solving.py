@@ -14,6 +14,7 @@ from lightcube.optics.grid import Grid
 from lightcube.pictures.frames import Pictures
 from lightcube.planning.plan import Plan, plan
 from lightcube.planning.prediction import as_json
+from lightcube.solvers import find_method
 from lightcube.verbs.options import Options
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def _as_in_the_paper(options: Options) -> Options:
 
 def read(path: str, options: Options) -> Pictures:
     """Read the pictures, for options that are settled; `InputError` where they or the cube cannot be."""
-    check_memory(memory_needed(options.method, Grid(options.voxels), (1, 1), 1, units=3))
+    check_memory(memory_needed(find_method(options.method), Grid(options.voxels), (1, 1), 1, units=3))
     return io.read_pictures(path, transfer=options.transfer)
 
 
@@ -76,7 +77,7 @@ def prepare(pictures: Pictures, options: Options) -> Plan:
         elevation=options.elevation,
         **options.lamp,
         fit=options.fit,
-        longest_hold=options.hold is None and recipe.chooses_powers,
+        longest_hold=options.hold is None and recipe.solver.chooses_lamps,
         shift=options.shift,
         order=options.order,
     )
