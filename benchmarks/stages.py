@@ -164,8 +164,8 @@ def starts(n: int, passes: int) -> Iterator[Row]:
         screens = tuple(replace(screen, pitch_mm=screen.pitch_mm * coarser) for screen in stage.screens)
         stage = replace(stage, grid=lc.Grid((n, n, n), stage.grid.voxel_mm * coarser), screens=screens)
         problem = pose(frames_of(stage, samples.photographs(8)), stage.grid, Recipe())
-        assert problem.sums.mixture is not None  # noqa: S101
-        lamps = problem.sums.lamps
+        assert problem.lighting.mixture is not None  # noqa: S101
+        lamps = problem.lighting.lamps
         bounds = np.full((lamps, 3), 1e-4), np.full((lamps, 3), float(stage.lamps[0].power_max))
         for seed in range(4):
             random = np.random.default_rng(seed)

@@ -79,7 +79,7 @@ def test_no_start_gets_stuck(room: str) -> None:
     """The problem is not convex; yet from anywhere the objective ends as low."""
     _, frames = known(stage(room), ROOMS[room][2])
     problem = pose(frames, GRID, Recipe())
-    assert problem.sums.mixture is not None
+    assert problem.lighting.mixture is not None
     pairs = len(frames.rig.pairs)
     bounds = np.full((pairs, 3), 1e-4), np.full((pairs, 3), 16.0)
     ends, begun = [], 0.0

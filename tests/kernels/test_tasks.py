@@ -31,7 +31,7 @@ from lightcube.pictures.frames import Frames
 from lightcube.projection.projector import Projector
 from lightcube.projection.rays import Rays
 from lightcube.scene.tracer import scene_frames, scene_rig
-from lightcube.solvers.contract import Mixture, Sums, Wanted
+from lightcube.solvers.contract import Lighting, Mixture, Wanted
 from lightcube.solvers.display import display_values
 from tests.conftest import INTERPRETED
 from tests.helpers.recipes import asked
@@ -93,11 +93,11 @@ def of_mixture() -> list[Any]:
     random = np.random.default_rng(0)
     views, pixels = 60, 300
     lit = random.random((2, views, pixels), dtype=np.float32)
-    sums = Sums(np.arange(views) // 25, Mixture(np.array([0, 50, 60]), random.random((views, 3)), *lit))
+    sums = Lighting(np.arange(views) // 25, Mixture(np.array([0, 50, 60]), random.random((views, 3)), *lit))
     matrix = DenseOperator(random.random((views * pixels, 4)).astype(np.float32))
     wanted = random.uniform(0.1, 9, (2 * pixels, 3)).astype(np.float32)
     lamps = np.full((3, 3), 0.01), np.full((3, 3), 4.0)
-    result = display_values(matrix, Wanted(wanted, sums=sums, lamp_bounds=lamps), iterations=6)
+    result = display_values(matrix, Wanted(wanted, lighting=sums, lamp_bounds=lamps), iterations=6)
     return [result.x, result.lamp_powers, result.residuals]
 
 

@@ -21,7 +21,7 @@ from lightcube.optics.transfer import encode
 from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
 from lightcube.solvers import METHODS
-from lightcube.solvers.contract import Floats, Mixture, Progress, Result, Solver, Sums, Wanted
+from lightcube.solvers.contract import Floats, Lighting, Mixture, Progress, Result, Solver, Wanted
 from lightcube.solvers.method import Method
 from tests.helpers.solver_problems import DenseOperator, full_rank, light, plain_descent, random_system
 
@@ -86,7 +86,7 @@ def test_a_cubes_own_shadows_come_back(name: str, dtype: type[np.floating], elev
     powers = rng.uniform(0.5, 2.0, (9, 3))
     lamp = powers[projector.view_of_row][:, np.arange(columns) % 3]
     shown = (lamp * np.exp(-projector.forward(x))).astype(dtype)
-    result = ALL[name].solve(projector, Wanted(shown, None, Sums(np.arange(9)), (powers, powers)), iterations=150)
+    result = ALL[name].solve(projector, Wanted(shown, None, Lighting(np.arange(9)), (powers, powers)), iterations=150)
     found = lamp * np.exp(-projector.forward(result.x))
     psnr = -10 * np.log10(np.mean((encode(found) - encode(shown.astype(np.float64))) ** 2))
     assert psnr >= ENOUGH_DB.get(name, 60)
@@ -131,7 +131,7 @@ def test_lamp_powers_count_per_view_and_channel(name: str) -> None:
     A, x, B = full_rank(6)
     powers = np.random.default_rng(1).uniform(0.5, 4.0, (11, 3))
     shown = B * np.repeat(powers, 7, axis=0)[:, [0, 1, 2, 0, 1, 2]]
-    result = ALL[name].solve(A, Wanted(shown, None, Sums(np.arange(11)), (powers, powers)), iterations=1000)
+    result = ALL[name].solve(A, Wanted(shown, None, Lighting(np.arange(11)), (powers, powers)), iterations=1000)
     assert_near(name, result.x, x)
     np.testing.assert_array_equal(result.lamp_powers, powers)
 
@@ -139,7 +139,7 @@ def test_lamp_powers_count_per_view_and_channel(name: str) -> None:
 @every_method
 def test_without_lamp_bounds_every_view_has_power_1(name: str) -> None:
     A, x, B = full_rank(3)
-    result = ALL[name].solve(A, Wanted(B, sums=Sums(np.arange(11))), iterations=1000)
+    result = ALL[name].solve(A, Wanted(B, lighting=Lighting(np.arange(11))), iterations=1000)
     assert_near(name, result.x, x)
     np.testing.assert_array_equal(result.lamp_powers, np.ones((11, 1)))
 
@@ -159,7 +159,7 @@ def test_a_lamp_to_choose_is_chosen_within_its_bounds_or_refused(name: str) -> N
 @own_method
 def test_light_that_adds_up_is_taken_or_refused(name: str) -> None:
     mixture = Mixture(np.array([0, 2, 3]), np.ones((3, 2)), np.ones((3, 6)), np.full((3, 6), 0.5))
-    wanted = Wanted(np.full((2 * 3, 4), 0.5), None, Sums(np.arange(3), mixture), (np.ones((3, 2)), np.ones((3, 2))))
+    wanted = Wanted(np.full((2 * 3, 4), 0.5), None, Lighting(np.arange(3), mixture), (np.ones((3, 2)), np.ones((3, 2))))
     A = DenseOperator(np.ones((3 * 3, 2)))
     if METHODS[name].takes_sums:
         assert METHODS[name].solve(A, wanted, iterations=1).x.shape == (2, 4)
@@ -267,14 +267,14 @@ def noisy(dtype: str, free: bool) -> Problem:
     weights[3, 5] = 0
     shown = (lamp * np.exp(-A.forward(x)) * disturbed).astype(dtype)
     bounds = (powers / 2, powers * 2) if free else (powers, powers)
-    return A, Wanted(shown, weights.astype(dtype), Sums(np.arange(4)), bounds)
+    return A, Wanted(shown, weights.astype(dtype), Lighting(np.arange(4)), bounds)
 
 
 def white(dtype: str, free: bool) -> Problem:
     """Pictures of nothing but the lamps."""
     A, wanted = noisy(dtype, free)
     lamp = np.sqrt(np.prod(wanted.lamp_bounds, axis=0))[A.view_of_row][:, np.arange(6) % 3]
-    return A, Wanted(lamp.astype(dtype), wanted.weights, wanted.sums, wanted.lamp_bounds)
+    return A, Wanted(lamp.astype(dtype), wanted.weights, wanted.lighting, wanted.lamp_bounds)
 
 
 def added(dtype: str) -> Problem:
@@ -282,9 +282,9 @@ def added(dtype: str) -> Problem:
     A, wanted = noisy(dtype, free=True)
     half = len(wanted.light) // 2
     falling, shadow = np.random.default_rng(6).uniform(0.3, 1, (2, 4, half)).astype(dtype)
-    sums = Sums(np.array([0, 1, 0, 2]), Mixture(np.array([0, 2, 4]), np.ones((4, 3)), falling, shadow))
+    lighting = Lighting(np.array([0, 1, 0, 2]), Mixture(np.array([0, 2, 4]), np.ones((4, 3)), falling, shadow))
     low, high = (bound[:3] for bound in wanted.lamp_bounds)
-    return A, Wanted(wanted.light[:half] + wanted.light[half:], wanted.weights[:half], sums, (low, high))
+    return A, Wanted(wanted.light[:half] + wanted.light[half:], wanted.weights[:half], lighting, (low, high))
 
 
 def solved(name: str, problem: Problem, **given: Any) -> Result:

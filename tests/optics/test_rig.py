@@ -135,7 +135,7 @@ def test_solvers_see_the_plain_sum(powers_of_lamps: Any, hold: float) -> None:
     wanted = np.full((4, 5, 5, 3), 0.5, np.float32)
     recipe = Recipe(powers=powers_of_lamps, hold_deg=hold, dtype="float64")
     problem = pose(Frames(wanted, cube.rig), GRID, recipe)
-    assert problem.sums.mixture is not None
+    assert problem.lighting.mixture is not None
     powers = cube.powers if powers_of_lamps == "per-picture" else powers_of(cube.rig)[:3]
     each = powers if powers_of_lamps == "per-picture" else powers[cube.rig.pairs[:, 1]]
     absorbed = problem.matrix.forward(problem.unknowns(cube.extinction.astype(np.float64)))
@@ -340,7 +340,7 @@ def test_a_turntable_is_a_stage_with_one_lamp_and_a_screen_behind(elevation: flo
     problems = [pose(each, GRID, Recipe(hold_deg=2.0)) for each in frames]
     for name in ("light", "weights"):
         np.testing.assert_allclose(getattr(problems[0], name), getattr(problems[1], name), rtol=1e-6)
-    np.testing.assert_array_equal(problems[0].sums.lamp, problems[1].sums.lamp)
+    np.testing.assert_array_equal(problems[0].lighting.lamp, problems[1].lighting.lamp)
     x = problems[0].unknowns(extinction())
     across = [each.matrix.forward(each.unknowns(extinction())) for each in problems]
     assert x.shape == problems[1].unknowns(extinction()).shape
@@ -458,7 +458,7 @@ def test_held_pictures_are_asked_for_on_either_side_under_the_same_lamps() -> No
         mine = np.flatnonzero(np.isin(several.sums.picture, np.arange(index, len(several), angles)))
         np.testing.assert_allclose(several.views.take(mine).lamps, aside.lamps, atol=1e-12)
         np.testing.assert_allclose(several.views.take(mine).origins, aside.origins, atol=1e-12)
-        np.testing.assert_array_equal(problem.sums.lamp[mine], cube.rig.pair)
+        np.testing.assert_array_equal(problem.lighting.lamp[mine], cube.rig.pair)
         np.testing.assert_allclose(several.stops.angle[index::angles], cube.rig.stops.angle + off)
 
 

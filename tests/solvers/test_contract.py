@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lightcube.errors import InputError
-from lightcube.solvers.contract import Mixture, Sums, Wanted
+from lightcube.solvers.contract import Lighting, Mixture, Wanted
 
 ONE = np.ones((1, 1))
 
@@ -21,12 +21,15 @@ ONE = np.ones((1, 1))
         ("must be float32 or float64 .*, not int64", {"light": np.ones((77, 2), np.int64)}),
         ("light must be positive and finite", {"light": np.zeros((77, 2))}),
         ("light must be positive and finite", {"light": np.full((77, 2), np.nan)}),
-        ("light of 77 rows does not fit 2 pictures", {"sums": Sums(np.arange(2))}),
+        ("light of 77 rows does not fit 2 pictures", {"lighting": Lighting(np.arange(2))}),
         (r"weights of shape \(76, 2\) do not fit light", {"weights": np.ones((76, 2))}),
         ("weights must be finite and at least 0", {"weights": np.full((77, 1), -1.0)}),
         ("weights must be finite and at least 0", {"weights": np.full((77, 1), np.nan)}),
         ("weights must be finite and at least 0", {"weights": np.full((77, 1), np.inf)}),
-        ("views name 3 lamps, but there are powers for 1", {"sums": Sums(np.full(7, 2)), "lamp_bounds": (ONE, ONE)}),
+        (
+            "views name 3 lamps, but there are powers for 1",
+            {"lighting": Lighting(np.full(7, 2)), "lamp_bounds": (ONE, ONE)},
+        ),
         ("lamp powers must be positive", {"lamp_bounds": (0 * ONE, 0 * ONE)}),
         ("lamp powers must be positive", {"lamp_bounds": (ONE, np.inf * ONE)}),
         ("lamp powers must be positive", {"lamp_bounds": (np.ones(3), np.ones(3))}),
@@ -62,7 +65,7 @@ def test_light_that_is_none_is_refused_wherever_it_stands(where: tuple[int, int]
 @pytest.mark.parametrize("lamp", [np.zeros(3), np.zeros((3, 1), int), np.zeros(0, int), np.array([0, -1])])
 def test_lamps_that_are_no_numbers_of_views_are_refused(lamp: Any) -> None:
     with pytest.raises(InputError, match=r"whole numbers, one per view|count from 0, not from -1"):
-        Sums(lamp)
+        Lighting(lamp)
 
 
 def some_mixture(**changes: Any) -> Mixture:
@@ -105,23 +108,23 @@ def test_views_that_cannot_add_up_are_refused(match: str, changes: dict[str, Any
 )
 def test_what_does_not_fit_the_sums_is_refused(match: str, changes: dict[str, Any]) -> None:
     lamps = np.ones((3, 2)), np.ones((3, 2))
-    given = {"light": np.ones((6, 4)), "sums": Sums(np.arange(3), some_mixture()), "lamp_bounds": lamps}
+    given = {"light": np.ones((6, 4)), "lighting": Lighting(np.arange(3), some_mixture()), "lamp_bounds": lamps}
     with pytest.raises(InputError, match=match):
         Wanted(**{**given, **changes})
     with pytest.raises(InputError, match="2 views have lamps, but 3 add up"):
-        Sums(np.arange(2), some_mixture())
+        Lighting(np.arange(2), some_mixture())
 
 
 def test_what_is_wanted_knows_its_equations_lamps_and_absorbance() -> None:
     powers = np.array([[1.0, 2.0], [3.0, 4.0]])
     light = np.random.default_rng(0).uniform(0.1, 1, (6, 4)).astype(np.float32)
-    wanted = Wanted(light, np.float32(0.5) * np.ones((6, 1)), Sums(np.array([1, 0, 1])), (powers, powers))
+    wanted = Wanted(light, np.float32(0.5) * np.ones((6, 1)), Lighting(np.array([1, 0, 1])), (powers, powers))
     assert (wanted.equations, wanted.channels, wanted.has_fixed_lamps) == (6, 2, True)
     assert wanted.weights.dtype == np.float32
     assert wanted.weights.shape == light.shape
-    assert wanted.sums.lamp_of_row(6).tolist() == [1, 1, 0, 0, 1, 1]
+    assert wanted.lighting.lamp_of_row(6).tolist() == [1, 1, 0, 0, 1, 1]
     lamp = powers[[1, 1, 0, 0, 1, 1]][:, [0, 1, 0, 1]]
     assert wanted.absorbance().dtype == np.float32
     np.testing.assert_allclose(wanted.absorbance(), np.log(lamp / light), rtol=1e-5)
-    sums = Sums(np.arange(3), some_mixture())
-    assert Wanted(light, sums=sums, lamp_bounds=(np.ones((3, 2)), np.full((3, 2), 2.0))).equations == 9
+    lighting = Lighting(np.arange(3), some_mixture())
+    assert Wanted(light, lighting=lighting, lamp_bounds=(np.ones((3, 2)), np.full((3, 2), 2.0))).equations == 9

@@ -13,11 +13,11 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer, encode
 from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
-from lightcube.solvers.contract import Progress, Sums, Wanted
+from lightcube.solvers.contract import Lighting, Progress, Wanted
 from lightcube.solvers.display import display_values
 
 #: Lamps of three and of four views, each with its own.
-THREE, FOUR = (Sums(np.arange(views)) for views in (3, 4))
+THREE, FOUR = (Lighting(np.arange(views)) for views in (3, 4))
 
 
 def plain_objective(matrix: np.ndarray, x: np.ndarray, wanted: np.ndarray, power: float, weight: np.ndarray) -> float:
@@ -96,7 +96,10 @@ def small_problem() -> tuple[Projector, np.ndarray, np.ndarray, np.ndarray, np.n
 def test_matches_a_generic_bounded_optimiser(bounds: tuple[float, float]) -> None:
     matrix, wanted, weight, powers, dense = small_problem()
     result = display_values(
-        matrix, Wanted(wanted, weights=weight, sums=THREE, lamp_bounds=(powers, powers)), bounds=bounds, iterations=400
+        matrix,
+        Wanted(wanted, weights=weight, lighting=THREE, lamp_bounds=(powers, powers)),
+        bounds=bounds,
+        iterations=400,
     )
 
     def flat_objective(flat: np.ndarray) -> float:
@@ -183,7 +186,7 @@ def lamp_problem() -> tuple[Projector, np.ndarray, np.ndarray]:
 def test_lamp_powers_are_found_where_beams_beside_the_cube_show_them() -> None:
     matrix, light, powers = lamp_problem()
     bounds = (np.full((4, 2), 1e-3), np.full((4, 2), 16.0))
-    result = display_values(matrix, Wanted(light, sums=FOUR, lamp_bounds=bounds), iterations=2000)
+    result = display_values(matrix, Wanted(light, lighting=FOUR, lamp_bounds=bounds), iterations=2000)
     assert np.allclose(result.lamp_powers, powers, rtol=1e-2)
     assert result.residuals[-1] < 1e-6
 
@@ -201,7 +204,7 @@ def test_started_at_the_cube_it_stays_there_and_finds_the_lamps_at_once() -> Non
 def test_lamp_powers_keep_their_bounds_and_none_within_is_better() -> None:
     matrix, light, _ = lamp_problem()
     low, high = np.full((4, 2), 0.8), np.full((4, 2), 2.0)
-    result = display_values(matrix, Wanted(light, sums=FOUR, lamp_bounds=(low, high)), iterations=300)
+    result = display_values(matrix, Wanted(light, lighting=FOUR, lamp_bounds=(low, high)), iterations=300)
     assert np.all((result.lamp_powers >= low * (1 - 1e-9)) & (result.lamp_powers <= high * (1 + 1e-9)))
     dense = matrix.to_sparse().toarray()
 
@@ -238,7 +241,7 @@ def test_views_may_share_a_lamp() -> None:
     matrix, light, _ = lamp_problem()
     bounds = (np.full((2, 2), 0.1), np.full((2, 2), 8.0))
     result = display_values(
-        matrix, Wanted(light, sums=Sums(np.array([0, 0, 1, 1])), lamp_bounds=bounds), iterations=300
+        matrix, Wanted(light, lighting=Lighting(np.array([0, 0, 1, 1])), lamp_bounds=bounds), iterations=300
     )
     assert result.lamp_powers.shape == (2, 2)
 
@@ -269,7 +272,7 @@ def test_a_lamp_that_nothing_speaks_for_stays_where_it_starts() -> None:
     matrix, light, _ = lamp_problem()
     weights = np.where(matrix.view_of_row == 1, 0.0, 1.0)[:, None]
     bounds = (np.full((4, 2), 0.1), np.full((4, 2), 16.0))
-    result = display_values(matrix, Wanted(light, weights=weights, sums=FOUR, lamp_bounds=bounds), iterations=5)
+    result = display_values(matrix, Wanted(light, weights=weights, lighting=FOUR, lamp_bounds=bounds), iterations=5)
     assert np.allclose(result.lamp_powers[1], 1)
 
 

@@ -8,7 +8,7 @@ from numba import config
 from scipy.sparse import csr_array
 
 from lightcube.kernels import convex, descent, display, momentum
-from lightcube.solvers.contract import Floats, Sums, Wanted
+from lightcube.solvers.contract import Floats, Lighting, Wanted
 from lightcube.solvers.display import display_values
 from tests.helpers.solver_problems import full_rank
 
@@ -84,7 +84,7 @@ class Repeats:
 def solve_through(A: Repeats) -> None:
     B = np.random.default_rng(6).uniform(0.1, 0.9, (A.shape[0], 40)).astype(np.float32)
     lamps = (np.full((3, 2), 0.5), np.full((3, 2), 2.0))
-    wanted = Wanted(B, np.ones((1, 1), np.float32), Sums(np.arange(3)), lamps)
+    wanted = Wanted(B, np.ones((1, 1), np.float32), Lighting(np.arange(3)), lamps)
     display_values(A, wanted, iterations=4)
 
 

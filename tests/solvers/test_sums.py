@@ -10,7 +10,7 @@ from lightcube.kernels import objective as kernels
 from lightcube.optics.transfer import encode
 from lightcube.solvers._convex import ConvexObjective as PlainScreen
 from lightcube.solvers._objective import Objective, for_kernels, mixed_light
-from lightcube.solvers.contract import Mixture, Sums, Wanted
+from lightcube.solvers.contract import Lighting, Mixture, Wanted
 from lightcube.solvers.display import display_values
 from tests.conftest import INTERPRETED
 from tests.helpers.solver_problems import DenseOperator
@@ -20,7 +20,7 @@ ROWS, COLUMNS, CHANNELS = 3, 4, 2
 ENTRIES, PIXELS = ROWS * COLUMNS, ROWS * COLUMNS // CHANNELS
 
 
-def random_sums(counts: tuple[int, ...] = (2, 1, 4), plain: bool = False) -> tuple[Sums, Mixture]:
+def random_sums(counts: tuple[int, ...] = (2, 1, 4), plain: bool = False) -> tuple[Lighting, Mixture]:
     """Pictures of so many views each, under lamps that some of them share."""
     random = np.random.default_rng(1)
     views = sum(counts)
@@ -30,10 +30,10 @@ def random_sums(counts: tuple[int, ...] = (2, 1, 4), plain: bool = False) -> tup
     if plain:
         light, shadow, share = np.ones_like(light), np.ones_like(shadow), np.ones_like(share)
     mixture = Mixture(np.cumsum([0, *counts]), share, light, shadow)
-    return Sums(np.array(lamps), mixture), mixture
+    return Lighting(np.array(lamps), mixture), mixture
 
 
-def some_screen(given: tuple[Sums, Mixture], **more: Any) -> tuple[Objective, np.ndarray, np.ndarray]:
+def some_screen(given: tuple[Lighting, Mixture], **more: Any) -> tuple[Objective, np.ndarray, np.ndarray]:
     """What is wanted of sums, some absorbance to try, and ln P to try it under."""
     random = np.random.default_rng(2)
     sums, mixture = given
@@ -191,7 +191,7 @@ def test_the_lamps_found_are_the_best_within_their_bounds() -> None:
 def test_of_one_whole_shadow_each_it_is_the_screen_of_plain_pictures() -> None:
     mixed, absorbance, lamp = some_screen(random_sums((1, 1, 1, 1), plain=True))
     wanted, weights = np.exp(mixed.wanted).reshape(-1, COLUMNS), mixed.weights.reshape(-1, COLUMNS)
-    plain = PlainScreen.of(Wanted(wanted, weights, Sums(np.arange(4)), mixed.bounds))
+    plain = PlainScreen.of(Wanted(wanted, weights, Lighting(np.arange(4)), mixed.bounds))
     for one, other in zip(
         mixed.arrive(0.5 * absorbance, absorbance, lamp), plain.arrive(0.5 * absorbance, absorbance, lamp), strict=True
     ):
@@ -214,7 +214,7 @@ def test_pictures_of_many_views_and_pixels_leave_no_seam() -> None:
     mixture = Mixture(starts, np.ones((views, 3)), light, shadow)
     wanted = random.uniform(0.1, 1, (2 * pixels, 3)) * np.array([views, 1]).repeat(pixels)[:, None]
     bounds = np.full((2, 3), 0.5), np.full((2, 3), 2.0)
-    screen = Objective.of(Wanted(wanted, None, Sums(lamp, mixture), bounds, "linear"), mixture)
+    screen = Objective.of(Wanted(wanted, None, Lighting(lamp, mixture), bounds, "linear"), mixture)
     absorbance, powers = random.exponential(0.5, (views * pixels, 3)), np.array([[0.7] * 3, [1.5] * 3])
     through = 1 + shadow[..., None] * np.expm1(-absorbance.reshape(views, pixels, 3))
     parts = powers[lamp][:, None] * light[..., None] * through

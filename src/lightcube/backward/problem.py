@@ -21,7 +21,7 @@ from lightcube.optics.transfer import Transfer, decode
 from lightcube.optics.views import Views
 from lightcube.pictures.frames import Frames
 from lightcube.projection.projector import Projector
-from lightcube.solvers.contract import Mixture, Sums, Wanted
+from lightcube.solvers.contract import Lighting, Mixture, Wanted
 
 Floats = NDArray[np.floating[Any]]
 
@@ -39,7 +39,7 @@ class Problem:
     light, weights
         Linear light above 0, and at least 0: of every beam, ``(matrix.shape[0], columns)``, or where beams add up, of
         every pixel.
-    sums
+    lighting
         The lamp power that each view of the matrix has, and how views add up to pictures.
     part
         Colours and slices of the cube; their columns are all that is here.
@@ -54,7 +54,7 @@ class Problem:
     matrix: Projector
     light: Floats
     weights: Floats
-    sums: Sums
+    lighting: Lighting
     part: Part
     rows: slice
     stops: int
@@ -81,7 +81,7 @@ class Problem:
 
     def wanted(self, lamp_bounds: tuple[Floats, Floats]) -> Wanted:
         """What a solver is to reach with lamps whose powers are within these bounds, each ``(lamps, channels)``."""
-        return Wanted(self.light, self.weights, self.sums, lamp_bounds, self.transfer)
+        return Wanted(self.light, self.weights, self.lighting, lamp_bounds, self.transfer)
 
     def shown(self, absorbance: Floats, powers: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
         """What ``A x`` and the lamps' powers, ``(lamps, channels)``, show at the stops themselves, linear light.
@@ -95,12 +95,12 @@ class Problem:
         def at_stops(values: Floats) -> Floats:
             return values.reshape(self.stops, self.angles, shape[1], -1)[:, self.angles // 2]
 
-        of_views = powers[self.sums.lamp]
-        if self.sums.mixture is None:
+        of_views = powers[self.lighting.lamp]
+        if self.lighting.mixture is None:
             light = np.exp(-at_stops(absorbance))
             light *= np.tile(of_views[self.angles // 2 :: self.angles], shape[0])[:, None, :]
         else:
-            light = at_stops(mixed_light(self.sums.mixture, of_views, absorbance))
+            light = at_stops(mixed_light(self.lighting.mixture, of_views, absorbance))
         pictures = pictures_from_columns(light.reshape(self.stops * shape[1], -1), shape, self.channels)
         return pictures.astype(np.float32)
 
@@ -159,7 +159,7 @@ def pose(frames: Frames, grid: Grid, recipe: Recipe, part: Part | None = None) -
         matrix=matrix,
         light=block(np.maximum(frames.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
         weights=weights,
-        sums=Sums(lamp_numbers(frames.rig, rig, recipe.powers), mixture),
+        lighting=Lighting(lamp_numbers(frames.rig, rig, recipe.powers), mixture),
         part=part,
         rows=rows,
         stops=len(frames),

@@ -50,6 +50,10 @@ class Solution:
     stop_reason: str
     lower_bound: float | None = None
 
+    def __repr__(self) -> str:
+        reached = f", {self.residuals[-1]:.4g} left" if len(self.residuals) else ""
+        return f"<{self.cube!r} after {len(self.residuals)} passes ({self.stop_reason}){reached}>"
+
     @property
     def optimality(self) -> dict[str, float] | None:
         """The objective, what it cannot be below, and how many dB at most are left to gain on average, if known."""

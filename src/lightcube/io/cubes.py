@@ -68,14 +68,15 @@ def _suffix(at: Place) -> str:
 def _format(suffix: str) -> Format:
     """How cubes of a suffix are read and written; what does so loads with the first of them."""
     if suffix == ".npz":
-        from lightcube.io._npz import read_npz, write_npz
+        from lightcube.io import _npz
 
-        return read_npz, write_npz
+        return _npz.read_npz, _npz.write_npz
     from lightcube.io import _zarr
 
-    if suffix == ".zarr":
-        return _zarr.read_zarr, _zarr.write_zarr
-    return _zarr.read_zarr_zip, _zarr.write_zarr_zip
+    return {
+        ".zarr": (_zarr.read_zarr, _zarr.write_zarr),
+        ".zarr.zip": (_zarr.read_zarr_zip, _zarr.write_zarr_zip),
+    }[suffix]
 
 
 def _writer(suffix: str) -> Writer:

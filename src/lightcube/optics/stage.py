@@ -198,6 +198,11 @@ class Stage:
             raise InputError("the turntable's stops must be finite numbers of degrees, and at least one")
         _check_vector("the turntable", "axis", self.axis)
 
+    def __repr__(self) -> str:
+        counts = {"lamp": self.lamps, "screen": self.screens, "picture": self.shots, "stop": self.stops}
+        said = ", ".join(f"{len(each)} {name}{'s' * (len(each) != 1)}" for name, each in counts.items())
+        return f"<stage of {said}, {self.grid!r}>"
+
     def lamp(self, name: str) -> Lamp:
         """The lamp of this name."""
         return next(lamp for lamp in self.lamps if lamp.name == name)

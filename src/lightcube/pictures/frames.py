@@ -47,6 +47,11 @@ class Pictures:
     def __len__(self) -> int:
         return len(self.images)
 
+    def __repr__(self) -> str:
+        sizes = sorted({image.shape[:2] for image in self.images})
+        said = f"{sizes[0][0]} x {sizes[0][1]} pixels" if len(sizes) == 1 else f"{len(sizes)} sizes"
+        return f"<{len(self)} pictures of {said}>"
+
 
 @dataclass(frozen=True, eq=False)
 class Frames:
@@ -108,6 +113,9 @@ class Frames:
 
     def __len__(self) -> int:
         return len(self.pictures)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} pictures wanted on {self.rig!r}>"
 
     @property
     def weight(self) -> NDArray[np.float32]:

@@ -62,6 +62,9 @@ class Plan:
     shift: int = 0
     order: "Order | None" = None
 
+    def __repr__(self) -> str:
+        return f"<plan of {self.frames!r} for {self.grid!r}: {self.prediction!r}>"
+
     def to_solve(self, frames: Frames) -> "Plan":
         """The same plan for frames that stand, or follow each other, in another way: predicted anew."""
         return replace(self, frames=frames, prediction=predict(frames, self.grid, self.recipe))

@@ -70,6 +70,9 @@ class Prediction:
     psnr: Array
     rehearsed: int
 
+    def __repr__(self) -> str:
+        return f"<{self.psnr_mean:.1f} dB expected, {self.psnr_min:.1f} dB of the worst of {len(self.psnr)} pictures>"
+
     @property
     def psnr_mean(self) -> float:
         """Mean over the pictures, dB, at most 50."""

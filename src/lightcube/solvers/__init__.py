@@ -90,6 +90,9 @@ class _Methods(Mapping[str, Method]):
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
+    def __repr__(self) -> str:
+        return f"<methods {', '.join(self)}>"
+
 
 #: Every method by its name on the command line; to list them loads what other packages bring.
 METHODS: Mapping[str, Method] = _Methods()

@@ -32,7 +32,7 @@ class LinearProblem:
 def check_fits(A: Operator, wanted: Wanted) -> None:
     """Raise `InputError` unless `wanted` is of as many equations as `A` has."""
     if wanted.equations != A.shape[0]:
-        views, pictures = len(wanted.sums.lamp), wanted.sums.pictures
+        views, pictures = len(wanted.lighting.lamp), wanted.lighting.pictures
         raise InputError(
             f"light of shape {wanted.light.shape} in {pictures} pictures of {views} views is of {wanted.equations} "
             f"equations, but the matrix is of shape {A.shape}: give it a row for each equation"
@@ -110,7 +110,7 @@ def linear_problem(
 
     The parameters are those of `lightcube.solvers.contract.Solver`.
     """
-    if wanted.sums.mixture is not None:
+    if wanted.lighting.mixture is not None:
         raise InputError(f"method {method} takes logarithms, and light that adds up has none: use method display")
     check_fits(A, wanted)
     if not wanted.has_fixed_lamps:

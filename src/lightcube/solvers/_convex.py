@@ -37,7 +37,7 @@ class ConvexObjective:
     def of(cls, wanted: Wanted) -> "ConvexObjective":
         """Lay out what is wanted of pictures of one view each."""
         low, high = wanted.lamp_bounds
-        lamps = wanted.sums.lamp_of_row(len(wanted.light))
+        lamps = wanted.lighting.lamp_of_row(len(wanted.light))
         rows = np.argsort(lamps, kind="stable")
         return cls(
             np.ascontiguousarray(np.log(wanted.light)),

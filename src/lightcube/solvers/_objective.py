@@ -37,12 +37,12 @@ class Objective:
     def of(cls, wanted: Wanted, mixture: Mixture) -> "Objective":
         """Lay out what is wanted of pictures that views add up to."""
         low, high = wanted.lamp_bounds
-        pictures = wanted.sums.pictures
+        pictures = wanted.lighting.pictures
         logs = np.log(wanted.light).reshape(pictures, -1)
         heavy = np.ascontiguousarray(wanted.weights).reshape(pictures, -1) * _lit(mixture)
         curve = display.curve(wanted.transfer == "srgb", wanted.light.dtype.type)
         columns = wanted.light.shape[1]
-        return cls(mixture, wanted.sums.lamp, logs, heavy, np.log(low), np.log(high), (low, high), curve, columns)
+        return cls(mixture, wanted.lighting.lamp, logs, heavy, np.log(low), np.log(high), (low, high), curve, columns)
 
     def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return P of ln P, within the bounds to the last digit."""

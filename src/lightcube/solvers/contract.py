@@ -84,7 +84,7 @@ class Mixture:
 
 
 @dataclass(frozen=True, eq=False)
-class Sums:
+class Lighting:
     """Which lamp shines in each view, and how views add up to pictures.
 
     The equations of a view follow each other, and each view has as many.
@@ -141,7 +141,7 @@ class Wanted:
         add up as many rows as one view has for each picture. The colour channel of column ``j`` is ``j % channels``.
     weights
         At least 0, broadcastable to `light`, and then of its shape and dtype; 0 = don't care; None = all 1.
-    sums
+    lighting
         Lamps and sums of the views; None = a single view.
     lamp_bounds
         Lower and upper bound of the lamps' powers, each ``(lamps, channels)``; equal where a lamp is fixed.
@@ -157,7 +157,7 @@ class Wanted:
 
     light: Floats
     weights: Floats
-    sums: Sums
+    lighting: Lighting
     lamp_bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
     transfer: Transfer
 
@@ -165,17 +165,17 @@ class Wanted:
         self,
         light: Floats,
         weights: Floats | None = None,
-        sums: Sums | None = None,
+        lighting: Lighting | None = None,
         lamp_bounds: tuple[Floats, Floats] | None = None,
         transfer: Transfer = "srgb",
     ) -> None:
-        views = Sums(np.zeros(1, np.intp)) if sums is None else sums
+        views = Lighting(np.zeros(1, np.intp)) if lighting is None else lighting
         _check_light(light, views)
         if transfer not in get_args(Transfer):
             raise InputError(f"unknown transfer {transfer!r}: use one of {', '.join(get_args(Transfer))}")
         powers = _lamp_bounds(lamp_bounds, views)
         _check_mixture(views, light, powers[0].shape[1])
-        given = {"light": light, "weights": _weights(weights, light), "sums": views, "lamp_bounds": powers}
+        given = {"light": light, "weights": _weights(weights, light), "lighting": views, "lamp_bounds": powers}
         for name, value in (given | {"transfer": transfer}).items():
             object.__setattr__(self, name, value)
 
@@ -187,7 +187,7 @@ class Wanted:
     @property
     def equations(self) -> int:
         """How many rows the matrix has of all views."""
-        return len(self.light) // self.sums.pictures * len(self.sums.lamp)
+        return len(self.light) // self.lighting.pictures * len(self.lighting.lamp)
 
     @property
     def has_fixed_lamps(self) -> bool:
@@ -199,32 +199,32 @@ class Wanted:
 
         Negative where more light is wanted than the lamp has.
         """
-        powers = self.lamp_bounds[1][self.sums.lamp_of_row(len(self.light))]
+        powers = self.lamp_bounds[1][self.lighting.lamp_of_row(len(self.light))]
         lamp = powers[:, np.arange(self.light.shape[1]) % self.channels]
         return absorbance(self.light / lamp.astype(self.light.dtype))
 
 
-def _check_light(light: Floats, sums: Sums) -> None:
+def _check_light(light: Floats, lighting: Lighting) -> None:
     if light.ndim != 2 or light.size == 0 or light.dtype not in (np.float32, np.float64):
         raise InputError(
             f"the light wanted must be float32 or float64 of shape (equations, columns), not {light.dtype} of shape "
             f"{light.shape}"
         )
-    if len(light) % sums.pictures:
-        raise InputError(f"light of {len(light)} rows does not fit {sums.pictures} pictures: give each as many")
+    if len(light) % lighting.pictures:
+        raise InputError(f"light of {len(light)} rows does not fit {lighting.pictures} pictures: give each as many")
     if not (light.min() > 0 and light.max() < np.inf):  # also refuses NaN
         raise InputError("light must be positive and finite: raise black pixels to the screen's black first")
 
 
-def _check_mixture(sums: Sums, light: Floats, channels: int) -> None:
-    mixture = sums.mixture
+def _check_mixture(lighting: Lighting, light: Floats, channels: int) -> None:
+    mixture = lighting.mixture
     if mixture is None:
         return
     pixels = mixture.light.shape[1]
-    if mixture.share.shape[1:] != (channels,) or pixels * channels * sums.pictures != light.size:
+    if mixture.share.shape[1:] != (channels,) or pixels * channels * lighting.pictures != light.size:
         raise InputError(
             f"views of {pixels} pixels, and shares of shape {mixture.share.shape}, do not fit light of shape "
-            f"{light.shape} in {sums.pictures} pictures of {channels} channels"
+            f"{light.shape} in {lighting.pictures} pictures of {channels} channels"
         )
 
 
@@ -239,15 +239,17 @@ def _weights(weights: Floats | None, light: Floats) -> Floats:
     return whole
 
 
-def _lamp_bounds(bounds: tuple[Floats, Floats] | None, sums: Sums) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _lamp_bounds(
+    bounds: tuple[Floats, Floats] | None, lighting: Lighting
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if bounds is None:
-        return np.ones((sums.lamps, 1)), np.ones((sums.lamps, 1))
+        return np.ones((lighting.lamps, 1)), np.ones((lighting.lamps, 1))
     low, high = (np.asarray(bound, dtype=np.float64) for bound in bounds)
     for powers in (low, high):
         if powers.ndim != 2 or powers.shape != low.shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):
             raise InputError("lamp powers must be positive and finite, in an array of shape (lamps, channels)")
-    if len(low) < sums.lamps:
-        raise InputError(f"views name {sums.lamps} lamps, but there are powers for {len(low)}")
+    if len(low) < lighting.lamps:
+        raise InputError(f"views name {lighting.lamps} lamps, but there are powers for {len(low)}")
     if np.any(low > high):
         raise InputError("a lower bound of the lamp powers is above the upper one: swap them")
     return low, high

@@ -80,7 +80,7 @@ def display_values(
     G. Golub, V. Pereyra, Separable nonlinear least squares, Inverse Problems 19 (2003) R1-R26, for the lamp.
     """
     check_fits(A, wanted)
-    mixture = wanted.sums.mixture
+    mixture = wanted.lighting.mixture
     goal = ConvexObjective.of(wanted) if mixture is None else Objective.of(wanted, mixture)
     bounds = check_bounds(bounds)
     iterations = check_iterations(iterations)
