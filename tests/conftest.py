@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import os
+import signal
 
 import pytest
 
@@ -9,6 +10,11 @@ from tests.helpers.browser import bare_browser, browser, evaluate, launch
 __all__ = ["bare_browser", "browser", "evaluate", "launch"]
 
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
+
+
+# Whoever starts the suite in the background may have it ignore Ctrl-C, and programs inherit that; tests press it.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True)
