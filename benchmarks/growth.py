@@ -20,9 +20,11 @@ from lightcube.projection.projector import Projector
 SIZES = [64, 96, 128, 192, 256, 300]
 
 
-def seconds_of_a_pass(n: int, elevation: float, repeats: int = 3) -> float:
+def seconds_of_a_pass(n: int, elevation_deg: float, repeats: int = 3) -> float:
     grid = Grid((n, n, n))
-    matrix = Projector(grid, turntable(grid, spread_angles(n, elevation=elevation), elevation=elevation))
+    matrix = Projector(
+        grid, turntable(grid, spread_angles(n, elevation_deg=elevation_deg), elevation_deg=elevation_deg)
+    )
     x = np.random.default_rng(0).random((matrix.shape[1], 3 * n**3 // matrix.shape[1]), dtype=np.float32)
     times = []
     for _ in range(repeats):
@@ -37,7 +39,7 @@ def main() -> None:
     print("| n | level, s | exponent | 35°, s | exponent |\n|---|---|---|---|---|")
     last: tuple[int, list[float]] | None = None
     for n in sizes:
-        found = [seconds_of_a_pass(n, elevation) for elevation in (0.0, 35.0)]
+        found = [seconds_of_a_pass(n, elevation_deg) for elevation_deg in (0.0, 35.0)]
         cells = []
         for index, seconds in enumerate(found):
             grown = "" if last is None else f"{math.log(seconds / last[1][index]) / math.log(n / last[0]):.1f}"

@@ -62,23 +62,23 @@ class Method(NamedTuple):
 
 
 def inside(place: Array, ellipse: tuple[float, ...], radius: float) -> tuple[Array, Array]:
-    """Places ``(..., 2)`` in the frame in which an ellipse is the unit circle, and the matrix that leads there."""
+    """Places ``(..., 2)`` in the axes in which an ellipse is the unit circle, and the matrix that leads there."""
     x, y, a, b, degrees, _ = ellipse
     turn = math.radians(degrees)
-    frame = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
-    frame /= radius * np.array([[a], [b]])
-    return (place - radius * np.array([x, y])) @ frame.T, frame
+    axes = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    axes /= radius * np.array([[a], [b]])
+    return (place - radius * np.array([x, y])) @ axes.T, axes
 
 
 def absorbance_of(views: lc.Views, radius: float) -> Array:
     """``(views, columns)``: chords of each beam in the ellipses, times their extinction."""
     columns = views.picture_shape[1]
     steps = (np.arange(columns) - (columns - 1) / 2)[:, None]
-    points = views.origins[:, None, :2] + steps * views.column_steps[:, None, :2]
+    points = views.origins_mm[:, None, :2] + steps * views.column_steps_mm[:, None, :2]
     total = np.zeros(points.shape[:2])
     for ellipse in ELLIPSES:
-        start, frame = inside(points, ellipse, radius)
-        way = (views.lamps[:, :2] @ frame.T)[:, None, :]
+        start, axes = inside(points, ellipse, radius)
+        way = (views.lamps[:, :2] @ axes.T)[:, None, :]
         along, speed = np.sum(start * way, axis=2), np.sum(way**2, axis=2)
         squared = along**2 - speed * (np.sum(start**2, axis=2) - 1)
         total += ellipse[-1] * 2 * np.sqrt(np.maximum(squared, 0)) / speed
@@ -117,7 +117,7 @@ def by_astra(given: Slice, passes: int, method: str, **options: float) -> Array:
     import astra
 
     n = len(given.phantom)
-    screen = astra.create_proj_geom("parallel", 1.0, n, np.radians(90 - given.matrix.views.angles))
+    screen = astra.create_proj_geom("parallel", 1.0, n, np.radians(90 - given.matrix.views.angles_deg))
     volume = astra.create_vol_geom(n, n)
     try:
         settings = astra.astra_dict(method)
@@ -136,7 +136,7 @@ def by_scikit_image(given: Slice, passes: int) -> Array:
 
     sinogram, image = np.ascontiguousarray(given.absorbance.T), None
     for _ in range(passes):
-        image = iradon_sart(sinogram, given.matrix.views.angles + 90, image, clip=(0, np.inf))
+        image = iradon_sart(sinogram, given.matrix.views.angles_deg + 90, image, clip=(0, np.inf))
     return np.asarray(image)
 
 

@@ -30,9 +30,10 @@ from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import fit
-from lightcube.pictures.frames import Frames, Pictures
+from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.targets import Targets
 from lightcube.planning.prediction import BIAS, GROWTH, MOST_DB, law, rehearse
-from lightcube.scene.tracer import scene_frames
+from lightcube.scene.tracer import scene_targets
 from lightcube.scoring.metrics import psnr
 
 OUT = Path("out/prediction")
@@ -73,7 +74,7 @@ class Case(NamedTuple):
     seed: int
     shape: tuple[int, int, int]
     views: int
-    elevation: float
+    elevation_deg: float
     picture: tuple[int, int]
     #: ``photo``, ``saturated``, ``gray``, or the name of a scene.
     style: str
@@ -84,12 +85,12 @@ class Case(NamedTuple):
     disc: bool
     #: Photographs are put next to similar ones.
     tour: bool
-    hold: float
+    hold_deg: float
 
     @property
     def recipe(self) -> Recipe:
         """How it is solved."""
-        return from_plain({"powers": None if self.powers == "fixed" else self.powers, "hold_deg": self.hold})
+        return from_plain({"powers": None if self.powers == "fixed" else self.powers, "hold_deg": self.hold_deg})
 
     @property
     def lamp(self) -> dict[str, float]:
@@ -102,7 +103,7 @@ def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
     rng = np.random.default_rng([seed, 77])
     n = int(rng.choice(sizes)) if len(sizes) > 1 else sizes[0]
     level = bool(rng.random() < 0.35)
-    elevation = 0.0 if level else float(rng.choice([20, 25, 30, 35, 35, 40, 45]))
+    elevation_deg = 0.0 if level else float(rng.choice([20, 25, 30, 35, 35, 40, 45]))
     views = int(rng.choice([8, 8, 12, 16] if held else [4, 6, 8, 11, 16, 16, 24, 32, 48, 64]))
     aspect = math.exp(rng.uniform(math.log(0.5), math.log(1.6)))
     nz = round(n * float(rng.choice([1, 1, 1, 0.6, 1.3])))
@@ -118,12 +119,12 @@ def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
     width = load * math.sqrt(nx * ny) / views if level else math.sqrt(load * nx * ny * nz / n / views * aspect)
     width = min(max(width, 0.12 * ny), 1.25 * ny)
     high = nz if level and rng.random() < 0.6 else width / aspect
-    most = raster_shape(Grid((nz, ny, nx)), elevation)
-    picture = even_with(high, nz, most[0] if elevation else nz), even_with(width, ny, most[1])
-    hold = float(min(rng.choice([1.5, 3, 6]), (180 if level else 360) / views / 2)) if held else 0.0
+    most = raster_shape(Grid((nz, ny, nx)), elevation_deg)
+    picture = even_with(high, nz, most[0] if elevation_deg else nz), even_with(width, ny, most[1])
+    hold_deg = float(min(rng.choice([1.5, 3, 6]), (180 if level else 360) / views / 2)) if held else 0.0
     if not held and rng.random() < 0.22:
         style, tour = str(rng.choice(SCENES)), False
-    return Case(seed, (nz, ny, nx), views, elevation, picture, style, powers, lamp_max, disc, tour, hold)
+    return Case(seed, (nz, ny, nx), views, elevation_deg, picture, style, powers, lamp_max, disc, tour, hold_deg)
 
 
 def even_with(value: float, parity: int, most: int) -> int:
@@ -132,14 +133,16 @@ def even_with(value: float, parity: int, most: int) -> int:
     return min(max(2 * round((value - odd) / 2) + odd, 2 - odd), most)
 
 
-def frames_of(problem: Case) -> tuple[Frames, Grid]:
+def targets_of_scene(problem: Case) -> tuple[Targets, Grid]:
     """The pictures of a case, and its cube."""
     grid = Grid(problem.shape)
     rows, columns = problem.picture
-    angles = spread_angles(problem.views, elevation=problem.elevation)
-    rig = turntable(grid, angles, elevation=problem.elevation, picture_shape=problem.picture, **problem.lamp)
+    angles_deg = spread_angles(problem.views, elevation_deg=problem.elevation_deg)
+    rig = turntable(
+        grid, angles_deg, elevation_deg=problem.elevation_deg, picture_shape=problem.picture, **problem.lamp
+    )
     if problem.style in SCENES:
-        pictures = scene_frames(io.read_scene(problem.style), rig, grid).pictures
+        pictures = scene_targets(io.read_scene(problem.style), rig, grid).pictures
     else:
         crops = photographs(problem, np.random.default_rng([problem.seed, 78]))
         names = tuple(str(index) for index in range(len(crops)))
@@ -148,7 +151,7 @@ def frames_of(problem: Case) -> tuple[Frames, Grid]:
     if problem.disc:
         y, x = (np.linspace(-1 + 1 / count, 1 - 1 / count, count) for count in (rows, columns))
         weights[:, y[:, None] ** 2 + x**2 > 1] = 0
-    return Frames(pictures, rig, weights), grid
+    return Targets(pictures, rig, weights), grid
 
 
 def photographs(problem: Case, rng: Rng) -> list[NDArray[np.float32]]:
@@ -214,10 +217,10 @@ def kept(problems: list[Case]) -> list[list[float]]:
 
 def measured(problem: Case) -> list[float]:
     """PSNR of each picture of a case that is solved for real."""
-    frames, grid = frames_of(problem)
-    cube = solve(frames, grid, problem.recipe).cube
+    targets, grid = targets_of_scene(problem)
+    cube = solve(targets, grid, problem.recipe).cube
     shown = cast(cube)
-    pairs = zip(shown, frames.pictures, frames.weight, strict=True)
+    pairs = zip(shown, targets.pictures, targets.weight, strict=True)
     return [round(psnr(encode(picture), encode(wanted), weight), 3) for picture, wanted, weight in pairs]
 
 
@@ -232,8 +235,8 @@ class Rehearsed(NamedTuple):
 
 def rehearsed(problem: Case, wanted: list[float]) -> Rehearsed:
     """Rehearse a case that was measured."""
-    frames, grid = frames_of(problem)
-    reached, width = rehearse(frames, grid, problem.recipe)
+    targets, grid = targets_of_scene(problem)
+    reached, width = rehearse(targets, grid, problem.recipe)
     return Rehearsed(problem, np.array(wanted), reached, max(grid.shape[1:]) / width)
 
 
@@ -283,7 +286,7 @@ def main() -> None:
 
 
 def group_of(problem: Case) -> str:
-    if problem.hold:
+    if problem.hold_deg:
         return "held"
     return "96, 128" if max(problem.shape[1:]) > 64 else "48, 64"
 

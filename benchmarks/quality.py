@@ -10,7 +10,7 @@ default     sixteen photographs by the command line with all its defaults, n = 3
 literal     the paper's set-up: level, half a turn, pictures as wide as the cube, a lamp of power 1
 hold        what it costs that pictures stand over a range of angles
 elevation   how high the lamp should stand
-animations  traced scenes of 64 frames
+animations  traced scenes of 64 pictures
 capacity    PSNR against load: the plots
 
 Every solve has a fixed number of passes at full size, and ends before where it has converged; the coarser cubes that
@@ -52,13 +52,13 @@ class Problem:
     count: int
     columns: int
     rows: int
-    elevation: float
+    elevation_deg: float
     #: Largest lamp power; None is the paper's fixed lamp of power 1.
     lamp_max: float | None
     #: At most so many; 0 is the command line's own number.
     passes: int
     n: int = 64
-    hold: float | None = None
+    hold_deg: float | None = None
     order: str = "given"
     method: str = "display"
     #: Photographs, or the name of a scene.
@@ -123,17 +123,17 @@ TABLES: dict[str, list[Entry]] = {
         for own in (paper("photographs", 16), paper("photographs", 32), paper("photographs", 64), paper("gems", 64))
         for problem in (own, replace(own, method="display"))
     ],
-    "hold": [
-        Entry(Problem(8, 22, 64, 0, 4, 200, hold=1.5), 42),
-        Entry(Problem(8, 22, 64, 0, 64, 250, hold=3), 41),
-        Entry(Problem(8, 32, 32, 35, 16, 150, hold=1.5)),
-        Entry(Problem(8, 32, 32, 35, 16, 150, hold=3)),
-        Entry(Problem(8, 32, 32, 35, 16, 250, hold=6), 39),
-        Entry(Problem(8, 32, 32, 35, 16, 100, hold=12)),
-        Entry(Problem(8, 32, 32, 35, 16, 60, hold=22.5)),
-        *(Entry(Problem(16, 32, 32, 35, 16, 150, hold=degrees)) for degrees in (0.375, 0.75, 1.5, 3)),
+    "hold_deg": [
+        Entry(Problem(8, 22, 64, 0, 4, 200, hold_deg=1.5), 42),
+        Entry(Problem(8, 22, 64, 0, 64, 250, hold_deg=3), 41),
+        Entry(Problem(8, 32, 32, 35, 16, 150, hold_deg=1.5)),
+        Entry(Problem(8, 32, 32, 35, 16, 150, hold_deg=3)),
+        Entry(Problem(8, 32, 32, 35, 16, 250, hold_deg=6), 39),
+        Entry(Problem(8, 32, 32, 35, 16, 100, hold_deg=12)),
+        Entry(Problem(8, 32, 32, 35, 16, 60, hold_deg=22.5)),
+        *(Entry(Problem(16, 32, 32, 35, 16, 150, hold_deg=degrees)) for degrees in (0.375, 0.75, 1.5, 3)),
     ],
-    "elevation": [
+    "elevation_deg": [
         *(
             Entry(Problem(16, 32, rows, raised, power, 80))
             for rows in (32, 56)
@@ -181,46 +181,46 @@ TABLES["capacity"] = [
 ]
 
 
-def frames_of(problem: Problem) -> tuple[lc.Frames, lc.Grid]:
+def targets_of_scene(problem: Problem) -> tuple[lc.Targets, lc.Grid]:
     grid = lc.Grid((problem.n,) * 3, voxel_mm=100 / problem.n)
-    angles = lc.spread_angles(problem.count, elevation=problem.elevation)
+    angles_deg = lc.spread_angles(problem.count, elevation_deg=problem.elevation_deg)
     shape = (problem.rows, problem.columns)
     lamp = {"power": 1.0} if problem.lamp_max is None else {"power_max": float(problem.lamp_max)}
-    rig = lc.turntable(grid, angles, elevation=problem.elevation, picture_shape=shape, **lamp)
+    rig = lc.turntable(grid, angles_deg, elevation_deg=problem.elevation_deg, picture_shape=shape, **lamp)
     if problem.pictures == "photographs":
         return fit(samples.photographs(problem.count, problem.columns / problem.rows), rig), grid
-    return lc.scene_frames(lc.read_scene(problem.pictures), rig, grid), grid
+    return lc.scene_targets(lc.read_scene(problem.pictures), rig, grid), grid
 
 
 def measure(problem: Problem) -> Row:
     """Solve a problem and score it."""
-    frames, grid = frames_of(problem)
+    targets, grid = targets_of_scene(problem)
     row: Row = {}
     if problem.order == "best":
         began = time.perf_counter()
-        frames = best_order(frames, grid)(frames)
+        targets = best_order(targets, grid)(targets)
         row["order_seconds"] = time.perf_counter() - began
-    recipe = Recipe(method=problem.method, hold_deg=problem.hold or 0.0, passes=problem.passes)
+    recipe = Recipe(method=problem.method, hold_deg=problem.hold_deg or 0.0, passes=problem.passes)
     began = time.perf_counter()
-    solution = lc.solve(frames, grid, recipe)
+    solution = lc.solve(targets, grid, recipe)
     row["seconds"] = time.perf_counter() - began
-    scores = lc.score(solution.cube, frames)
+    scores = lc.score(solution.cube, targets)
     row |= {name: scores[name] for name in ("psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean")}
-    row |= {"done": len(solution.residuals), "rejected": len(solution.rejected) / frames.pictures.size or None}
+    row |= {"done": len(solution.residuals), "rejected": len(solution.rejected) / targets.pictures.size or None}
     row |= solution.optimality or {}
-    if problem.hold:
-        row |= over_the_hold(solution.cube, frames, problem.hold)
+    if problem.hold_deg:
+        row |= over_the_hold(solution.cube, targets, problem.hold_deg)
     return row
 
 
-def over_the_hold(cube: lc.Cube, frames: lc.Frames, degrees: float) -> Row:
+def over_the_hold(cube: lc.Cube, targets: lc.Targets, degrees: float) -> Row:
     """The least mean over the pictures, and the worst picture, at every tenth of a degree of the held range."""
-    wanted = encode(frames.pictures, frames.transfer)
+    wanted = encode(targets.pictures, targets.transfer)
     each = np.array(
         [
             [
-                psnr(encode(shown, frames.transfer), *pair)
-                for shown, *pair in zip(lc.play(cube, cube.angles + offset), wanted, frames.weight, strict=True)
+                psnr(encode(shown, targets.transfer), *pair)
+                for shown, *pair in zip(lc.play(cube, cube.angles_deg + offset), wanted, targets.weight, strict=True)
             ]
             for offset in np.append(np.arange(-degrees, degrees - 1e-9, 0.1), degrees)
         ]
@@ -246,11 +246,11 @@ def by_command_line(problem: Problem, folder: Path) -> Row:
         **{name: result[name] for name in ("psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "seconds")},
         "done": result["iterations"],
         **result["optimality"],
-        "elevation": float(cube.rig.views.elevations[0]),
+        "elevation_deg": float(cube.rig.views.elevations_deg[0]),
         "columns": columns,
         "rows": rows,
         "lamp_max": cube.provenance.get("lamp_max"),
-        "hold": cube.hold_deg or None,
+        "hold_deg": cube.hold_deg or None,
     }
 
 
@@ -283,11 +283,11 @@ class Runs:
 COLUMNS = {
     "pictures": "{count} {pictures} {columns} × {rows}",
     "n": "{n}",
-    "elevation": "{elevation:g}°",
+    "elevation_deg": "{elevation:g}°",
     "order": "{order}",
     "method": "{method}",
     "lamp": "{lamp}",
-    "hold": "± {hold:g}°",
+    "hold_deg": "± {hold:g}°",
     "the paper": "{paper:.1f}",
     "target": "{target:.1f}",
     "mean dB": "{psnr_mean:.1f}",
@@ -326,8 +326,8 @@ def print_table(title: str, rows: list[Row]) -> None:
 def say_best_elevation(rows: list[Row]) -> None:
     for n in sorted({row["n"] for row in rows}):
         means = {
-            raised: np.mean([row["psnr_mean"] for row in rows if (row["n"], row["elevation"]) == (n, raised)])
-            for raised in sorted({row["elevation"] for row in rows if row["n"] == n})
+            raised: np.mean([row["psnr_mean"] for row in rows if (row["n"], row["elevation_deg"]) == (n, raised)])
+            for raised in sorted({row["elevation_deg"] for row in rows if row["n"] == n})
         }
         said = ", ".join(f"{raised:g}° {mean:.1f}" for raised, mean in means.items())
         print(f"\nn = {n}, mean of all rows: {said} dB; best: {max(means, key=lambda raised: means[raised]):g}°")
@@ -343,7 +343,7 @@ def capacity_plot(run: "Runs", curves: list[Curve], raised: float) -> Any:
     """Sixteen photographs in a 64-cube as curves, all else as points."""
     main = [curve for curve in curves if (curve.count, curve.n) == (16, 64)]
     others = {curve.label: points(run, curve, raised) for curve in curves if curve not in main}
-    return plots.capacity_plot({c.lamp_max: points(run, c, raised) for c in main}, others, elevation=raised)
+    return plots.capacity_plot({c.lamp_max: points(run, c, raised) for c in main}, others, elevation_deg=raised)
 
 
 def main() -> None:
@@ -353,8 +353,8 @@ def main() -> None:
     parser.add_argument("--figures", type=Path, default=PICTURES, help="folder for the plots")
     parser.add_argument("--passes", type=int, help="no solve has more")
     given = parser.parse_args()
-    for elevation in (0.0, 35.0):  # what numba compiled is loaded before anything is timed
-        measure(Problem(2, 4, 4, elevation, 16, 1, n=8))
+    for elevation_deg in (0.0, 35.0):  # what numba compiled is loaded before anything is timed
+        measure(Problem(2, 4, 4, elevation_deg, 16, 1, n=8))
     run = Runs(given.out, given.passes)
     for name in given.tables:
         rows = []
@@ -364,7 +364,7 @@ def main() -> None:
                 row["paper"] = run(paper(problem.pictures, problem.count))["psnr_mean"]
             rows.append(row)
         print_table(name, rows)
-        if name == "elevation":
+        if name == "elevation_deg":
             say_best_elevation(rows)
         if name == "capacity":
             for file, raised, curves in PLOTS:

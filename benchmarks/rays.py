@@ -33,7 +33,7 @@ def views(n: int, count: int, pixels: int, *, point: bool) -> Views:
     random = np.random.default_rng(0)
     away, behind = 2.3 * n, 1.2 * n
     pitch = 1 + behind / away if point else 1.0
-    lamps, origins, right, down = [], [], [], []
+    lamps, origins_mm, right, down = [], [], [], []
     for _ in range(count):
         light = random.normal(size=3)
         light /= np.linalg.norm(light)
@@ -41,10 +41,10 @@ def views(n: int, count: int, pixels: int, *, point: bool) -> Views:
         side = np.cross(light, (0, 0, 1.0))
         side /= np.linalg.norm(side)
         lamps.append([*(-away * light), 1] if point else [*light, 0])
-        origins.append(behind * light)
+        origins_mm.append(behind * light)
         right.append(pitch * side)
         down.append(pitch * np.cross(light, side))
-    return Views(np.array(lamps), np.array(origins), np.array(right), np.array(down), (pixels, pixels))
+    return Views(np.array(lamps), np.array(origins_mm), np.array(right), np.array(down), (pixels, pixels))
 
 
 def traversal(*data: Any) -> int:

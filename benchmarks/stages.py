@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 import lightcube as lc
 from lightcube.backward.problem import pose
 from lightcube.backward.recipe import Recipe
-from lightcube.io import read_stage, read_stage_frames
+from lightcube.io import read_stage, read_stage_targets
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures import samples
 from lightcube.pictures.fitting import fit
@@ -39,9 +39,9 @@ Row = dict[str, Any]
 EXAMPLES = Path(__file__).parents[1] / "examples" / "stages"
 
 
-def way(elevation: float, azimuth: float = 0.0) -> NDArray[np.float64]:
+def way(elevation_deg: float, azimuth: float = 0.0) -> NDArray[np.float64]:
     """Direction of light from a lamp so many degrees up."""
-    up, round_ = math.radians(elevation), math.radians(azimuth)
+    up, round_ = math.radians(elevation_deg), math.radians(azimuth)
     return np.array([math.cos(up) * math.cos(round_), math.cos(up) * math.sin(round_), -math.sin(up)])
 
 
@@ -51,11 +51,11 @@ def square(name: str, light: NDArray[np.float64], n: int, pixels: int) -> Screen
     return Screen(name, (x, y, z), (pixels, pixels), 1.0, normal=(-x, -y, -z))
 
 
-def tilts(n: int, count: int, elevations: list[float], power: float, *, vertical: bool = False) -> Stage:
+def tilts(n: int, count: int, elevations_deg: list[float], power: float, *, vertical: bool = False) -> Stage:
     """A turntable whose stops are lit by lamps of several elevations in turn, each with a screen of its own."""
     lamps, screens = [], []
-    for number, elevation in enumerate(elevations):
-        light = way(elevation)
+    for number, elevation_deg in enumerate(elevations_deg):
+        light = way(elevation_deg)
         lamps.append(Lamp(f"lamp {number}", direction=tuple(light.tolist()), power_max=power))
         screen = square(f"screen {number}", light, n, n // 2)
         screens.append(replace(screen, normal=(-1.0, 0.0, 0.0)) if vertical else screen)
@@ -74,31 +74,31 @@ def all_over(n: int, count: int, power: float) -> Stage:
     return Stage(lc.Grid((n, n, n)), lamps, screens, shots, cube_turns=False)
 
 
-def around(n: int, count: int, columns: int, distance: float, span: float, power: float) -> Stage:
-    """Level light from a point so many cube widths off (infinity = parallel), the stops spread over `span` degrees."""
+def around(n: int, count: int, columns: int, distance: float, span_deg: float, power: float) -> Stage:
+    """Level light from a point so many cube widths off (infinity = parallel), the stops spread over `span_deg`."""
     rows, behind = n // 2, 1.5 * n
     enlarged = 1.0 if math.isinf(distance) else 1 + behind / (distance * n)
     lamp = Lamp("lamp", direction=(1.0, 0.0, 0.0), power_max=power)
     if not math.isinf(distance):
-        lamp = Lamp("lamp", position=(-distance * n, 0.0, 0.0), power_max=power)
+        lamp = Lamp("lamp", position_mm=(-distance * n, 0.0, 0.0), power_max=power)
     screen = Screen("wall", (behind, 0.0, 0.0), (columns * enlarged, rows * enlarged), enlarged)
-    stops = lc.spread_angles(count, span)
+    stops = lc.spread_angles(count, span_deg)
     shots = tuple(Shot(str(p), "wall", ("lamp",), p) for p in range(count))
     return Stage(lc.Grid((n, n, n)), (lamp,), (screen,), shots, tuple(stops.tolist()))
 
 
-def frames_of(stage: Stage, pictures: lc.Pictures, lamp_samples: int = 1) -> lc.Frames:
+def targets_of_scene(stage: Stage, pictures: lc.Pictures, lamp_samples: int = 1) -> lc.Targets:
     """Photographs on a stage, one for each shot."""
     rig = stage.rig().sampled(lamp=lamp_samples)
     return fit(pictures, rig)
 
 
-def measured(name: str, grid: lc.Grid, frames: lc.Frames, passes: int, **more: Any) -> tuple[Row, lc.Cube]:
+def measured(name: str, grid: lc.Grid, targets: lc.Targets, passes: int, **more: Any) -> tuple[Row, lc.Cube]:
     """Solve, and say how good it is and how long it took."""
     began = time.perf_counter()
-    solution = lc.solve(frames, grid, Recipe(passes=passes))
+    solution = lc.solve(targets, grid, Recipe(passes=passes))
     seconds = time.perf_counter() - began
-    scores = lc.score(solution.cube, frames)
+    scores = lc.score(solution.cube, targets)
     figures = {"psnr_mean": scores["psnr_mean"], "psnr_min": scores["psnr_min"], "passes": len(solution.residuals)}
     return {"name": name, **figures, "seconds": seconds, **more}, solution.cube
 
@@ -106,8 +106,8 @@ def measured(name: str, grid: lc.Grid, frames: lc.Frames, passes: int, **more: A
 def presets(n: int, passes: int) -> Iterator[Row]:
     """The examples, whose cubes have the size that they say; a soft lamp is minded."""
     for path in sorted(EXAMPLES.glob("*.toml")):
-        stage, frames = read_stage_frames(path, lamp_samples=16 if path.stem == "soft-lamp" else 1)
-        yield measured(path.stem, stage.grid, frames, passes)[0]
+        stage, targets = read_stage_targets(path, lamp_samples=16 if path.stem == "soft-lamp" else 1)
+        yield measured(path.stem, stage.grid, targets, passes)[0]
 
 
 def hemisphere(n: int, passes: int) -> Iterator[Row]:
@@ -121,14 +121,14 @@ def hemisphere(n: int, passes: int) -> Iterator[Row]:
         "32 lamps all over": all_over(n, 32, 64),
     }
     for name, stage in stages.items():
-        yield measured(name, stage.grid, frames_of(stage, samples.photographs(32)), passes)[0]
+        yield measured(name, stage.grid, targets_of_scene(stage, samples.photographs(32)), passes)[0]
 
 
 def points(n: int, passes: int) -> Iterator[Row]:
     """Capacity under level light: load = pictures times their width, in cube widths."""
     for count, part in ((16, 0.25), (16, 0.34), (16, 0.5), (32, 0.25), (32, 0.34)):
         columns = 2 * round(part * n / 2)
-        for distance, span in (
+        for distance, span_deg in (
             (math.inf, 180.0),
             (math.inf, 360.0),
             (4.0, 360.0),
@@ -136,10 +136,10 @@ def points(n: int, passes: int) -> Iterator[Row]:
             (1.0, 360.0),
             (1.5, 180.0),
         ):
-            stage = around(n, count, columns, distance, span, 16)
-            frames = frames_of(stage, samples.photographs(count, aspect=2 * columns / n))
+            stage = around(n, count, columns, distance, span_deg, 16)
+            targets = targets_of_scene(stage, samples.photographs(count, aspect=2 * columns / n))
             said = "parallel" if math.isinf(distance) else f"{distance:g} widths"
-            yield measured(f"{count} x {part}, {said}, {span:g}", stage.grid, frames, passes, load=count * part)[0]
+            yield measured(f"{count} x {part}, {said}, {span_deg:g}", stage.grid, targets, passes, load=count * part)[0]
 
 
 def soft(n: int, passes: int) -> Iterator[Row]:
@@ -148,10 +148,10 @@ def soft(n: int, passes: int) -> Iterator[Row]:
         stage = tilts(n, 8, [35], 16, vertical=True)
         stage = replace(stage, lamps=tuple(replace(lamp, size_deg=size) for lamp in stage.lamps))
         pictures = samples.photographs(8)
-        true = frames_of(stage, pictures, 32)
+        true = targets_of_scene(stage, pictures, 32)
         for name, points in (("not minded", 1), ("minded", 8)):
-            frames = frames_of(stage, pictures, points)
-            row, cube = measured(f"{size:g} degrees, {name}", stage.grid, frames, passes)
+            targets = targets_of_scene(stage, pictures, points)
+            row, cube = measured(f"{size:g} degrees, {name}", stage.grid, targets, passes)
             shown = score_pictures(lc.cast(cube, true.rig), true)
             yield row | {"psnr_mean": shown["psnr_mean"], "psnr_min": shown["psnr_min"]}
 
@@ -163,7 +163,7 @@ def starts(n: int, passes: int) -> Iterator[Row]:
         coarser = max(stage.grid.shape) / n
         screens = tuple(replace(screen, pitch_mm=screen.pitch_mm * coarser) for screen in stage.screens)
         stage = replace(stage, grid=lc.Grid((n, n, n), stage.grid.voxel_mm * coarser), screens=screens)
-        problem = pose(frames_of(stage, samples.photographs(8)), stage.grid, Recipe())
+        problem = pose(targets_of_scene(stage, samples.photographs(8)), stage.grid, Recipe())
         assert problem.lighting.mixture is not None  # noqa: S101
         lamps = problem.lighting.lamps
         bounds = np.full((lamps, 3), 1e-4), np.full((lamps, 3), float(stage.lamps[0].power_max))

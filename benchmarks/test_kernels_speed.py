@@ -23,10 +23,10 @@ from lightcube.projection.projector import Projector
 N, VIEWS, ANY_VIEWS = 96, 96, 24
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 @pytest.mark.parametrize("direction", ["forward", "adjoint"])
-def test_product(benchmark: Callable[..., Any], direction: str, elevation: float) -> None:
-    matrix = projector(N, VIEWS, elevation)
+def test_product(benchmark: Callable[..., Any], direction: str, elevation_deg: float) -> None:
+    matrix = projector(N, VIEWS, elevation_deg)
     rows = matrix.shape[1] if direction == "forward" else matrix.shape[0]
     given = np.random.default_rng(0).random((rows, columns_of(matrix)), dtype=np.float32)
     result = benchmark(getattr(matrix, direction), given)
@@ -38,19 +38,21 @@ def test_product(benchmark: Callable[..., Any], direction: str, elevation: float
 def test_product_of_any_rays(benchmark: Callable[..., Any], direction: str, point: bool) -> None:
     """Screens behind the cube that lean, in parallel light or before lamps three cubes away."""
     grid = Grid((N, N, N))
-    table = turntable_views(grid, spread_angles(ANY_VIEWS, elevation=35.0), elevation=35.0, picture_shape=(N, N))
+    table = turntable_views(
+        grid, spread_angles(ANY_VIEWS, elevation_deg=35.0), elevation_deg=35.0, picture_shape=(N, N)
+    )
     light = table.lamps[:, :3]
     lamps = np.column_stack([-3 * N * light, np.ones(len(table))]) if point else table.lamps
-    matrix = Projector(grid, Views(lamps, N * light, table.column_steps, table.row_steps - 0.3 * light, (N, N)))
+    matrix = Projector(grid, Views(lamps, N * light, table.column_steps_mm, table.row_steps_mm - 0.3 * light, (N, N)))
     rows = matrix.shape[1] if direction == "forward" else matrix.shape[0]
     given = np.random.default_rng(0).random((rows, columns_of(matrix)), dtype=np.float32)
     result = benchmark(getattr(matrix, direction), given)
     assert np.all(np.isfinite(result))
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_playback(benchmark: Callable[..., Any], elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_playback(benchmark: Callable[..., Any], elevation_deg: float) -> None:
     grid = Grid((N, N, N))
     extinction = np.full((3, *grid.shape), 1 / N, np.float32)
-    show = player(Cube(extinction, grid, turntable(grid, [10.0], elevation=elevation)))
+    show = player(Cube(extinction, grid, turntable(grid, [10.0], elevation_deg=elevation_deg)))
     assert np.all(benchmark(show, [77.7]) > 0)

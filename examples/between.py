@@ -1,4 +1,4 @@
-"""Measure and draw what is seen between the frames: the tables and pictures of docs/between.md.
+"""Measure and draw what is seen between the pictures: the tables and pictures of docs/between.md.
 
 python examples/between.py [FOLDER]
 """
@@ -26,78 +26,78 @@ def block(n: int) -> lc.Grid:
     return lc.Grid((n, n, n), voxel_mm=96 / n)
 
 
-def photographs(grid: lc.Grid) -> lc.Frames:
+def photographs(grid: lc.Grid) -> lc.Targets:
     pictures = samples.photographs()
-    return lc.fit(pictures, lc.turntable_for(pictures, grid, elevation=35.0, frame_width=0.5))
+    return lc.fit(pictures, lc.turntable_for(pictures, grid, elevation_deg=35.0, picture_width=0.5))
 
 
-def juggler(grid: lc.Grid, count: int) -> lc.Frames:
-    table = lc.turntable(grid, lc.spread_angles(count, elevation=35.0), elevation=35.0, picture_shape=(32, 32))
-    return lc.scene_frames(lc.read_scene("juggler"), table, grid)
+def juggler(grid: lc.Grid, count: int) -> lc.Targets:
+    table = lc.turntable(grid, lc.spread_angles(count, elevation_deg=35.0), elevation_deg=35.0, picture_shape=(32, 32))
+    return lc.scene_targets(lc.read_scene("juggler"), table, grid)
 
 
-def gems(grid: lc.Grid, count: int) -> lc.Frames:
+def gems(grid: lc.Grid, count: int) -> lc.Targets:
     table = lc.turntable(grid, lc.spread_angles(count), picture_shape=(64, 64))
-    return lc.scene_frames(lc.read_scene("gems"), table, grid)
+    return lc.scene_targets(lc.read_scene("gems"), table, grid)
 
 
-#: Name, voxels a side, frames, hold in degrees, and whether to draw it.
-CASES: list[tuple[str, int, Callable[[lc.Grid], lc.Frames], float, bool]] = [
+#: Name, voxels a side, pictures, hold in degrees, and whether to draw it.
+CASES: list[tuple[str, int, Callable[[lc.Grid], lc.Targets], float, bool]] = [
     ("16 photographs, n = 32", 32, photographs, 0.0, False),
     ("16 photographs", 64, photographs, 0.0, True),
     ("16 photographs, held 1.5°", 64, photographs, 1.5, False),
-    ("juggler, 8 frames, held 6°", 64, lambda grid: juggler(grid, 8), 6.0, True),
-    ("juggler, 8 frames", 64, lambda grid: juggler(grid, 8), 0.0, True),
-    ("juggler, 16 frames", 64, lambda grid: juggler(grid, 16), 0.0, False),
-    ("juggler, 32 frames", 64, lambda grid: juggler(grid, 32), 0.0, False),
-    ("juggler, 64 frames", 64, lambda grid: juggler(grid, 64), 0.0, True),
-    ("gems, 16 frames", 64, lambda grid: gems(grid, 16), 0.0, False),
-    ("gems, 64 frames", 64, lambda grid: gems(grid, 64), 0.0, True),
+    ("juggler, 8 pictures, held 6°", 64, lambda grid: juggler(grid, 8), 6.0, True),
+    ("juggler, 8 pictures", 64, lambda grid: juggler(grid, 8), 0.0, True),
+    ("juggler, 16 pictures", 64, lambda grid: juggler(grid, 16), 0.0, False),
+    ("juggler, 32 pictures", 64, lambda grid: juggler(grid, 32), 0.0, False),
+    ("juggler, 64 pictures", 64, lambda grid: juggler(grid, 64), 0.0, True),
+    ("gems, 16 pictures", 64, lambda grid: gems(grid, 16), 0.0, False),
+    ("gems, 64 pictures", 64, lambda grid: gems(grid, 64), 0.0, True),
 ]
 
 
 def over_the_turn(found: Curve) -> str:
     """Spacing; PSNR at the stops; lobe, also as a part of the turn; PSNR over the turn; PSNR and SSIM halfway."""
-    spacing = found.period / len(found.lobes)
-    turn = np.trapezoid(found.psnr, found.angles) / found.period
-    halfway = np.isclose(np.abs(found.offsets), spacing / 2)
+    spacing = found.period_deg / len(found.lobes_deg)
+    turn = np.trapezoid(found.psnr, found.angles_deg) / found.period_deg
+    halfway = np.isclose(np.abs(found.offsets_deg), spacing / 2)
     return (
-        f"{spacing:.1f}° | {np.mean(found.psnr[found.offsets == 0]):.1f} | {np.mean(found.lobes):.2f}° | "
-        f"{100 * found.lobes.sum() / found.period:.0f} % | {turn:.1f} | {np.mean(found.psnr[halfway]):.1f} | "
+        f"{spacing:.1f}° | {np.mean(found.psnr[found.offsets_deg == 0]):.1f} | {np.mean(found.lobes_deg):.2f}° | "
+        f"{100 * found.lobes_deg.sum() / found.period_deg:.0f} % | {turn:.1f} | {np.mean(found.psnr[halfway]):.1f} | "
         f"{np.mean(found.ssim[halfway]):.2f}"
     )
 
 
 def strip(cube: lc.Cube, spacing: float) -> np.ndarray:
     """What is seen from the first stop to the next, side by side, 8-bit, each picture 32 pixels wide."""
-    shown = lc.play(cube, cube.angles[0] + spacing * np.array(PARTS))
+    shown = lc.play(cube, cube.angles_deg[0] + spacing * np.array(PARTS))
     every = shown.shape[2] // 32
     padded = np.pad(shown[:, ::every, ::every], [(0, 0), (0, 2), (0, 2), (0, 0)], constant_values=1)
     return to_uint8(np.concatenate(list(padded), axis=1))
 
 
-def half_a_pixel(frames: lc.Frames) -> float:
+def half_a_pixel(targets: lc.Targets) -> float:
     """PSNR of the wanted pictures themselves, moved by half a pixel to the right: the mean of neighbours."""
-    columns = frames.pictures.shape[2]
+    columns = targets.pictures.shape[2]
     left = np.maximum(np.arange(columns) - 1, 0)
-    return mean_psnr((frames.pictures + frames.pictures[:, :, left]) * np.float32(0.5), frames)
+    return mean_psnr((targets.pictures + targets.pictures[:, :, left]) * np.float32(0.5), targets)
 
 
 def main(folder: Path) -> None:
     curves, strips, left, moved = {}, [], {}, []
     print("| pictures | spacing | at the stops | lobe | of the turn | over the turn | halfway | SSIM there |")
     print("|---|---|---|---|---|---|---|---|")
-    for name, n, make, hold, drawn in CASES:
+    for name, n, make, hold_deg, drawn in CASES:
         grid = block(n)
-        frames = make(grid)
-        cube = lc.solve(frames, grid, lc.Recipe(hold_deg=hold)).cube
-        found = curve(cube, frames)
+        targets = make(grid)
+        cube = lc.solve(targets, grid, lc.Recipe(hold_deg=hold_deg)).cube
+        found = curve(cube, targets)
         print(f"| {name} | {over_the_turn(found)} |", flush=True)
         if drawn:
-            curves[name], left[name] = found, robust(cube, frames)
-            moved.append(half_a_pixel(frames))
+            curves[name], left[name] = found, robust(cube, targets)
+            moved.append(half_a_pixel(targets))
             if make is not photographs:  # the strips are committed, and show nobody else's pictures
-                strips.append(strip(cube, found.period / len(frames)))
+                strips.append(strip(cube, found.period_deg / len(targets)))
     print("\n| set-up | " + " | ".join(left) + " |")
     print("|---" * (1 + len(left)) + "|")
     for kind, disturbance in DISTURBANCES.items():

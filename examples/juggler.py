@@ -15,22 +15,22 @@ STOPS, SCALE = (0, 6, 13, 19, 26), 3
 
 def main(out: str) -> None:
     grid = lc.Grid((64, 64, 64), voxel_mm=1.5)
-    angles = lc.spread_angles(32, elevation=35)
-    views = lc.turntable(grid, angles, elevation=35, picture_shape=(48, 48))
-    frames = lc.scene_frames(lc.read_scene("juggler"), views, grid)
-    cube = lc.solve(frames, grid).cube
+    angles_deg = lc.spread_angles(32, elevation_deg=35)
+    views = lc.turntable(grid, angles_deg, elevation_deg=35, picture_shape=(48, 48))
+    targets = lc.scene_targets(lc.read_scene("juggler"), views, grid)
+    cube = lc.solve(targets, grid).cube
     chosen = list(STOPS)
-    shadows = lc.play(cube, angles[chosen], whole_screen=True)
+    shadows = lc.play(cube, angles_deg[chosen], whole_shadow=True)
     lower = np.concatenate(list(shadows), axis=1)
     rows, columns = shadows.shape[1:3]
     wanted = np.ones((5, 48, columns, 3), np.float32)
     left = (columns - 48) // 2
-    wanted[:, :, left : left + 48] = frames.pictures[chosen]
+    wanted[:, :, left : left + 48] = targets.pictures[chosen]
     upper = np.concatenate(list(wanted), axis=1)
     gap = np.ones((4, upper.shape[1], 3), np.float32)
     sheet = to_uint8(np.concatenate([upper, gap, lower], axis=0)).repeat(SCALE, axis=0).repeat(SCALE, axis=1)
     lc.save(sheet, out, overwrite=True)
-    print(f"{out}: {lc.score(cube, frames)['psnr_mean']:.1f} dB, {rows} rows")
+    print(f"{out}: {lc.score(cube, targets)['psnr_mean']:.1f} dB, {rows} rows")
 
 
 if __name__ == "__main__":

@@ -12,34 +12,34 @@ import lightcube as lc
 from lightcube.pictures import samples
 
 
-def photographs(grid: lc.Grid, **table: Any) -> lc.Frames:
+def photographs(grid: lc.Grid, **table: Any) -> lc.Targets:
     pictures = samples.photographs()
     return lc.fit(pictures, lc.turntable_for(pictures, grid, **table))
 
 
 def main() -> None:
     grid = lc.Grid((64, 64, 64), voxel_mm=1.5)
-    raised = lc.turntable(grid, lc.spread_angles(32, elevation=35), elevation=35, picture_shape=(48, 48))
+    raised = lc.turntable(grid, lc.spread_angles(32, elevation_deg=35), elevation_deg=35, picture_shape=(48, 48))
     level = lc.turntable(grid, lc.spread_angles(64), picture_shape=(64, 64))
     pictures = {
-        "photographs 32 x 32, 35 degrees": photographs(grid, elevation=35, frame_width=0.5),
-        "photographs 64 x 64, 0 degrees": photographs(grid, elevation=0),
-        "juggler 48 x 48, 35 degrees": lc.scene_frames(lc.read_scene("juggler"), raised, grid),
-        "gems 64 x 64, 0 degrees": lc.scene_frames(lc.read_scene("gems"), level, grid),
+        "photographs 32 x 32, 35 degrees": photographs(grid, elevation_deg=35, picture_width=0.5),
+        "photographs 64 x 64, 0 degrees": photographs(grid, elevation_deg=0),
+        "juggler 48 x 48, 35 degrees": lc.scene_targets(lc.read_scene("juggler"), raised, grid),
+        "gems 64 x 64, 0 degrees": lc.scene_targets(lc.read_scene("gems"), level, grid),
     }
-    for name, frames in pictures.items():
+    for name, targets in pictures.items():
         for method, power in (("display", None), *((m, 1.0) for m in ("display", "sirt", "cgls", "gauss-seidel"))):
             sweeps = 100 if method == "gauss-seidel" else 200
             lamps = (
-                frames.rig.lamps
+                targets.rig.lamps
                 if power is None
-                else replace(frames.rig.lamps, least=np.array([power]), most=np.array([power]))
+                else replace(targets.rig.lamps, least=np.array([power]), most=np.array([power]))
             )
-            wanted = replace(frames, rig=replace(frames.rig, lamps=lamps))
+            wanted = replace(targets, rig=replace(targets.rig, lamps=lamps))
             solution = lc.solve(wanted, grid, lc.Recipe(method=method, passes=sweeps))
-            scores = lc.score(solution.cube, frames)
+            scores = lc.score(solution.cube, targets)
             figures = f"{scores['psnr_mean']:.1f} / {scores['psnr_min']:.1f} dB"
-            thrown = len(solution.rejected) / frames.pictures.size
+            thrown = len(solution.rejected) / targets.pictures.size
             print(f"{name}: {method}, lamp {power or 'per view'}: {figures}, {thrown:.0%} thrown out", flush=True)
 
 

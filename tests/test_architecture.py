@@ -3,10 +3,12 @@
 import ast
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 import lightcube
+import lightcube.io
 
 PACKAGE = Path(lightcube.__file__).parent
 MODULES = sorted(PACKAGE.rglob("*.py"))
@@ -122,54 +124,10 @@ def test_every_module_has_a_room() -> None:
     }
 
 
-def test_public_names_are_a_list() -> None:
-    assert sorted(lightcube.__all__) == [
-        "Cube",
-        "Frames",
-        "Grid",
-        "InputError",
-        "Lamp",
-        "METHODS",
-        "Material",
-        "Pictures",
-        "Plan",
-        "Prediction",
-        "Projector",
-        "Recipe",
-        "Result",
-        "Rig",
-        "Scene",
-        "Screen",
-        "Shot",
-        "Solution",
-        "Stage",
-        "Views",
-        "best_order",
-        "cast",
-        "check",
-        "dot_test",
-        "fit",
-        "load",
-        "page",
-        "plan",
-        "play",
-        "player",
-        "predict",
-        "publish",
-        "read_pictures",
-        "read_scene",
-        "read_stage",
-        "read_stage_frames",
-        "save",
-        "scene_frames",
-        "scene_rig",
-        "score",
-        "show",
-        "solve",
-        "spread_angles",
-        "threads",
-        "turntable",
-        "turntable_for",
-    ]
-    for name in lightcube.__all__:
-        assert name == "METHODS" or getattr(lightcube, name).__doc__, name
+@pytest.mark.parametrize("package", [lightcube, lightcube.io], ids=lambda package: package.__name__)
+def test_the_stub_lists_the_public_names_and_each_is_explained(package: ModuleType) -> None:
+    stub = ast.parse(Path(str(package.__file__)).with_suffix(".pyi").read_text())
+    listed = next(node.value for node in stub.body if isinstance(node, ast.Assign))
+    assert sorted(package.__all__) == sorted(ast.literal_eval(listed))
+    for name in package.__all__:
+        assert name == "METHODS" or getattr(package, name).__doc__, name

@@ -35,7 +35,7 @@ def small(code: str) -> str:
         ("(64, 48)", "(4, 3)"),
     ):
         code = code.replace(large, little)
-    return code.replace("iterations=60", "iterations=2").replace("--frames 16", "--frames 3")
+    return code.replace("iterations=60", "iterations=2").replace("--count 16", "--count 3")
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")

@@ -14,11 +14,11 @@ ROOT = Path(__file__).parents[1]
 def of_everything() -> dict[str, object]:
     pictures = samples.photographs(3)
     plan = lc.plan(pictures, 8)
-    solution = lc.solve(plan.frames, plan.grid, lc.Recipe(passes=2))
+    solution = lc.solve(plan.targets, plan.grid, lc.Recipe(passes=2))
     stage, *_ = lc.read_stage(str(ROOT / "examples" / "stages" / "two-screens.toml"))
     alike = lc.Pictures((np.ones((2, 3, 3), np.float32), np.ones((2, 3, 3), np.float32)), ("a", "b"))
-    values = [pictures, alike, plan, plan.frames, plan.frames.rig, plan.prediction, solution, solution.cube, stage]
-    values += [lc.Grid((5, 7, 6)), lc.Recipe(), lc.Material(), lc.METHODS, lc.Projector(plan.grid, plan.frames.rig)]
+    values = [pictures, alike, plan, plan.targets, plan.targets.rig, plan.prediction, solution, solution.cube, stage]
+    values += [lc.Grid((5, 7, 6)), lc.Recipe(), lc.Material(), lc.METHODS, lc.Projector(plan.grid, plan.targets.rig)]
     return {f"{type(value).__name__}-{index}": value for index, value in enumerate(values)}
 
 

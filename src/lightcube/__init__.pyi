@@ -6,7 +6,7 @@ from lightcube.backward.solving import solve
 from lightcube.cores import threads
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
-from lightcube.io import read_pictures, read_scene, read_stage, read_stage_frames, save
+from lightcube.io import read_pictures, read_scene, read_stage, read_stage_targets, save
 from lightcube.jobs.cubes import load, publish
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
@@ -15,14 +15,15 @@ from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import Views, spread_angles
 from lightcube.pictures.fitting import fit, turntable_for
-from lightcube.pictures.frames import Frames, Pictures
+from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.targets import Targets
 from lightcube.planning.consistency import check
 from lightcube.planning.order import best_order
 from lightcube.planning.plan import Plan, plan
 from lightcube.planning.prediction import Prediction, predict
 from lightcube.projection.projector import Projector, dot_test
 from lightcube.scene.scene import Scene
-from lightcube.scene.tracer import scene_frames, scene_rig
+from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.scoring.metrics import score
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
@@ -32,7 +33,6 @@ from lightcube.viewer.page import page
 __all__ = [
     "METHODS",
     "Cube",
-    "Frames",
     "Grid",
     "InputError",
     "Lamp",
@@ -49,6 +49,7 @@ __all__ = [
     "Shot",
     "Solution",
     "Stage",
+    "Targets",
     "Views",
     "best_order",
     "cast",
@@ -65,10 +66,10 @@ __all__ = [
     "read_pictures",
     "read_scene",
     "read_stage",
-    "read_stage_frames",
+    "read_stage_targets",
     "save",
-    "scene_frames",
     "scene_rig",
+    "scene_targets",
     "score",
     "show",
     "solve",

@@ -26,7 +26,7 @@ from lightcube.kernels.layout import columns_from_volume
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.solvers import METHODS
 from tests.conftest import INTERPRETED
 from tests.helpers.recipes import asked, lit
@@ -34,21 +34,23 @@ from tests.helpers.recipes import asked, lit
 SHAPE = (4, 7, 6)
 
 
-def some_frames(
-    shape: tuple[int, int, int] = SHAPE, size: tuple[int, int] = (3, 5), elevation: float = 35.0, count: int = 3
-) -> Frames:
-    angles = spread_angles(count, elevation=elevation)
-    rig = turntable(Grid(shape, 0.7), angles, elevation=elevation, picture_shape=size)
+def some_targets(
+    shape: tuple[int, int, int] = SHAPE, size: tuple[int, int] = (3, 5), elevation_deg: float = 35.0, count: int = 3
+) -> Targets:
+    angles_deg = spread_angles(count, elevation_deg=elevation_deg)
+    rig = turntable(Grid(shape, 0.7), angles_deg, elevation_deg=elevation_deg, picture_shape=size)
     random = np.random.default_rng(2)
     weight = random.choice([0.5, 1.0], (count, *size))
-    return Frames(random.uniform(0.1, 1, (count, *size, 3)).astype(np.float32), rig, weight.astype(np.float32))
+    return Targets(random.uniform(0.1, 1, (count, *size, 3)).astype(np.float32), rig, weight.astype(np.float32))
 
 
-def job(elevation: float = 35.0, size: tuple[int, int] = (3, 5), **options: Any) -> Job:
-    return make_job(**asked(some_frames(size=size, elevation=elevation), Grid(SHAPE, 0.7), **{"passes": 12, **options}))
+def job(elevation_deg: float = 35.0, size: tuple[int, int] = (3, 5), **options: Any) -> Job:
+    return make_job(
+        **asked(some_targets(size=size, elevation_deg=elevation_deg), Grid(SHAPE, 0.7), **{"passes": 12, **options})
+    )
 
 
-LEVEL: dict[str, Any] = {"elevation": 0.0, "size": (4, 5), "units": 3}
+LEVEL: dict[str, Any] = {"elevation_deg": 0.0, "size": (4, 5), "units": 3}
 RAISED: dict[str, Any] = {"units": 2}
 KINDS: list[dict[str, Any]] = [
     {},
@@ -87,21 +89,21 @@ def test_units_are_all_of_the_cube_once(slices: int, colours: int, count: int, l
         assert max(columns) - min(columns) <= colours
 
 
-@pytest.mark.parametrize(("elevation", "size"), [(0.0, (4, 5)), (35.0, (3, 5)), (0.0, (2, 5))])
-def test_the_parts_of_a_problem_are_the_problem(elevation: float, size: tuple[int, int]) -> None:
+@pytest.mark.parametrize(("elevation_deg", "size"), [(0.0, (4, 5)), (35.0, (3, 5)), (0.0, (2, 5))])
+def test_the_parts_of_a_problem_are_the_problem(elevation_deg: float, size: tuple[int, int]) -> None:
     """Columns of light and weights, and what is made of unknowns and beams, part by part and all at once."""
-    frames, grid = some_frames(size=size, elevation=elevation), Grid(SHAPE, 0.7)
-    whole = pose(frames, grid, Recipe(hold_deg=2.0))
+    targets, grid = some_targets(size=size, elevation_deg=elevation_deg), Grid(SHAPE, 0.7)
+    whole = pose(targets, grid, Recipe(hold_deg=2.0))
     random = np.random.default_rng(1)
     volume = random.random((3, *SHAPE)).astype(np.float32)
     seen, powers = whole.matrix.forward(whole.unknowns(volume)), random.random((3, 3))
     columns = np.arange(whole.light.shape[1]).reshape(-1, 3)
     rejected = np.argwhere(random.random(whole.light.shape) < 0.2)
     pixels: list[list[int]] = []
-    level = is_level(grid, frames.rig.views)
+    level = is_level(grid, targets.rig.views)
     assert level == (size[0] == 4)
     for part in split(SHAPE, 3, 2, level=level):
-        own = pose(frames, grid, Recipe(hold_deg=2.0), part)
+        own = pose(targets, grid, Recipe(hold_deg=2.0), part)
         chosen = columns[part.slices if level else slice(None), part.colours].ravel()
         assert np.array_equal(own.light, whole.light[:, chosen])
         assert np.array_equal(own.weights, whole.weights[:, chosen])
@@ -136,14 +138,14 @@ def test_units_that_cannot_be_are_refused(units: int) -> None:
 
 def test_fingerprints_name_what_changed() -> None:
     one = job()
-    frames = one.frames
-    darker = replace(frames, pictures=frames.pictures * np.float32(0.5))
-    lighter = replace(frames, weights=frames.weight * np.float32(0.5))
-    turned = replace(frames, rig=turntable(one.grid, [1.0, 2.0, 4.0], elevation=35, picture_shape=(3, 5)))
+    targets = one.targets
+    darker = replace(targets, pictures=targets.pictures * np.float32(0.5))
+    lighter = replace(targets, weights=targets.weight * np.float32(0.5))
+    turned = replace(targets, rig=turntable(one.grid, [1.0, 2.0, 4.0], elevation_deg=35, picture_shape=(3, 5)))
     changes: list[tuple[Job, str]] = [
-        (replace(one, frames=darker), "the pictures differ"),
-        (replace(one, frames=lighter), "the weights differ"),
-        (replace(one, frames=turned), "the lamps and screens differ"),
+        (replace(one, targets=darker), "the pictures differ"),
+        (replace(one, targets=lighter), "the weights differ"),
+        (replace(one, targets=turned), "the lamps and screens differ"),
         (replace(one, grid=Grid((4, 7, 7), 0.7)), "voxels was 4 x 7 x 6 and is 4 x 7 x 7"),
         (job(hold_deg=1.5), "hold was 0 and is 1.5"),
         (replace(one, units=3), "units was 1 and is 3"),
@@ -267,7 +269,7 @@ def test_progress_runs_over_all_units_and_shows_each_ones_own() -> None:
     def look(step: Step) -> None:
         done.append(step.done)
         assert step.shown is not None
-        assert step.shown().shape == made.frames.pictures[:, step.window[0], :, step.window[1]].shape
+        assert step.shown().shape == made.targets.pictures[:, step.window[0], :, step.window[1]].shape
         windows.append(step.window)
 
     run(made, callback=look)
@@ -280,14 +282,14 @@ def test_progress_runs_over_all_units_and_shows_each_ones_own() -> None:
 
 
 def test_few_units_where_memory_is_ample_and_more_where_it_is_not() -> None:
-    frames, grid = some_frames((64, 64, 64), (64, 4), elevation=0.0), Grid((64, 64, 64), 0.7)
-    one = make_job(lit(frames, lamp_power=1.0), grid, units=1)
-    assert make_job(lit(frames, lamp_power=1.0), grid).units == 1
+    targets, grid = some_targets((64, 64, 64), (64, 4), elevation_deg=0.0), Grid((64, 64, 64), 0.7)
+    one = make_job(lit(targets, lamp_power=1.0), grid, units=1)
+    assert make_job(lit(targets, lamp_power=1.0), grid).units == 1
     all_at_once = needs.job_memory(one)
-    halved = make_job(lit(frames, lamp_power=1.0), grid, memory=all_at_once - 1)
+    halved = make_job(lit(targets, lamp_power=1.0), grid, memory=all_at_once - 1)
     assert halved.units > 1
     assert needs.job_memory(halved) < all_at_once
-    least = make_job(lit(frames, lamp_power=1.0), grid, memory=1)
+    least = make_job(lit(targets, lamp_power=1.0), grid, memory=1)
     assert needs.job_memory(least) == min(needs.job_memory(replace(one, units=units)) for units in range(1, 65))
 
 
@@ -311,7 +313,7 @@ def test_a_cube_is_cast_from_where_it_lies(kind: dict[str, Any]) -> None:
 
 @pytest.mark.skipif(INTERPRETED, reason="interpreted kernels hold arrays of their own, and take their time")
 @pytest.mark.parametrize(
-    ("shape", "size", "elevation", "count", "options"),
+    ("shape", "size", "elevation_deg", "count", "options"),
     [
         ((80, 80, 80), (80, 60), 0.0, 40, {}),
         ((80, 80, 80), (80, 60), 0.0, 40, {"units": 4}),
@@ -328,20 +330,22 @@ def test_memory_is_as_much_as_is_said(
     tmp_path: Path,
     shape: tuple[int, int, int],
     size: tuple[int, int],
-    elevation: float,
+    elevation_deg: float,
     count: int,
     options: dict[str, Any],
 ) -> None:
-    made = make_job(**asked(some_frames(shape, size, elevation, count), Grid(shape, 0.7), **options, passes=2))
-    rows = SHAPE[0] if size[0] == shape[0] and not elevation else 2
+    made = make_job(**asked(some_targets(shape, size, elevation_deg, count), Grid(shape, 0.7), **options, passes=2))
+    rows = SHAPE[0] if size[0] == shape[0] and not elevation_deg else 2
     grid = Grid(SHAPE, 0.7)
-    small = replace(made, frames=asked(some_frames(SHAPE, (rows, 2), elevation), grid, **options)["frames"], grid=grid)
+    small = replace(
+        made, targets=asked(some_targets(SHAPE, (rows, 2), elevation_deg), grid, **options)["targets"], grid=grid
+    )
     run(small, open_partial(tmp_path / "small.zarr", small))  # numba compiles
     store = open_partial(tmp_path / "a.zarr", made)
     tracemalloc.start()
     try:
         run(made, store)
-        peak = tracemalloc.get_traced_memory()[1] + made.frames.pictures.nbytes + made.frames.weight.nbytes
+        peak = tracemalloc.get_traced_memory()[1] + made.targets.pictures.nbytes + made.targets.weight.nbytes
     finally:
         tracemalloc.stop()
     # kernels have a few MB of their own
@@ -356,9 +360,9 @@ def test_time_is_measured_on_a_smaller_cube(method: str, monkeypatch: pytest.Mon
     monkeypatch.setattr("lightcube.backward.needs.time.perf_counter", lambda: next(clock))
     monkeypatch.setattr("lightcube.backward.needs._seconds_of_products", lambda problem: 0.25)
     assert needs.seconds_a_pass(made) == pytest.approx(1)
-    products, numbers = needs._work(made, made.frames, made.grid)
+    products, numbers = needs._work(made, made.targets, made.grid)
     monkeypatch.setattr("lightcube.backward.needs._REHEARSED", products / 2)
-    fewer = needs._work(made, *coarser(made.frames, made.grid, 1))
+    fewer = needs._work(made, *coarser(made.targets, made.grid, 1))
     assert needs.seconds_a_pass(made) == pytest.approx(0.25 * products / fewer[0] + 0.75 * numbers / fewer[1])
 
 
@@ -378,10 +382,10 @@ def test_passes_count_the_coarse_ones_by_their_work() -> None:
 @pytest.mark.parametrize("method", [method for method in METHODS if method != "display"])
 def test_units_of_every_method_with_a_fixed_lamp(method: str) -> None:
     """Slabs are solved by themselves and together: with the same pictures they come to nearly the same."""
-    frames, grid = some_frames(size=(4, 5), elevation=0.0), Grid(SHAPE, 0.7)
+    targets, grid = some_targets(size=(4, 5), elevation_deg=0.0), Grid(SHAPE, 0.7)
     passes: dict[str, Any] = {} if method == "row-reduction" else {"passes": 400}
     one, two = (
-        solve(lit(frames, lamp_power=1.0), grid, Recipe(method=method, dtype="float64", **passes), units=units)
+        solve(lit(targets, lamp_power=1.0), grid, Recipe(method=method, dtype="float64", **passes), units=units)
         for units in (1, 2)
     )
     assert np.allclose(one.cube.extinction, two.cube.extinction, atol=2e-3)
@@ -392,8 +396,8 @@ def test_units_of_every_method_with_a_fixed_lamp(method: str) -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_what_there_is_of_a_stopped_job_is_a_cube(method: str) -> None:
     """Also where a checkpoint has arrays that are called as the figures of a finished piece are."""
-    frames, grid = some_frames(size=(4, 5), elevation=0.0), Grid(SHAPE, 0.7)
-    made = make_job(**asked(frames, grid, method=method, lamp_power=1.0, units=2, passes=3))
+    targets, grid = some_targets(size=(4, 5), elevation_deg=0.0), Grid(SHAPE, 0.7)
+    made = make_job(**asked(targets, grid, method=method, lamp_power=1.0, units=2, passes=3))
     store = MemoryStore()
     stopped = run(made, store, lambda step: True)
     assert stopped.cube.status == "interrupted"

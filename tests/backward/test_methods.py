@@ -14,7 +14,7 @@ from lightcube.jobs.cubes import load
 from lightcube.jobs.partial import load_job, open_partial
 from lightcube.optics.grid import Grid
 from lightcube.solvers.method import Method
-from tests.backward.test_job import LEVEL, SHAPE, same, some_frames
+from tests.backward.test_job import LEVEL, SHAPE, same, some_targets
 from tests.helpers.recipes import asked
 from tests.helpers.solver_problems import plain_descent
 
@@ -23,9 +23,9 @@ PLACE = "tests.helpers.solver_problems:plain_descent"
 KINDS: list[dict[str, Any]] = [{**LEVEL, "lamp_power": 1.0}, {"units": 2, "hold_deg": 2.0, "lamp_power": 2.0}]
 
 
-def job(elevation: float = 35.0, size: tuple[int, int] = (3, 5), **options: Any) -> Any:
-    frames, grid = some_frames(size=size, elevation=elevation), Grid(SHAPE, 0.7)
-    return make_job(**asked(frames, grid, **{"passes": 12, "method": plain_descent, **options}))
+def job(elevation_deg: float = 35.0, size: tuple[int, int] = (3, 5), **options: Any) -> Any:
+    targets, grid = some_targets(size=size, elevation_deg=elevation_deg), Grid(SHAPE, 0.7)
+    return make_job(**asked(targets, grid, **{"passes": 12, "method": plain_descent, **options}))
 
 
 @pytest.mark.parametrize("options", KINDS, ids=str)
@@ -95,5 +95,5 @@ def test_what_it_cannot_do_is_refused_unless_it_says_that_it_can() -> None:
         job(powers="shared")
     with pytest.raises(InputError, match=f"method {PLACE} cannot choose the power of lamp"):
         job(lamp_max=4.0)
-    assert not job(method=Method(plain_descent, chooses_lamps=True)).frames.rig.lamps.are_fixed
+    assert not job(method=Method(plain_descent, chooses_lamps=True)).targets.rig.lamps.are_fixed
     assert job(method=Method(plain_descent, coarse_to_fine=False)).levels == 0

@@ -18,7 +18,7 @@ from lightcube.optics.material import Material
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import BLACK, decode
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.scoring.metrics import score
 from lightcube.solvers import METHODS
 from tests.helpers.recipes import asked, lit
@@ -33,41 +33,41 @@ PASSES: Mapping[str, dict[str, Any]] = {
 }
 
 
-def known_cube(rig: int, elevation: float, power: float) -> Cube:
+def known_cube(rig: int, elevation_deg: float, power: float) -> Cube:
     grid = Grid(SHAPE, 0.5)
     extinction = np.random.default_rng(0).uniform(0, 0.4, (3, *SHAPE)).astype(np.float32)
-    turned = turntable(grid, spread_angles(rig, elevation=elevation), elevation=elevation)
+    turned = turntable(grid, spread_angles(rig, elevation_deg=elevation_deg), elevation_deg=elevation_deg)
     return Cube(extinction, grid, turned, lamp_powers=np.full((rig, 3), power))
 
 
-def powers_at(cube: Cube, angles: Any) -> np.ndarray:
+def powers_at(cube: Cube, angles_deg: Any) -> np.ndarray:
     """Of the one lamp at any angles."""
-    return moment(cube, angles)[1]
+    return moment(cube, angles_deg)[1]
 
 
 def test_every_method_is_tested_here() -> None:
     assert set(PASSES) == set(METHODS)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 @pytest.mark.parametrize("method", METHODS)
-def test_a_cubes_own_shadows_come_back(method: str, elevation: float) -> None:
-    cube = known_cube(6, elevation, power=1.0)
-    frames = Frames(play(cube), cube.rig)
-    solution = solve(lit(frames, lamp_power=1.0), cube.grid, Recipe(method=method, dtype="float64", **PASSES[method]))
+def test_a_cubes_own_shadows_come_back(method: str, elevation_deg: float) -> None:
+    cube = known_cube(6, elevation_deg, power=1.0)
+    targets = Targets(play(cube), cube.rig)
+    solution = solve(lit(targets, lamp_power=1.0), cube.grid, Recipe(method=method, dtype="float64", **PASSES[method]))
     assert solution.cube.status == "complete"
     assert solution.cube.provenance["method"] == method
-    assert score(solution.cube, frames)["psnr_min"] >= 60
+    assert score(solution.cube, targets)["psnr_min"] >= 60
     assert solution.cube.extinction.min() >= 0
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_stronger_lamp_is_accounted_for(method: str) -> None:
     cube = known_cube(4, 0.0, power=2.5)
-    frames = Frames(play(cube), cube.rig)
-    solution = solve(lit(frames, lamp_power=2.5), cube.grid, Recipe(method=method, dtype="float64", **PASSES[method]))
+    targets = Targets(play(cube), cube.rig)
+    solution = solve(lit(targets, lamp_power=2.5), cube.grid, Recipe(method=method, dtype="float64", **PASSES[method]))
     assert np.all(solution.cube.powers == 2.5)
-    assert score(solution.cube, frames)["psnr_min"] >= 60
+    assert score(solution.cube, targets)["psnr_min"] >= 60
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -78,20 +78,20 @@ def test_pixels_of_no_weight_do_not_matter(method: str) -> None:
     spoiled = np.where(weights[..., None] > 0, shown, np.float32(0.123))
     one, other = (
         solve(
-            lit(Frames(pictures, cube.rig, weights), lamp_power=1.0),
+            lit(Targets(pictures, cube.rig, weights), lamp_power=1.0),
             cube.grid,
             Recipe(method=method, dtype="float64", **PASSES[method]),
         )
         for pictures in (shown, spoiled)
     )
     assert np.allclose(one.cube.extinction, other.cube.extinction, atol=1e-6)
-    assert score(other.cube, Frames(shown, cube.rig, weights))["psnr_min"] >= 60
+    assert score(other.cube, Targets(shown, cube.rig, weights))["psnr_min"] >= 60
 
 
 @pytest.mark.parametrize("method", ["display", "sirt", "cgls", "gauss-seidel"])
 def test_the_largest_extinction_is_kept(method: str) -> None:
     cube = known_cube(4, 0.0, power=1.0)
-    dark = Frames(play(cube) * np.float32(0.01), cube.rig)
+    dark = Targets(play(cube) * np.float32(0.01), cube.rig)
     solution = solve(lit(dark, lamp_power=1.0), cube.grid, Recipe(method=method, material=Material(0.3), passes=20))
     assert solution.cube.extinction.max() <= 0.3 * (1 + 1e-6)
     if method != "gauss-seidel":  # which throws out equations that ask for more
@@ -101,14 +101,14 @@ def test_the_largest_extinction_is_kept(method: str) -> None:
 def test_black_pictures_are_raised_to_the_screens_black() -> None:
     grid = Grid(SHAPE)
     rig = turntable(grid, [20.0, 100.0], picture_shape=(3, 2))
-    solution = solve(Frames(np.zeros((2, 3, 2, 3), np.float32), rig), grid, Recipe(passes=200))
+    solution = solve(Targets(np.zeros((2, 3, 2, 3), np.float32), rig), grid, Recipe(passes=200))
     darkest = float(decode(np.array([BLACK]))[0])
     assert np.all(play(solution.cube) < 2 * darkest)
 
 
 def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
     cube = known_cube(4, 35.0, power=2.0)
-    frames = Frames(play(cube), cube.rig)
+    targets = Targets(play(cube), cube.rig)
     seen: list[np.ndarray] = []
 
     def callback(step: Step) -> bool:
@@ -116,25 +116,25 @@ def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
         seen.append(step.shown())
         return step.iteration == 3
 
-    solution = solve(lit(frames, lamp_power=2.0), cube.grid, callback=callback)
+    solution = solve(lit(targets, lamp_power=2.0), cube.grid, callback=callback)
     assert len(seen) == 3
     assert solution.cube.status == "interrupted"
     assert solution.stop_reason == "callback"
     assert np.allclose(seen[-1], play(solution.cube), rtol=1e-4, atol=1e-5)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation_deg: float) -> None:
     """One pixel of a redundant set is made wrong; Gauss-Seidel must name it."""
-    cube = known_cube(12, elevation, power=1.0)
+    cube = known_cube(12, elevation_deg, power=1.0)
     shown = play(cube).astype(np.float64)
     # a pixel whose beam crosses the middle of the cube
     _, rows, columns, _ = shown.shape
     wrong = (5, rows // 2, columns // 2, 1)
     shown[wrong] *= 0.5
-    frames = Frames(shown.astype(np.float32), cube.rig)
+    targets = Targets(shown.astype(np.float32), cube.rig)
     solution = solve(
-        lit(frames, lamp_power=1.0), cube.grid, Recipe(method="gauss-seidel", dtype="float64", passes=3000)
+        lit(targets, lamp_power=1.0), cube.grid, Recipe(method="gauss-seidel", dtype="float64", passes=3000)
     )
     assert solution.rejected.tolist() == [list(wrong)]
     assert solution.cube.provenance["rejected"] == 1
@@ -161,55 +161,57 @@ def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation: flo
 def test_nonsense_is_refused(options: dict[str, Any]) -> None:
     cube = known_cube(2, 0.0, power=1.0)
     with pytest.raises(InputError):
-        solve(**asked(Frames(play(cube), cube.rig), cube.grid, **options))
+        solve(**asked(Targets(play(cube), cube.rig), cube.grid, **options))
 
 
-def test_frames_of_another_grid_are_refused() -> None:
+def test_targets_of_another_grid_are_refused() -> None:
     cube = known_cube(2, 0.0, power=1.0)
     with pytest.raises(InputError, match="larger than"):
-        solve(Frames(play(cube), cube.rig), Grid((2, 2, 2), 0.5))
+        solve(Targets(play(cube), cube.rig), Grid((2, 2, 2), 0.5))
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_lamp_powers_are_found_per_view_or_for_all_views(elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_lamp_powers_are_found_per_view_or_for_all_views(elevation_deg: float) -> None:
     """Pictures cast with lamps of several powers: per picture finds them, shared finds one between, fixed stays."""
-    cube = known_cube(5, elevation, power=1.0)
+    cube = known_cube(5, elevation_deg, power=1.0)
     powers = np.random.default_rng(6).uniform(0.5, 3.0, (5, 3))
-    frames = Frames(play(Cube(cube.extinction, cube.grid, cube.rig, lamp_powers=powers)), cube.rig)
-    free = solve(frames, cube.grid, Recipe(passes=600, dtype="float64")).cube
+    targets = Targets(play(Cube(cube.extinction, cube.grid, cube.rig, lamp_powers=powers)), cube.rig)
+    free = solve(targets, cube.grid, Recipe(passes=600, dtype="float64")).cube
     assert free.provenance["powers"] == "per-picture"
     assert np.allclose(free.powers, powers, rtol=0.05)
-    assert score(free, frames)["psnr_min"] > 50
-    shared = solve(lit(frames, lamp_max=4.0), cube.grid, Recipe(powers="shared", passes=100)).cube
+    assert score(free, targets)["psnr_min"] > 50
+    shared = solve(lit(targets, lamp_max=4.0), cube.grid, Recipe(powers="shared", passes=100)).cube
     assert np.all(shared.powers == shared.powers[0])
     assert np.all((shared.powers >= powers.min(axis=0) * 0.9) & (shared.powers <= 4.0))
-    fixed = solve(lit(frames, lamp_power=2.0), cube.grid, Recipe(passes=100)).cube
+    fixed = solve(lit(targets, lamp_power=2.0), cube.grid, Recipe(passes=100)).cube
     assert np.all(fixed.powers == 2.0)
-    assert score(free, frames)["psnr_mean"] > score(shared, frames)["psnr_mean"] > score(fixed, frames)["psnr_mean"]
+    assert score(free, targets)["psnr_mean"] > score(shared, targets)["psnr_mean"] > score(fixed, targets)["psnr_mean"]
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_a_held_picture_stands_around_its_stop(elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_a_held_picture_stands_around_its_stop(elevation_deg: float) -> None:
     """With hold the picture is asked for, and cast, over the whole range; without it falls apart there."""
     grid = Grid((6, 8, 8))
-    rig = turntable(grid, spread_angles(3, elevation=elevation), elevation=elevation, picture_shape=(4, 2))
+    rig = turntable(
+        grid, spread_angles(3, elevation_deg=elevation_deg), elevation_deg=elevation_deg, picture_shape=(4, 2)
+    )
     pictures = np.random.default_rng(8).uniform(0.2, 1, (3, 4, 2, 3)).astype(np.float32)
-    frames = Frames(pictures, rig)
-    around = np.concatenate([rig.stops.angle + offset for offset in (-8, -5, -2, 2, 5, 8)])
+    targets = Targets(pictures, rig)
+    around = np.concatenate([rig.stops.angle_deg + offset for offset in (-8, -5, -2, 2, 5, 8)])
     wanted = np.tile(pictures, (6, 1, 1, 1))
     errors = {}
-    for hold in (0.0, 8.0):
+    for hold_deg in (0.0, 8.0):
         seen: list[np.ndarray] = []
 
         def look(step: Step, seen: list[np.ndarray] = seen) -> None:
             assert step.shown is not None
             seen.append(step.shown())
 
-        cube = solve(frames, grid, Recipe(hold_deg=hold, passes=200), callback=look).cube
-        assert cube.hold_deg == hold
+        cube = solve(targets, grid, Recipe(hold_deg=hold_deg, passes=200), callback=look).cube
+        assert cube.hold_deg == hold_deg
         assert cube.powers.shape == (3, 3)
         assert np.allclose(seen[-1], play(cube), rtol=1e-3, atol=1e-4)
-        errors[hold] = np.sqrt(np.mean((play(cube, around) - wanted) ** 2))
+        errors[hold_deg] = np.sqrt(np.mean((play(cube, around) - wanted) ** 2))
     assert errors[8.0] < 0.5 * errors[0.0]
 
 
@@ -217,26 +219,26 @@ def test_the_lamp_does_not_change_while_a_picture_is_held() -> None:
     cube = known_cube(3, 35.0, power=1.0)
     powers = np.array([[1.0] * 3, [4.0] * 3, [2.0] * 3])
     held_cube = Cube(cube.extinction, cube.grid, cube.rig, lamp_powers=powers, hold_deg=10.0)
-    stop = cube.angles[1]
+    stop = cube.angles_deg[1]
     assert powers_at(held_cube, [stop - 10, stop - 3, stop, stop + 10])[:, 0] == pytest.approx([4] * 4)
-    halfway = (cube.angles[0] + stop) / 2
+    halfway = (cube.angles_deg[0] + stop) / 2
     assert powers_at(held_cube, [halfway])[0, 0] == pytest.approx(2)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 @pytest.mark.parametrize("count", [2, 3, 5, 16])
-def test_a_hold_of_half_the_spacing_changes_lamps_halfway(count: int, elevation: float) -> None:
-    cube = known_cube(count, elevation, power=1.0)
+def test_a_hold_of_half_the_spacing_changes_lamps_halfway(count: int, elevation_deg: float) -> None:
+    cube = known_cube(count, elevation_deg, power=1.0)
     powers = np.repeat(2.0 ** (np.arange(count) % 4)[:, None], 3, axis=1)
-    half = (360 if elevation else 180) / count / 2
-    for hold in (half, 180.0):  # a file may say anything
-        held_cube = Cube(cube.extinction, cube.grid, cube.rig, lamp_powers=powers, hold_deg=hold)
+    half = (360 if elevation_deg else 180) / count / 2
+    for hold_deg in (half, 180.0):  # a file may say anything
+        held_cube = Cube(cube.extinction, cube.grid, cube.rig, lamp_powers=powers, hold_deg=hold_deg)
         for offset in (-0.9 * half, 0.0, 0.9 * half):
-            assert np.allclose(powers_at(held_cube, cube.angles + offset), powers)
+            assert np.allclose(powers_at(held_cube, cube.angles_deg + offset), powers)
 
 
-@pytest.mark.parametrize("hold", [-1.0, 31.0, float("nan"), float("inf")])
-def test_a_hold_wider_than_half_the_spacing_is_refused(hold: float) -> None:
+@pytest.mark.parametrize("hold_deg", [-1.0, 31.0, float("nan"), float("inf")])
+def test_a_hold_wider_than_half_the_spacing_is_refused(hold_deg: float) -> None:
     cube = known_cube(3, 0.0, power=1.0)
     with pytest.raises(InputError, match="hold"):
-        solve(Frames(play(cube), cube.rig), cube.grid, Recipe(hold_deg=hold))
+        solve(Targets(play(cube), cube.rig), cube.grid, Recipe(hold_deg=hold_deg))

@@ -63,8 +63,8 @@ def test_all_is_measured_and_all_is_in_the_tables(peer_installed: bool, monkeypa
     found = bench.measure(N, 3, said.append, quick=True)
     assert tasks.threads() == before
     assert finite(found)
-    assert {(each["elevation"], each["threads"]) for each in found["kernels"]} == {
-        (elevation, threads) for elevation in (0, 35) for threads in (1, before)
+    assert {(each["elevation_deg"], each["threads"]) for each in found["kernels"]} == {
+        (elevation_deg, threads) for elevation_deg in (0, 35) for threads in (1, before)
     }
     text = "\n".join(markdown(found))
     assert ("absent" not in text.replace("torch CSR @ dense | absent", "")) == peer_installed
@@ -74,10 +74,10 @@ def test_all_is_measured_and_all_is_in_the_tables(peer_installed: bool, monkeypa
         assert not line.startswith("|") or line.count("|") in (3, 4, 5, 6, 7)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0, -20.0])
-def test_multiply_adds_are_the_matrix_times_the_columns(elevation: float) -> None:
-    matrix = products.projector(5, 11, elevation)
-    assert products.columns_of(matrix) == (15 if elevation == 0 else 3)
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0, -20.0])
+def test_multiply_adds_are_the_matrix_times_the_columns(elevation_deg: float) -> None:
+    matrix = products.projector(5, 11, elevation_deg)
+    assert products.columns_of(matrix) == (15 if elevation_deg == 0 else 3)
     assert products.multiply_adds(matrix) == matrix.to_sparse().nnz * products.columns_of(matrix)
 
 

@@ -24,7 +24,7 @@ from lightcube.optics.rig import turntable
 
 SCENE = """
 camera = {type = "shadow", cube_width = 4.0}
-frames = {count = 4, size = [6, 6]}
+pictures = {count = 4, size = [6, 6]}
 [[shapes]]
 type = "sphere"
 radius = 1.5
@@ -50,9 +50,9 @@ def run(capsys: pytest.CaptureFixture[str]):  # type: ignore[no-untyped-def]
 
 
 @pytest.fixture
-def frames(tmp_path: Path) -> Path:
+def pictures(tmp_path: Path) -> Path:
     """Four pictures of 6 x 6 pixels that a cube of 6 voxels can cast well: smooth and bright."""
-    folder = tmp_path / "frames"
+    folder = tmp_path / "pictures"
     folder.mkdir()
     ramp = np.linspace(150, 250, 6)
     for index in range(4):
@@ -75,7 +75,7 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
     traced = run("trace", tmp_path / "ball.toml", "-o", tmp_path / "ball")
     assert (traced.code, len(list((tmp_path / "ball").glob("*.png")))) == (0, 4)
     solved = run(
-        "solve", tmp_path / "ball", "-o", tmp_path / "ball.zarr", "--n", 6, "--frame-width", 1, "--iterations", 300
+        "solve", tmp_path / "ball", "-o", tmp_path / "ball.zarr", "--n", 6, "--picture-width", 1, "--iterations", 300
     )
     assert solved.code == 0
     assert "not resampled" in solved.err
@@ -89,7 +89,7 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
     scores = json.loads(scored.out)
     assert list(scores) == ["psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "views"]
     assert scores["psnr_mean"] > 30
-    assert [view["angle"] for view in scores["views"]] == pytest.approx([22.5, 67.5, 112.5, 157.5])
+    assert [view["angle_deg"] for view in scores["views"]] == pytest.approx([22.5, 67.5, 112.5, 157.5])
     with Image.open(tmp_path / "sheet.png") as sheet:
         assert sheet.size[0] > 100
     told = run("info", tmp_path / "ball.zarr")
@@ -98,8 +98,8 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
     assert json.loads(run("info", tmp_path / "ball.zarr", "--json").out)["made_with_method"] == "display"
 
 
-def test_solve_prints_json_lines_for_machines(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 5, "--json")
+def test_solve_prints_json_lines_for_machines(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 5, "--json")
     events = [json.loads(line) for line in done.out.splitlines()]
     assert events[0]["event"] == "progress"
     assert "PSNR" in events[0]
@@ -109,9 +109,9 @@ def test_solve_prints_json_lines_for_machines(run, frames: Path, tmp_path: Path)
     assert {"psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "views", "rejected"} <= set(result)
 
 
-def test_gauss_seidel_says_what_it_threw_out(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_gauss_seidel_says_what_it_threw_out(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     literal = ["--method", "gauss-seidel", "--paper"]
-    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, *literal)
+    done = run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, *literal)
     assert done.code == 0
     assert "thrown out" in done.out
 
@@ -119,7 +119,7 @@ def test_gauss_seidel_says_what_it_threw_out(run, frames: Path, tmp_path: Path) 
 @pytest.mark.parametrize("suffix", ["", ".npy", ".webp"])
 def test_play_writes_by_suffix(run, cube: Path, tmp_path: Path, suffix: str) -> None:  # type: ignore[no-untyped-def]
     target = tmp_path / f"shadows{suffix}"
-    assert run("play", cube, "-o", target, "--angles", "0,12.5,90").code == 0
+    assert run("play", cube, "-o", target, "--angles-deg", "0,12.5,90").code == 0
     assert target.exists()
     if suffix == ".npy":
         shown = np.load(target)
@@ -127,16 +127,16 @@ def test_play_writes_by_suffix(run, cube: Path, tmp_path: Path, suffix: str) -> 
         assert np.allclose(shown, play(load(cube), [0, 12.5, 90]))
 
 
-def test_play_shows_stops_targets_and_the_whole_screen(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_play_shows_stops_targets_and_the_whole_screen(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     solved = tmp_path / "a.npz"
-    run("solve", frames, "-o", solved, "--n", 6, "--iterations", 2, "--paper")
+    run("solve", pictures, "-o", solved, "--n", 6, "--iterations", 2, "--paper")
     run("play", solved, "-o", tmp_path / "stops.npy", "--stops")
     assert np.array_equal(np.load(tmp_path / "stops.npy"), play(load(solved)))
     run("play", solved, "-o", tmp_path / "beside.npy", "--stops", "--target")
     assert np.load(tmp_path / "beside.npy").shape == (4, 6, 14, 3)
-    run("play", solved, "-o", tmp_path / "whole.npy", "--stops", "--no-mask")
+    run("play", solved, "-o", tmp_path / "whole.npy", "--stops", "--whole-shadow")
     assert np.load(tmp_path / "whole.npy").shape == (4, 6, 10, 3)
-    assert run("play", solved, "-o", tmp_path / "no.npy", "--target", "--no-mask").code == 2
+    assert run("play", solved, "-o", tmp_path / "no.npy", "--target", "--whole-shadow").code == 2
 
 
 def pressed(*_: object) -> float:
@@ -144,15 +144,15 @@ def pressed(*_: object) -> float:
     return 20.0
 
 
-def test_ctrl_c_keeps_what_was_reached(run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+def test_ctrl_c_keeps_what_was_reached(run, pictures: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     out = tmp_path / "a.zarr"
     with monkeypatch.context() as patched:
         patched.setattr("lightcube.scoring.metrics.mean_psnr", pressed)
-        stopped = run("solve", frames, "-o", out, "--n", 6)
+        stopped = run("solve", pictures, "-o", out, "--n", 6)
     assert stopped.code == 130
     assert f"lightcube publish {out}.partial" in stopped.err
     assert not out.exists()
-    again = run("solve", frames, "-o", out, "--n", 6, "--hold", 1)
+    again = run("solve", pictures, "-o", out, "--n", 6, "--hold-deg", 1)
     assert again.code == 2
     assert "hold was" in again.err
     published = run("publish", f"{out}.partial")
@@ -161,15 +161,15 @@ def test_ctrl_c_keeps_what_was_reached(run, frames: Path, tmp_path: Path, monkey
     told = run("info", out)
     assert "interrupted" in told.out
     assert run("publish", f"{out}.partial").code == 2
-    assert run("solve", frames, "-o", out, "--n", 6, "--overwrite", "--iterations", 3).code == 0
+    assert run("solve", pictures, "-o", out, "--n", 6, "--overwrite", "--iterations", 3).code == 0
     assert "complete" in run("info", out).out
 
 
-def test_publish_tells_machines_whether_a_cube_is_whole(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_publish_tells_machines_whether_a_cube_is_whole(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     out, said = tmp_path / "a.npz", ("--n", 6, "--iterations", 3, "--powers", "coarse")
     for units, whole in ((("1/2",), False), (("1/2", "2/2"), True)):
         for unit in units:
-            assert run("solve", frames, "-o", out, *said, "--unit", unit, "--overwrite").code == 0
+            assert run("solve", pictures, "-o", out, *said, "--unit", unit, "--overwrite").code == 0
         told = json.loads(run("publish", f"{out}.partial", "--overwrite", "--json").out)
         assert (told["event"], told["out"], told["units"]) == ("result", str(out), 2)
         assert (told["whole"], told["units_done"]) == (whole, len(units))
@@ -183,32 +183,32 @@ def load_quietly(path: Path) -> Cube:
 
 
 def test_an_interrupted_cube_remembers_how_it_was_made(  # type: ignore[no-untyped-def]
-    run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run, pictures: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    Image.new("RGB", (12, 6), (200, 180, 160)).save(frames / "4.png")
+    Image.new("RGB", (12, 6), (200, 180, 160)).save(pictures / "4.png")
     with monkeypatch.context() as patched:
         patched.setattr("lightcube.scoring.metrics.mean_psnr", pressed)
-        run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--fit", "pad", "--hold", 3)
+        run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, "--fit", "pad", "--hold-deg", 3)
     run("publish", tmp_path / "a.npz.partial")
     told = json.loads(run("info", tmp_path / "a.npz", "--json").out)
-    assert (told["made_with_fit"], told["hold"], told["status"]) == ("pad", 3.0, "interrupted")
-    own, fitted = (json.loads(run("score", tmp_path / "a.npz", *f, "--json").out) for f in ([], [frames]))
+    assert (told["made_with_fit"], told["hold_deg"], told["status"]) == ("pad", 3.0, "interrupted")
+    own, fitted = (json.loads(run("score", tmp_path / "a.npz", *f, "--json").out) for f in ([], [pictures]))
     assert own["psnr_mean"] == pytest.approx(fitted["psnr_mean"], abs=0.1)
 
 
-def test_overwrite_removes_an_old_partial(run, frames: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+def test_overwrite_removes_an_old_partial(run, pictures: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     out = tmp_path / "a.npz"
     with monkeypatch.context() as patched:
         patched.setattr("lightcube.scoring.metrics.mean_psnr", pressed)
-        run("solve", frames, "-o", out, "--n", 6)
+        run("solve", pictures, "-o", out, "--n", 6)
     assert (tmp_path / "a.npz.partial").exists()
-    assert run("solve", frames, "-o", out, "--n", 6, "--iterations", 3, "--overwrite").code == 0
+    assert run("solve", pictures, "-o", out, "--n", 6, "--iterations", 3, "--overwrite").code == 0
     assert not (tmp_path / "a.npz.partial").exists()
 
 
-def test_a_real_process_stops_at_ctrl_c_with_130(frames: Path, tmp_path: Path) -> None:
+def test_a_real_process_stops_at_ctrl_c_with_130(pictures: Path, tmp_path: Path) -> None:
     """SIGINT as a terminal sends it, while solving as long as it takes."""
-    command = [sys.executable, "-m", "lightcube", "solve", str(frames), "-o"]
+    command = [sys.executable, "-m", "lightcube", "solve", str(pictures), "-o"]
     command += [str(tmp_path / "a.zarr"), "--n", "8", "--iterations", "1000000", "--json", "--method", "sirt"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
@@ -223,72 +223,72 @@ def test_a_real_process_stops_at_ctrl_c_with_130(frames: Path, tmp_path: Path) -
 BAD = [
     ("solve", "{none}", "-o", "{tmp}/a.zarr"),
     ("solve", "{empty}", "-o", "{tmp}/a.zarr"),
-    ("solve", "{frames}", "-o", "{tmp}/a.xyz"),
-    ("solve", "{frames}", "-o", "{tmp}/missing/a.zarr"),
-    ("solve", "{frames}", "-o", "{frames}/1.png"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "0"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "-3"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "six"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--shape", "6,6,6"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--shape", "6,6"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "-1"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "nan"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--frame-width", "3"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles", "0,1,2"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles", "0,1,2,360"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles", "0,1,2,nan"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles", "0,1,2,x"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--elevation", "90"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--elevation", "-90"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--span", "0"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--method", "magic"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--fit", "squeeze"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "0"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--iterations", "0"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "-2"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "4000"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "1e300"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-max", "0.5"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "1", "--lamp-max", "4"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--powers", "coarse", "--lamp-power", "4"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--powers", "shared", "--method", "cgls"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--frame-width", "1e308"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "1e-300"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "nan"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "60"),
-    ("solve", "{frames}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold", "nan"),
-    ("solve", "{frames}"),
-    ("play", "{cube}", "-o", "{tmp}/a.gif", "--stops", "--angles", "5"),
-    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles", "5", "--count", "3"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.xyz"),
+    ("solve", "{pictures}", "-o", "{tmp}/missing/a.zarr"),
+    ("solve", "{pictures}", "-o", "{pictures}/1.png"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "0"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "-3"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "six"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--shape", "6,6,6"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--shape", "6,6"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "-1"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "nan"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--picture-width", "3"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles-deg", "0,1,2"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles-deg", "0,1,2,360"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles-deg", "0,1,2,nan"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--angles-deg", "0,1,2,x"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--elevation-deg", "90"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--elevation-deg", "-90"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--span-deg", "0"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--method", "magic"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--fit", "squeeze"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "0"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--iterations", "0"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "-2"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "4000"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "1e300"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-max", "0.5"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--lamp-power", "1", "--lamp-max", "4"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--powers", "coarse", "--lamp-power", "4"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--powers", "shared", "--method", "cgls"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--picture-width", "1e308"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--size-mm", "1e-300"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "nan"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold-deg", "60"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold-deg", "nan"),
+    ("solve", "{pictures}"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--stops", "--angles-deg", "5"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles-deg", "5", "--count", "3"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--from", "5", "--to", "5"),
-    ("trace", "carousel", "-o", "{tmp}/a", "--frames", "1000000", "--size", "640x480"),
+    ("trace", "carousel", "-o", "{tmp}/a", "--count", "1000000", "--size", "640x480"),
     ("play", "{none}", "-o", "{tmp}/a.mp4"),
-    ("play", "{frames}", "-o", "{tmp}/a.mp4"),
+    ("play", "{pictures}", "-o", "{tmp}/a.mp4"),
     ("play", "{cube}", "-o", "{tmp}/a.doc"),
     ("play", "{cube}", "-o", "{cube}"),
-    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles", "nan"),
-    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles", ""),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles-deg", "nan"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles-deg", ""),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--count", "0"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--from", "inf"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--scale", "0"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--fps", "0"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--target"),
     ("score", "{cube}"),
-    ("score", "{cube}", "{frames}"),
+    ("score", "{cube}", "{pictures}"),
     ("score", "{cube}", "--sheet", "{cube}"),
     ("score", "{cube}", "--sheet", "{tmp}/a.png", "--plot", "{tmp}/a.png"),
     ("info", "{none}"),
-    ("info", "{frames}/1.png"),
+    ("info", "{pictures}/1.png"),
     ("publish", "{cube}"),
     ("publish", "{none}.zarr.partial"),
     ("draw", "{none}", "-o", "{tmp}/a.png"),
     ("draw", "{cube}", "-o", "{tmp}/a.svg"),
     ("draw", "{cube}", "-o", "{cube}"),
-    ("draw", "{cube}", "-o", "{tmp}/a.png", "--angle", "nan"),
+    ("draw", "{cube}", "-o", "{tmp}/a.png", "--angle-deg", "nan"),
     ("trace", "{none}", "-o", "{tmp}/a"),
     ("trace", "carousel", "-o", "{tmp}/a", "--size", "64"),
-    ("trace", "carousel", "-o", "{tmp}/a", "--frames", "0"),
-    ("trace", "carousel", "-o", "{tmp}/a", "--elevation", "90"),
+    ("trace", "carousel", "-o", "{tmp}/a", "--count", "0"),
+    ("trace", "carousel", "-o", "{tmp}/a", "--elevation-deg", "90"),
     ("trace", "carousel", "-o", "{tmp}/a.what"),
     ("juggle",),
     ("info", "{cube}", "--magic"),
@@ -297,11 +297,17 @@ BAD = [
 
 @pytest.mark.parametrize("arguments", BAD, ids=lambda a: " ".join(a))
 def test_bad_input_is_one_sentence_and_exit_code_2(  # type: ignore[no-untyped-def]
-    run, frames: Path, cube: Path, tmp_path: Path, arguments: tuple[str, ...]
+    run, pictures: Path, cube: Path, tmp_path: Path, arguments: tuple[str, ...]
 ) -> None:
     (tmp_path / "empty").mkdir()
     before = sorted(tmp_path.rglob("*"))
-    places = {"tmp": tmp_path, "none": tmp_path / "none", "empty": tmp_path / "empty", "frames": frames, "cube": cube}
+    places = {
+        "tmp": tmp_path,
+        "none": tmp_path / "none",
+        "empty": tmp_path / "empty",
+        "pictures": pictures,
+        "cube": cube,
+    }
     done = run(*[argument.format(**places) for argument in arguments])
     assert done.code == 2, done.err
     sentences = [line for line in done.lines if line.startswith("lightcube: ")]
@@ -311,32 +317,32 @@ def test_bad_input_is_one_sentence_and_exit_code_2(  # type: ignore[no-untyped-d
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_an_old_partial_outlives_options_that_are_refused(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_an_old_partial_outlives_options_that_are_refused(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     kept = tmp_path / "a.zarr.partial" / "unit-0.npz"
     kept.parent.mkdir()
     kept.write_bytes(b"")
     out = tmp_path / "a.zarr"
-    for options in (("--method", "magic"), ("--n", 0), ("--lamp-power", -1), ("--frame-width", 9)):
-        assert run("solve", frames, "-o", out, "--overwrite", *options).code == 2
+    for options in (("--method", "magic"), ("--n", 0), ("--lamp-power", -1), ("--picture-width", 9)):
+        assert run("solve", pictures, "-o", out, "--overwrite", *options).code == 2
     assert run("solve", tmp_path / "none", "-o", out, "--overwrite").code == 2
     assert kept.exists()
 
 
-def test_what_is_no_partial_is_never_touched(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+def test_what_is_no_partial_is_never_touched(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     other = tmp_path / "a.zarr.partial"
     other.mkdir()
     (other / "mine.txt").write_text("dear diary")
-    refused = run("solve", frames, "-o", tmp_path / "a.zarr", "--n", 6, "--overwrite")
+    refused = run("solve", pictures, "-o", tmp_path / "a.zarr", "--n", 6, "--overwrite")
     assert refused.code == 2
     assert "is none" in refused.err
     assert (other / "mine.txt").exists()
 
 
-def test_names_with_brackets_and_letters_a_terminal_lacks(frames: Path, tmp_path: Path) -> None:
-    (frames / "views.toml").write_text('names = ["[/a]", "[red]b", "\u2603", ":cat:"]\n')
+def test_names_with_brackets_and_letters_a_terminal_lacks(pictures: Path, tmp_path: Path) -> None:
+    (pictures / "views.toml").write_text('names = ["[/a]", "[red]b", "\u2603", ":cat:"]\n')
     command = [sys.executable, "-m", "lightcube"]
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
-    arguments = ["solve", str(frames), "-o", str(tmp_path / "a.npz"), "--n", "6", "--method", "gauss-seidel"]
+    arguments = ["solve", str(pictures), "-o", str(tmp_path / "a.npz"), "--n", "6", "--method", "gauss-seidel"]
     solved = subprocess.run([*command, *arguments], capture_output=True, text=True, env=environment)
     assert solved.returncode == 0, solved.stderr
     told = subprocess.run([*command, "score", str(tmp_path / "a.npz")], capture_output=True, text=True, env=environment)
@@ -345,19 +351,19 @@ def test_names_with_brackets_and_letters_a_terminal_lacks(frames: Path, tmp_path
     assert ":cat:" in told.stdout
 
 
-def test_score_remembers_how_pictures_were_fitted(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    Image.new("RGB", (12, 6), (200, 180, 160)).save(frames / "4.png")
-    run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 30, "--fit", "pad", "--json")
-    again = json.loads(run("score", tmp_path / "a.npz", frames, "--json").out)
+def test_score_remembers_how_pictures_were_fitted(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    Image.new("RGB", (12, 6), (200, 180, 160)).save(pictures / "4.png")
+    run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 30, "--fit", "pad", "--json")
+    again = json.loads(run("score", tmp_path / "a.npz", pictures, "--json").out)
     assert again["psnr_mean"] == pytest.approx(load(tmp_path / "a.npz").scores["psnr_mean"])
-    (frames / "views.toml").write_text("angles = [1, 2, 3, 4]\n")
-    assert "other angles" in run("score", tmp_path / "a.npz", frames).err
+    (pictures / "views.toml").write_text("angles_deg = [1, 2, 3, 4]\n")
+    assert "other angles" in run("score", tmp_path / "a.npz", pictures).err
 
 
-def test_warnings_are_notes(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    Image.new("RGBA", (6, 6), (255, 0, 0, 128)).save(frames / "4.png")
-    level = ["--elevation", 0, "--angles", "10,50,100,190"]
-    done = run("solve", frames, "-o", tmp_path / "a.zarr", "--n", 6, "--iterations", 2, *level)
+def test_warnings_are_notes(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    Image.new("RGBA", (6, 6), (255, 0, 0, 128)).save(pictures / "4.png")
+    level = ["--elevation-deg", 0, "--angles-deg", "10,50,100,190"]
+    done = run("solve", pictures, "-o", tmp_path / "a.zarr", "--n", 6, "--iterations", 2, *level)
     notes = [line for line in done.lines if line.startswith("note: ")]
     assert len(notes) == 1
     assert "transparent" in notes[0]

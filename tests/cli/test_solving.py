@@ -13,9 +13,9 @@ from lightcube.errors import InputError
 from lightcube.forward.casting import play
 from lightcube.verbs import solving
 from lightcube.verbs.options import Options
-from tests.cli.test_cli import frames, run
+from tests.cli.test_cli import pictures, run
 
-__all__ = ["frames", "run"]
+__all__ = ["pictures", "run"]
 
 
 @pytest.fixture
@@ -31,56 +31,58 @@ def unlike(tmp_path: Path) -> Path:
     return folder
 
 
-def test_check_says_what_to_expect_in_words_and_json(run, frames: Path) -> None:  # type: ignore[no-untyped-def]
-    told = run("check", frames, "--n", 8)
+def test_check_says_what_to_expect_in_words_and_json(run, pictures: Path) -> None:  # type: ignore[no-untyped-def]
+    told = run("check", pictures, "--n", 8)
     assert told.code == 0
     for word in ("expected", "load", "mirrored pairs", "row conflicts", "cube of 8 x 8 x 8"):
         assert word in told.out, word
-    facts = json.loads(run("check", frames, "--n", 8, "--json").out)
+    facts = json.loads(run("check", pictures, "--n", 8, "--json").out)
     assert facts["pictures"] == 4
-    assert facts["elevation"] == 35
+    assert facts["elevation_deg"] == 35
     assert len(facts["predicted"]["views"]) == 4
     assert sorted(facts["order"]["best"]) == [0, 1, 2, 3]
     assert facts["voxels"] == [8, 8, 8]
 
 
-def test_check_and_solve_agree(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    facts = json.loads(run("check", frames, "--n", 8, "--json").out)
-    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 8, "--iterations", 3, "--json")
+def test_check_and_solve_agree(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    facts = json.loads(run("check", pictures, "--n", 8, "--json").out)
+    done = run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 8, "--iterations", 3, "--json")
     result = json.loads(done.out.strip().splitlines()[-1])
     assert result["predicted"] == facts["predicted"]
     cube = load(tmp_path / "a.npz")
     assert list(cube.grid.shape) == facts["voxels"]
-    assert cube.hold_deg == pytest.approx(facts["hold"])
+    assert cube.hold_deg == pytest.approx(facts["hold_deg"])
     assert {"objective", "lower_bound"} <= set(result["optimality"])
     assert result["optimality"]["lower_bound"] <= result["optimality"]["objective"] * (1 + 1e-6)
 
 
-def test_paper_is_the_papers_set_up(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    assert run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 2, "--paper").code == 0
+def test_paper_is_the_papers_set_up(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    assert run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 2, "--paper").code == 0
     cube = load(tmp_path / "a.npz")
-    assert np.all(cube.rig.views.elevations == 0)
+    assert np.all(cube.rig.views.elevations_deg == 0)
     assert np.all(cube.powers == 1)
     assert cube.rig.picture_shape == (6, 6)
-    assert np.allclose(cube.rig.views.angles, [22.5, 67.5, 112.5, 157.5])
+    assert np.allclose(cube.rig.views.angles_deg, [22.5, 67.5, 112.5, 157.5])
     assert cube.hold_deg == 0
 
 
 @pytest.mark.parametrize(
     "option",
     [
-        ("--elevation", "35"),
-        ("--span", "360"),
-        ("--angles", "0,1,2,3"),
-        ("--frame-width", "0.5"),
+        ("--elevation-deg", "35"),
+        ("--span-deg", "360"),
+        ("--angles-deg", "0,1,2,3"),
+        ("--picture-width", "0.5"),
         ("--powers", "shared"),
         ("--lamp-power", "2"),
         ("--lamp-max", "4"),
-        ("--hold", "1"),
+        ("--hold-deg", "1"),
     ],
 )
-def test_paper_with_what_contradicts_it_is_refused(run, frames: Path, tmp_path: Path, option: tuple[str, str]) -> None:  # type: ignore[no-untyped-def]
-    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, "--paper", *option)
+def test_paper_with_what_contradicts_it_is_refused(  # type: ignore[no-untyped-def]
+    run, pictures: Path, tmp_path: Path, option: tuple[str, str]
+) -> None:
+    done = run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, "--paper", *option)
     assert done.code == 2
     assert option[0] in done.err
     assert len(done.lines) == 1
@@ -97,13 +99,13 @@ def test_paper_with_what_contradicts_it_is_refused(run, frames: Path, tmp_path: 
         ("--shift", "-1"),
         ("--black", "1"),
         ("--black", "-0.5"),
-        ("--frame-width", "0"),
-        ("--frame-width", "1.9"),
+        ("--picture-width", "0"),
+        ("--picture-width", "1.9"),
         ("--powers", "coarse", "--lamp-power", "3"),
     ],
 )
-def test_what_cannot_be_is_one_sentence(run, frames: Path, tmp_path: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
-    done = run("solve", frames, "-o", tmp_path / "a.npz", "--n", 6, *options)
+def test_what_cannot_be_is_one_sentence(run, pictures: Path, tmp_path: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
+    done = run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, *options)
     assert done.code == 2
     assert len(done.lines) == 1, done.err
     assert "Traceback" not in done.err
@@ -117,7 +119,7 @@ def test_the_best_order_is_kept_by_name(run, unlike: Path, tmp_path: Path) -> No
     cube = load(tmp_path / "a.npz")
     order = cube.provenance["order"]
     assert cube.names == tuple(f"p{index}" for index in order)
-    assert np.all(np.diff(cube.rig.views.angles) > 0)
+    assert np.all(np.diff(cube.rig.views.angles_deg) > 0)
     again = json.loads(run("score", tmp_path / "a.npz", unlike, "--json").out)
     assert again["psnr_mean"] == pytest.approx(cube.scores["psnr_mean"], abs=0.01)
     for own, float_target in zip(score(cube)["views"], cube.scores["views"], strict=True):  # 8 bits tell to 59 dB
@@ -125,26 +127,26 @@ def test_the_best_order_is_kept_by_name(run, unlike: Path, tmp_path: Path) -> No
 
 
 def test_shifted_pictures_are_where_they_were_put(run, unlike: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    done = run("solve", unlike, "-o", tmp_path / "a.zarr", "--n", 12, "--iterations", 5, "--shift", 2, "--hold", 0)
+    done = run("solve", unlike, "-o", tmp_path / "a.zarr", "--n", 12, "--iterations", 5, "--shift", 2, "--hold-deg", 0)
     assert done.code == 0
     cube = load(tmp_path / "a.zarr")
     assert cube.provenance["shift"] == 2
-    assert len(np.unique(np.round(cube.rig.views.origins[:, 2], 6))) > 1
-    assert np.allclose(cube.rig.at(cube.angles)[0].views.origins, cube.rig.views.origins, atol=1e-6)
-    assert np.allclose(play(cube), play(cube, cube.rig.views.angles), rtol=1e-4, atol=1e-5)
+    assert len(np.unique(np.round(cube.rig.views.origins_mm[:, 2], 6))) > 1
+    assert np.allclose(cube.rig.at(cube.angles_deg)[0].views.origins_mm, cube.rig.views.origins_mm, atol=1e-6)
+    assert np.allclose(play(cube), play(cube, cube.rig.views.angles_deg), rtol=1e-4, atol=1e-5)
 
 
 def test_poor_pictures_come_with_what_would_help(run, unlike: Path) -> None:  # type: ignore[no-untyped-def]
-    told = run("check", unlike, "--n", 12, "--frame-width", 1.2, "--lamp-max", 1)
+    told = run("check", unlike, "--n", 12, "--picture-width", 1.2, "--lamp-max", 1)
     assert told.code == 0
-    assert "--frame-width" in told.out
+    assert "--picture-width" in told.out
     assert "--lamp-max 16:" in told.out
     assert "3 of the pictures" in told.out
 
 
 @pytest.mark.parametrize("quality", ["draft", "normal", "best"])
 def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, quality: str) -> None:  # type: ignore[no-untyped-def]
-    options = ["--n", 8, "--frame-width", 1, "--lamp-max", 1, "--quality", quality, "--json", "--hold", 0]
+    options = ["--n", 8, "--picture-width", 1, "--lamp-max", 1, "--quality", quality, "--json", "--hold-deg", 0]
     done = run("solve", unlike, "-o", tmp_path / "a.npz", *options)
     result = json.loads(done.out.strip().splitlines()[-1])
     assert 0 < result["iterations"] <= QUALITIES[quality][0]  # type: ignore[index]
@@ -152,7 +154,7 @@ def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, qual
 
 def test_options_are_settled_before_anything_is_read() -> None:
     with pytest.raises(InputError, match="--paper"):
-        solving.settled(Options(paper=True, hold=1.0))
+        solving.settled(Options(paper=True, hold_deg=1.0))
     assert solving.settled(Options(method="cgls")).lamp == {"power": 1}
     assert solving.settled(Options()).lamp == {}
     assert solving.settled(Options(paper=True)).lamp == {"power": 1}
@@ -162,10 +164,10 @@ def test_options_are_settled_before_anything_is_read() -> None:
     "options",
     [
         ("--lamp-power", "0.5"),
-        ("--frame-width", "1", "--elevation", "0", "--lamp-max", "1e5"),
+        ("--picture-width", "1", "--elevation-deg", "0", "--lamp-max", "1e5"),
         ("--black", "0.4"),
         ("--powers", "coarse", "--max-extinction", "0.5"),
-        ("--elevation", "-20", "--order", "best", "--shift", "1"),
+        ("--elevation-deg", "-20", "--order", "best", "--shift", "1"),
     ],
 )
 def test_odd_but_possible_options_work(run, unlike: Path, tmp_path: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
@@ -176,22 +178,24 @@ def test_odd_but_possible_options_work(run, unlike: Path, tmp_path: Path, option
 @pytest.mark.parametrize(
     "options",
     [
-        ("--frame-width", "0", "--elevation", "0"),
-        ("--frame-width", "nan", "--elevation", "0"),
+        ("--picture-width", "0", "--elevation-deg", "0"),
+        ("--picture-width", "nan", "--elevation-deg", "0"),
         ("--paper", "--n", "0"),
         ("--paper", "--n", "6", "--shape", "6,6,6"),
         ("--paper", "--shift", "2"),
     ],
 )
-def test_what_is_wrong_with_a_level_lamp_is_said_too(run, frames: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
-    done = run("check", frames, *options)
+def test_what_is_wrong_with_a_level_lamp_is_said_too(run, pictures: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
+    done = run("check", pictures, *options)
     assert done.code == 2
     assert len(done.lines) == 1
 
 
 def test_black_is_part_of_the_prediction(run, unlike: Path) -> None:  # type: ignore[no-untyped-def]
     plain, grey = (
-        json.loads(run("check", unlike, "--n", 10, "--json", "--frame-width", 0.5, *more).out)["predicted"]["psnr_mean"]
+        json.loads(run("check", unlike, "--n", 10, "--json", "--picture-width", 0.5, *more).out)["predicted"][
+            "psnr_mean"
+        ]
         for more in ((), ("--black", 0.5))
     )
     assert grey < plain - 3

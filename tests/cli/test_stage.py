@@ -18,7 +18,7 @@ shape = [4, 6, 5]
 size_mm = 60
 
 [turntable]
-stops = [10, 130]
+stops_deg = [10, 130]
 
 [[lamp]]
 name = "sun"
@@ -26,17 +26,17 @@ direction = [1, 0, -0.4]
 
 [[lamp]]
 name = "bulb"
-position = [-20, -150, 30]
+position_mm = [-20, -150, 30]
 
 [[screen]]
 name = "wall"
-centre = [90, 0, -36]
+centre_mm = [90, 0, -36]
 normal = [-1, 0, 0]
 size_mm = [40, 50]
 
 [[screen]]
 name = "side"
-centre = [0, 90, 0]
+centre_mm = [0, 90, 0]
 size_mm = [60, 70]
 
 [[picture]]
@@ -77,7 +77,7 @@ def test_a_stage_goes_through_all_commands(run, stage: Path) -> None:  # type: i
     assert made.names == ("a on wall", "b", "a on side")
     own, given = (json.loads(run("score", cube, *more, "--json").out) for more in ((), (stage,)))
     assert own["psnr_mean"] == pytest.approx(given["psnr_mean"], abs=0.2)
-    assert [view["angle"] for view in given["views"]] == [10, 130, 10]
+    assert [view["angle_deg"] for view in given["views"]] == [10, 130, 10]
     assert "bulb" in run("info", cube).out
     checked = run("check", stage)
     assert checked.code == 0
@@ -89,9 +89,9 @@ def test_a_stage_goes_through_all_commands(run, stage: Path) -> None:  # type: i
     [
         (["--stops"], 3, (7, 6)),
         (["--stops", "--screens"], 2, (6, 3 + 2 + 5)),
-        (["--angles", "0,50,90"], 3, (6, 3 + 2 + 5)),
-        (["--angles", "0,50", "--pixel-samples", "2"], 2, (6, 10)),
-        (["--angles", "10,20", "--room"], 2, (540, 960)),
+        (["--angles-deg", "0,50,90"], 3, (6, 3 + 2 + 5)),
+        (["--angles-deg", "0,50", "--pixel-samples", "2"], 2, (6, 10)),
+        (["--angles-deg", "10,20", "--room"], 2, (540, 960)),
     ],
 )
 def test_play_shows_screens_and_the_room(run, stage: Path, options: list[str], count: int, shape) -> None:  # type: ignore[no-untyped-def]
@@ -105,10 +105,10 @@ def test_play_shows_screens_and_the_room(run, stage: Path, options: list[str], c
 
 def test_a_still_is_a_png(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     cube, out = solved(run, stage), stage.parent / "still.png"
-    assert run("play", cube, "-o", out, "--angles", "10").code == 0
+    assert run("play", cube, "-o", out, "--angles-deg", "10").code == 0
     with Image.open(out) as still:
         assert still.format == "PNG"
-    done = run("play", cube, "-o", stage.parent / "two.png", "--angles", "10,20")
+    done = run("play", cube, "-o", stage.parent / "two.png", "--angles-deg", "10,20")
     assert done.code == 2
     assert "holds one picture, not 2" in done.err
 
@@ -120,7 +120,7 @@ def test_a_drawing_is_an_svg_that_is_not_overwritten(run, stage: Path) -> None: 
     for more, said in (
         (("-o", out), "exists already"),
         (("-o", stage.parent / "room.png"), "no suffix that a drawing can have: use .svg"),
-        (("-o", stage.parent / "other.svg", "--angle", 5), "--angle is for a cube"),
+        (("-o", stage.parent / "other.svg", "--angle-deg", 5), "--angle-deg is for a cube"),
     ):
         done = run("draw", stage, *more)
         assert (done.code, done.out) == (2, "")
@@ -129,9 +129,12 @@ def test_a_drawing_is_an_svg_that_is_not_overwritten(run, stage: Path) -> None: 
 
 def test_a_cubes_room_is_drawn_as_it_is_played(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     cube, out = solved(run, stage), stage.parent / "room.png"
-    for more, angle in (((), 10), (("--angle", 25), 25)):
+    for more, angle_deg in (((), 10), (("--angle-deg", 25), 25)):
         assert run("draw", cube, "-o", out, "--overwrite", *more).code == 0
-        assert run("play", cube, "-o", stage.parent / "still.png", "--room", "--angles", angle, "--overwrite").code == 0
+        assert (
+            run("play", cube, "-o", stage.parent / "still.png", "--room", "--angles-deg", angle_deg, "--overwrite").code
+            == 0
+        )
         with Image.open(out) as drawn, Image.open(stage.parent / "still.png") as played:
             np.testing.assert_array_equal(np.asarray(drawn), np.asarray(played))
     done = run("draw", cube, "-o", stage.parent / "other.svg")
@@ -152,13 +155,13 @@ def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  
     ("options", "said"),
     [
         (["--n", "8"], "--n is not for a stage"),
-        (["--elevation", "0"], "--elevation is not for a stage"),
+        (["--elevation-deg", "0"], "--elevation-deg is not for a stage"),
         (["--lamp-max", "4"], "--lamp-max is not for a stage"),
         (["--lamp-power", "1"], "--lamp-power is not for a stage"),
         (["--paper"], "--paper is not for a stage"),
         (["--method", "sirt"], "cannot choose the power of lamp 'sun'"),
         (["--quality", "best", "--iterations", "3"], "--quality and --iterations both"),
-        (["--hold", "90"], "wider than half the way"),
+        (["--hold-deg", "90"], "wider than half the way"),
         (["--lamp-samples", "0"], "lamp-samples"),
     ],
 )
@@ -174,8 +177,8 @@ def test_options_that_contradict_a_stage_are_refused(run, stage: Path, options: 
     [
         ("direction = [1, 0, -0.4]", "direction = [0, 1, 0]", "edge-on"),
         ("direction = [1, 0, -0.4]", "direction = [-1, 0, -0.4]", "'sun'"),
-        ("position = [-20, -150, 30]", "position = [0, 0, 3]", "'bulb'"),
-        ("centre = [90, 0, -36]", "centre = [90, 400, -36]", "miss"),
+        ("position_mm = [-20, -150, 30]", "position_mm = [0, 0, 3]", "'bulb'"),
+        ("centre_mm = [90, 0, -36]", "centre_mm = [90, 400, -36]", "miss"),
         ('lamps = ["bulb"]', 'lamps = ["moon"]', "'moon'"),
         ("size_mm = [40, 50]", "size_mm = [0, 50]", "'wall'"),
         ('name = "bulb"', 'name = "sun"', "two lamps called 'sun'"),
@@ -196,7 +199,7 @@ def test_what_cannot_be_is_said_by_check_and_solve(run, stage: Path, old: str, n
 def test_a_turntables_cube_is_played_as_a_stages(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     folder = stage.parent / "pictures"
     cube = stage.parent / "turntable.zarr"
-    done = run("solve", folder, "-o", cube, "--shape", "4,6,5", "--iterations", "2", "--frame-width", "0.5")
+    done = run("solve", folder, "-o", cube, "--shape", "4,6,5", "--iterations", "2", "--picture-width", "0.5")
     assert done.code == 0, done.err
     shown = {}
     for name, options in {"stops": ["--stops"], "screens": ["--screens", "--stops"]}.items():
@@ -206,7 +209,7 @@ def test_a_turntables_cube_is_played_as_a_stages(run, stage: Path) -> None:  # t
     done = run("play", cube, "-o", stage.parent / "x.npy", "--room", "--target")
     assert done.code == 2
     assert "--room shows all" in done.err
-    assert run("play", cube, "-o", stage.parent / "room.npy", "--room", "--angles", "5").code == 0
+    assert run("play", cube, "-o", stage.parent / "room.npy", "--room", "--angles-deg", "5").code == 0
     done = run("score", cube, stage)
     assert done.code == 2
     assert "was not made on the stage" in done.err
@@ -222,7 +225,7 @@ def test_a_lamps_size_that_is_not_minded_is_said(run, stage: Path) -> None:  # t
 
 def test_a_cube_before_which_nothing_turns_is_played_once(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     still = STAGE.replace("size_mm = 60\n", "size_mm = 60\nturns = false\n").replace(
-        "stops = [10, 130]", "stops = [10]"
+        "stops_deg = [10, 130]", "stops_deg = [10]"
     )
     stage.write_text(still.replace('"pictures"', '"pictures/b.png"'))
     assert run("play", solved(run, stage), "-o", stage.parent / "x.npy", "--screens").code == 0

@@ -52,30 +52,32 @@ def chords(camera: Camera, turn: Array) -> Array:
     return lengths
 
 
-@pytest.mark.parametrize(("rear", "eye", "angle"), [(False, 40.0, 0.0), (False, 40.0, 35.0), (True, 170.0, 35.0)])
+@pytest.mark.parametrize(("rear", "eye", "angle_deg"), [(False, 40.0, 0.0), (False, 40.0, 35.0), (True, 170.0, 35.0)])
 @pytest.mark.parametrize("table", STAGES)
-def test_a_screen_seen_head_on_shows_its_picture(rear: bool, eye: float, angle: float, table: dict[str, Any]) -> None:
+def test_a_screen_seen_head_on_shows_its_picture(
+    rear: bool, eye: float, angle_deg: float, table: dict[str, Any]
+) -> None:
     size, pitch = 5, 2.0
     cube = cube_on(
         one(Screen("wall", (100, 3, 2), (28, 20), pitch, (-1, 0, 0), rear=rear), Lamp("sun", (1, 0.1, 0.05)), **table)
     )
-    wanted = play(cube, [angle])[0]
+    wanted = play(cube, [angle_deg])[0]
     rows, columns = wanted.shape[:2]
     field = np.degrees(2 * np.arctan(columns * pitch / 2 / abs(100 - eye)))
     camera = Camera((eye, 3, 2), (100, 3, 2), UP, field, (rows * size, columns * size))
-    seen = room_picture(cube, angle, camera)[size // 2 :: size, size // 2 :: size]
+    seen = room_picture(cube, angle_deg, camera)[size // 2 :: size, size // 2 :: size]
     assert np.ptp(wanted) > 0.3
     np.testing.assert_allclose(seen[1:-1, 1:-1], wanted[1:-1, 1:-1], atol=0.025)
 
 
-@pytest.mark.parametrize("angle", [0.0, 25.0])
-def test_the_cube_dims_a_white_screen_behind_it_along_each_chord(angle: float) -> None:
+@pytest.mark.parametrize("angle_deg", [0.0, 25.0])
+def test_the_cube_dims_a_white_screen_behind_it_along_each_chord(angle_deg: float) -> None:
     stage = one(Screen("wall", (60, 0, 0), (90, 80), 10.0, (-1, 0, 0)), Lamp("sun", (0.1, 1, 0)))
     camera = Camera((-50, 9, 14), (0, 0, 0), UP, 30.0, (60, 72))
     clear, dim = (
-        room_picture(cube_on(stage, homogeneous(*each)), angle, camera) for each in ((0, 0, 0), (0.02, 0.05, 0.1))
+        room_picture(cube_on(stage, homogeneous(*each)), angle_deg, camera) for each in ((0, 0, 0), (0.02, 0.05, 0.1))
     )
-    lengths = chords(camera, standing(cube_on(stage), angle).turn)
+    lengths = chords(camera, standing(cube_on(stage), angle_deg).turn)
     white = np.all(clear == 1, axis=2)  # elsewhere are edges, the table and the lamp
     assert np.sum(white & (lengths > 5)) > 700
     assert np.mean(white[lengths > 0]) > 0.4
@@ -107,11 +109,11 @@ def test_the_back_of_a_screen_is_one_grey() -> None:
 
 @pytest.mark.parametrize("channels", [1, 3])
 def test_a_whole_turn_changes_nothing(channels: int) -> None:
-    rig = turntable(GRID, [20.0, 100.0], elevation=20.0, picture_shape=(3, 5))
+    rig = turntable(GRID, [20.0, 100.0], elevation_deg=20.0, picture_shape=(3, 5))
     extinction = np.random.default_rng(1).uniform(0, 0.1, (channels, *GRID.shape)).astype(np.float32)
     cube = Cube(extinction, GRID, rig)
     show = room_player(cube, camera_for(cube, (27, 40)))
-    first, after, other = (show(angle) for angle in (33.0, 393.0, 70.0))
+    first, after, other = (show(angle_deg) for angle_deg in (33.0, 393.0, 70.0))
     np.testing.assert_allclose(first, after, atol=1e-3)
     assert np.abs(first - other).max() > 0.1
     assert first.shape == (27, 40, 3)
@@ -121,7 +123,7 @@ def test_a_whole_turn_changes_nothing(channels: int) -> None:
 @pytest.mark.parametrize("table", STAGES)
 @pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])
 def test_the_table_carries_what_turns_and_nothing_else(table: dict[str, Any], axis: tuple[float, float, float]) -> None:
-    lamps = Lamp("fixed", position=(-50, 10, 5)), Lamp("carried", position=(-40, 20, 9), turns=True)
+    lamps = Lamp("fixed", position_mm=(-50, 10, 5)), Lamp("carried", position_mm=(-40, 20, 9), turns=True)
     screens = Screen("fixed", (60, 0, 9), (20, 16), 4.0), Screen("carried", (0, 55, 0), (12, 20), 4.0, turns=True)
     shots = tuple(Shot(screen.name, screen.name, ("fixed", "carried")) for screen in screens)
     cube = cube_on(Stage(GRID, lamps, screens, shots, axis=axis, **table))
@@ -140,9 +142,11 @@ def test_the_table_carries_what_turns_and_nothing_else(table: dict[str, Any], ax
 
 
 def test_a_turntable_s_screen_stands_still_where_the_beam_through_the_cube_s_middle_lands() -> None:
-    cube = Cube(homogeneous(0.1, 0.1, 0.1), GRID, turntable(GRID, [20.0, 100.0], elevation=30.0, picture_shape=(3, 5)))
-    for angle in (0.0, 20.0, 77.0):
-        room = standing(cube, angle)
+    cube = Cube(
+        homogeneous(0.1, 0.1, 0.1), GRID, turntable(GRID, [20.0, 100.0], elevation_deg=30.0, picture_shape=(3, 5))
+    )
+    for angle_deg in (0.0, 20.0, 77.0):
+        room = standing(cube, angle_deg)
         wide = GRID.size_mm[1]
         middle = room.screens[0].corners.mean(axis=0)
         np.testing.assert_allclose(middle, (1.5 * wide, 0, -1.5 * wide / np.sqrt(3)), atol=1e-9)
@@ -156,11 +160,11 @@ def test_a_turntable_s_screen_stands_still_where_the_beam_through_the_cube_s_mid
 def test_the_camera_sees_everything_at_every_angle(table: dict[str, Any], size: tuple[int, int]) -> None:
     screens = Screen("wall", (60, 0, 9), (20, 16), 4.0), Screen("floor", (9, 60, -30), (30, 20), 4.0, turns=True)
     shots = tuple(Shot(screen.name, screen.name, ("sun",)) for screen in screens)
-    cube = cube_on(Stage(GRID, (Lamp("sun", (1, 0, -1)),), screens, shots, stops=(0.0,), **table))
+    cube = cube_on(Stage(GRID, (Lamp("sun", (1, 0, -1)),), screens, shots, stops_deg=(0.0,), **table))
     camera = camera_for(cube, size)
     assert camera.eye[2] > 0
-    for angle in (0.0, 30.0, 180.0, 270.0):
-        right, up, ahead = camera.axes @ (extent(GRID, standing(cube, angle)) - camera.eye).T
+    for angle_deg in (0.0, 30.0, 180.0, 270.0):
+        right, up, ahead = camera.axes @ (extent(GRID, standing(cube, angle_deg)) - camera.eye).T
         assert np.all(ahead > 0)
         assert np.all(np.abs(right / ahead) < camera.spread[0])
         assert np.all(np.abs(up / ahead) < camera.spread[1])
@@ -186,7 +190,7 @@ def test_the_camera_faces_the_first_screen_of_a_lamp_that_circles(first: float) 
     stops = tuple(np.arange(first, first + 360, 60))
     shots = tuple(Shot(f"{stop}", "wall", ("sun",), i) for i, stop in enumerate(stops))
     cube = cube_on(Stage(GRID, (lamp,), (wall,), shots, stops, cube_turns=False))
-    screen = standing(cube, float(np.unique(cube.angles)[0])).screens[0]
+    screen = standing(cube, float(np.unique(cube.angles_deg)[0])).screens[0]
     assert screen.facing @ (np.array(camera_for(cube).eye) - screen.corners.mean(axis=0)) > 0
 
 
@@ -210,10 +214,10 @@ def test_fitting_leaves_the_margin_free_and_no_more() -> None:
 
 
 def test_a_lamp_that_is_off_and_one_behind_the_eye_do_no_harm() -> None:
-    lamps = Lamp("near", position=(-30, 0, 0)), Lamp("later", position=(0, -30, 0))
+    lamps = Lamp("near", position_mm=(-30, 0, 0)), Lamp("later", position_mm=(0, -30, 0))
     screen = Screen("wall", (40, 0, 0), (30, 30), 5.0)
     stage = Stage(
-        GRID, lamps, (screen,), (Shot("a", "wall", ("near",)), Shot("b", "wall", ("later",), 1)), stops=(0.0, 90.0)
+        GRID, lamps, (screen,), (Shot("a", "wall", ("near",)), Shot("b", "wall", ("later",), 1)), stops_deg=(0.0, 90.0)
     )
     cube = cube_on(stage)
     assert [float(lamp.light.max()) > 0 for lamp in standing(cube, 10.0).lamps] == [True, False]

@@ -22,10 +22,10 @@ SHAPES = [(3, 5, 7), (6, 4, 5)]
 def stage(shape: tuple[int, int, int] = SHAPES[0], way: Any = (1.0, 0.2, -0.4), **changes: Any) -> Stage:
     far = tuple(40.0 * float(part) for part in way)
     given: dict[str, Any] = {
-        "lamps": (Lamp("sun", direction=way), Lamp("bulb", position=(-3.0, -40.0, 9.0), colour=(0.2, 0.4, 1.0))),
+        "lamps": (Lamp("sun", direction=way), Lamp("bulb", position_mm=(-3.0, -40.0, 9.0), colour=(0.2, 0.4, 1.0))),
         "screens": (Screen("wall", (far[0], far[1], far[2]), (6.0, 4.0), 2.0), Screen("end", (4, 44, -9), (9, 6), 2.0)),
         "shots": (Shot("ann", "wall", ("sun",)), Shot("bob", "end", ("bulb",), 0), Shot("cat", "wall", ("sun",), 1)),
-        "stops": (0.0, 95.0),
+        "stops_deg": (0.0, 95.0),
     }
     return Stage(Grid(shape, 2.0), **(given | changes))
 
@@ -44,11 +44,11 @@ def crowd(count: int) -> Stage:
 
 STAGES = {
     "plain": stage(),
-    "one stop": stage(stops=(30.0, 60.0), shots=stage().shots[:2]),
+    "one stop": stage(stops_deg=(30.0, 60.0), shots=stage().shots[:2]),
     "crowd": crowd(8),
     "about x": stage(axis=(1.0, 0.0, 0.0), cube_turns=False),
     "inside, behind, edge-on": stage(
-        lamps=(Lamp("sun", direction=(0.0, 0.0, -1.0)), Lamp("bulb", position=(1.0, 0.0, 0.0))),
+        lamps=(Lamp("sun", direction=(0.0, 0.0, -1.0)), Lamp("bulb", position_mm=(1.0, 0.0, 0.0))),
         screens=(Screen("wall", (40.0, 0.0, 0.0), (6.0, 4.0), 2.0), Screen("end", (0.0, 0.0, 30.0), (9.0, 6.0), 2.0)),
         shots=(*stage().shots, Shot("dot", "end", ("sun",)), Shot("eve", "wall", ("bulb",))),
     ),
@@ -96,7 +96,7 @@ def test_a_drawing_is_xml_with_finite_numbers_and_all_names(key: str) -> None:
 def test_parallel_light_keeps_the_cubes_width_and_a_points_light_grows(
     shape: tuple[int, int, int], way: tuple[float, float, float], turn: float
 ) -> None:
-    for panel, (right, up) in zip(panels(stage(shape, way, stops=(turn, 95.0))), ((0, 1), (0, 2)), strict=True):
+    for panel, (right, up) in zip(panels(stage(shape, way, stops_deg=(turn, 95.0))), ((0, 1), (0, 2)), strict=True):
         (cube,), (parallel, point) = outlines(panel, "cube"), outlines(panel, "beam")
         across = (-way[up], way[right])
         assert width(parallel, across) == pytest.approx(width(cube, across), abs=0.05)
@@ -120,11 +120,15 @@ def test_both_panels_are_to_the_scale_of_the_bar(shape: tuple[int, int, int]) ->
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("angle", [0.0, 37.0, 90.0])
+@pytest.mark.parametrize("angle_deg", [0.0, 37.0, 90.0])
 @pytest.mark.parametrize("turns", [True, False])
-def test_the_cube_is_drawn_as_the_first_stop_turns_it(shape: tuple[int, int, int], angle: float, turns: bool) -> None:
-    above, aside = (outlines(each, "cube")[0] for each in panels(stage(shape, stops=(angle, 1.0), cube_turns=turns)))
-    cos, sin = abs(math.cos(math.radians(angle * turns))), abs(math.sin(math.radians(angle * turns)))
+def test_the_cube_is_drawn_as_the_first_stop_turns_it(
+    shape: tuple[int, int, int], angle_deg: float, turns: bool
+) -> None:
+    above, aside = (
+        outlines(each, "cube")[0] for each in panels(stage(shape, stops_deg=(angle_deg, 1.0), cube_turns=turns))
+    )
+    cos, sin = abs(math.cos(math.radians(angle_deg * turns))), abs(math.sin(math.radians(angle_deg * turns)))
     nz, ny, nx = shape
     spans = np.array([nx * cos + ny * sin, nx * sin + ny * cos]) / nz
     assert np.ptp(above, axis=0) / np.ptp(aside[:, 1]) == pytest.approx(spans, rel=0.01)

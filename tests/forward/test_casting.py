@@ -14,8 +14,8 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.transfer import encode
-from lightcube.pictures.fitting import targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import as_levels
+from lightcube.pictures.targets import Targets
 from lightcube.planning.consistency import mirror_conflicts
 from lightcube.projection.projector import Projector
 from lightcube.scoring.metrics import mean_psnr, psnr, score, ssim
@@ -24,22 +24,24 @@ from tests.helpers import plain
 SHAPE = (3, 5, 7)
 
 
-def make_cube(angles: list[float], elevation: float = 0.0, powers: np.ndarray | None = None, **more: object) -> Cube:
+def make_cube(
+    angles_deg: list[float], elevation_deg: float = 0.0, powers: np.ndarray | None = None, **more: object
+) -> Cube:
     grid = Grid(SHAPE, 0.5)
     extinction = np.random.default_rng(0).random((3, *SHAPE)).astype(np.float32)
-    rig = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
+    rig = turntable(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=(3, 5))
     return Cube(extinction, grid, rig, lamp_powers=powers, **more)  # type: ignore[arg-type]
 
 
-def powers_at(cube: Cube, angles: ArrayLike) -> np.ndarray:
+def powers_at(cube: Cube, angles_deg: ArrayLike) -> np.ndarray:
     """Of the one lamp at any angles."""
-    return moment(cube, angles)[1]
+    return moment(cube, angles_deg)[1]
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0, -20.0])
-def test_what_is_played_is_the_plain_forward_computation(elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0, -20.0])
+def test_what_is_played_is_the_plain_forward_computation(elevation_deg: float) -> None:
     powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
-    cube = make_cube([10.0, 100.0], elevation, powers)
+    cube = make_cube([10.0, 100.0], elevation_deg, powers)
     expected = np.exp(-plain.absorbance_pictures(cube.grid, cube.rig.views, cube.extinction)) * powers[:, None, None, :]
     assert np.allclose(play(cube), expected, rtol=1e-5)
     assert np.allclose(play(cube, [10.0, 100.0]), expected, rtol=1e-5)
@@ -47,22 +49,22 @@ def test_what_is_played_is_the_plain_forward_computation(elevation: float) -> No
 
 def test_many_views_come_in_order_and_one_by_one() -> None:
     cube = make_cube([10.0, 100.0])
-    angles = np.linspace(0, 360, 37)
-    one_by_one = np.stack([play(cube, [angle])[0] for angle in angles])
-    assert np.array_equal(play(cube, angles), one_by_one)
+    angles_deg = np.linspace(0, 360, 37)
+    one_by_one = np.stack([play(cube, [angle_deg])[0] for angle_deg in angles_deg])
+    assert np.array_equal(play(cube, angles_deg), one_by_one)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-@pytest.mark.parametrize("whole_screen", [False, True])
-def test_a_player_shows_what_play_does_however_often_it_is_asked(elevation: float, whole_screen: bool) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+@pytest.mark.parametrize("whole_shadow", [False, True])
+def test_a_player_shows_what_play_does_however_often_it_is_asked(elevation_deg: float, whole_shadow: bool) -> None:
     powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
-    cube = make_cube([10.0, 100.0], elevation, powers)
-    show = player(cube, whole_screen=whole_screen)
-    angles = [3.0, 100.0, -77.7]
-    expected = play(cube, angles, whole_screen=whole_screen)
-    assert np.array_equal(show(angles), expected)
-    assert np.array_equal(np.concatenate([show(angle) for angle in angles]), expected)
-    assert np.array_equal(show(None), play(cube, whole_screen=whole_screen))
+    cube = make_cube([10.0, 100.0], elevation_deg, powers)
+    show = player(cube, whole_shadow=whole_shadow)
+    angles_deg = [3.0, 100.0, -77.7]
+    expected = play(cube, angles_deg, whole_shadow=whole_shadow)
+    assert np.array_equal(show(angles_deg), expected)
+    assert np.array_equal(np.concatenate([show(angle_deg) for angle_deg in angles_deg]), expected)
+    assert np.array_equal(show(None), play(cube, whole_shadow=whole_shadow))
 
 
 def test_a_player_refuses_what_are_no_angles() -> None:
@@ -73,14 +75,14 @@ def test_a_player_refuses_what_are_no_angles() -> None:
         show([])
 
 
-@pytest.mark.parametrize(("elevation", "window"), [(0.0, (1, 36)), (35.0, (5, 34)), (0.0, None), (20.0, None)])
-def test_strips_of_beams_and_batches_leave_no_seam(elevation: float, window: tuple[int, int] | None) -> None:
+@pytest.mark.parametrize(("elevation_deg", "window"), [(0.0, (1, 36)), (35.0, (5, 34)), (0.0, None), (20.0, None)])
+def test_strips_of_beams_and_batches_leave_no_seam(elevation_deg: float, window: tuple[int, int] | None) -> None:
     """Few views, shared by strips, and more views than a batch: still the plain forward computation."""
     grid = Grid((1, 30, 36), 0.5)
-    angles = np.linspace(1, 170, 2) if window else np.linspace(1, 170, 17)
+    angles_deg = np.linspace(1, 170, 2) if window else np.linspace(1, 170, 17)
     extinction = np.random.default_rng(6).random((2, 1, 30, 36)).astype(np.float32)
-    rig = turntable(grid, angles, elevation=elevation, picture_shape=window)
-    cube = Cube(extinction, grid, rig, lamp_powers=np.random.default_rng(7).random((len(angles), 2)) + 0.5)
+    rig = turntable(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=window)
+    cube = Cube(extinction, grid, rig, lamp_powers=np.random.default_rng(7).random((len(angles_deg), 2)) + 0.5)
     matrix = Projector(grid, rig)
     absorbance = matrix.forward(columns_from_volume(extinction).reshape(matrix.shape[1], -1))
     block = absorbance.reshape(-1, rig.picture_shape[0] * 2)
@@ -90,7 +92,7 @@ def test_strips_of_beams_and_batches_leave_no_seam(elevation: float, window: tup
 
 def test_beams_that_miss_the_cube_show_the_lamp() -> None:
     cube = make_cube([10.0], powers=np.array([[3.0, 2.0, 1.0]]))
-    whole = play(cube, [0.0], whole_screen=True)
+    whole = play(cube, [0.0], whole_shadow=True)
     assert np.allclose(whole[0, :, 0], [3.0, 2.0, 1.0])
     window = play(cube, [0.0])
     assert np.allclose(whole[0][:, 2:-2], window[0], rtol=1e-6)
@@ -98,7 +100,7 @@ def test_beams_that_miss_the_cube_show_the_lamp() -> None:
 
 def test_the_whole_screen_at_the_stops_has_the_pictures_in_its_middle() -> None:
     cube = make_cube([10.0, 77.0], 35.0)
-    whole, window = play(cube, whole_screen=True), play(cube)
+    whole, window = play(cube, whole_shadow=True), play(cube)
     top, left = ((big - small) // 2 for big, small in zip(whole.shape[1:3], window.shape[1:3], strict=True))
     rows, columns = window.shape[1:3]
     assert np.allclose(whole[:, top : top + rows, left : left + columns], window, rtol=1e-6)
@@ -118,10 +120,12 @@ def test_the_lamp_is_linear_in_its_logarithm_and_periodic() -> None:
 
 def test_lamps_at_several_elevations_stand_as_at_the_nearest_stop() -> None:
     grid = Grid(SHAPE)
-    one, other = (turntable(grid, [a], elevation=e, picture_shape=(3, 5)).views for a, e in ((10, 0.0), (100, 20.0)))
+    one, other = (
+        turntable(grid, [a], elevation_deg=e, picture_shape=(3, 5)).views for a, e in ((10, 0.0), (100, 20.0))
+    )
     cube = Cube(np.zeros((3, *SHAPE), np.float32), grid, Rig.of(one.joined(other)))
     assert np.allclose(play(cube), 1)
-    assert moment(cube, [20.0, 90.0])[0].views.elevations.tolist() == [0, 20]
+    assert moment(cube, [20.0, 90.0])[0].views.elevations_deg.tolist() == [0, 20]
 
 
 def test_psnr_is_its_definition_weighted_and_capped() -> None:
@@ -158,22 +162,22 @@ def test_ssim_does_not_see_pixels_of_no_weight() -> None:
     assert ssim(spoiled, wanted, weight) < 0.99
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 @pytest.mark.parametrize("count", [7, 24, 60])
-def test_a_turn_meets_every_stop_and_stays_even_elsewhere(elevation: float, count: int) -> None:
-    cube = make_cube([10.1, 77.3, 140.0], elevation)
-    angles = turn(cube, count)
+def test_a_turn_meets_every_stop_and_stays_even_elsewhere(elevation_deg: float, count: int) -> None:
+    cube = make_cube([10.1, 77.3, 140.0], elevation_deg)
+    angles_deg = turn(cube, count)
     even = np.arange(count) * 360 / count
-    assert np.all(np.diff(angles) > 0)
-    assert np.max(np.abs(angles - even)) <= 180 / count + 1e-9
-    for stop in cube.rig.views.angles:
-        assert np.min(np.abs(angles - stop)) < 1e-9
-        assert (np.min(np.abs(angles - stop - 180)) < 1e-9) == (elevation == 0)
-    assert np.sum(np.abs(angles - even) > 1e-9) <= (6 if elevation == 0 else 3)
+    assert np.all(np.diff(angles_deg) > 0)
+    assert np.max(np.abs(angles_deg - even)) <= 180 / count + 1e-9
+    for stop in cube.rig.views.angles_deg:
+        assert np.min(np.abs(angles_deg - stop)) < 1e-9
+        assert (np.min(np.abs(angles_deg - stop - 180)) < 1e-9) == (elevation_deg == 0)
+    assert np.sum(np.abs(angles_deg - even) > 1e-9) <= (6 if elevation_deg == 0 else 3)
     laps = turn(cube, 2 * count, 0.0, 720.0)
-    assert np.allclose(laps[count:], angles + 360)
+    assert np.allclose(laps[count:], angles_deg + 360)
     back = turn(cube, count, 360.0, 0.0)
-    assert all(np.min(np.abs(np.remainder(back - stop + 180, 360) - 180)) < 1e-9 for stop in cube.rig.views.angles)
+    assert all(np.min(np.abs(np.remainder(back - stop + 180, 360) - 180)) < 1e-9 for stop in cube.rig.views.angles_deg)
     part = turn(cube, 10, 0.0, 50.0)
     assert part.min() >= -2.5
     assert part.max() <= 50.0
@@ -184,53 +188,53 @@ def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
     cube = make_cube([10.0, 100.0], 35.0, powers, names=("a", "b"))
     shown = play(cube)
     random = np.random.default_rng(3)
-    frames = Frames(
+    targets = Targets(
         np.clip(shown * random.uniform(0.8, 1.1, shown.shape), 0, None).astype(np.float32),
         cube.rig,
         random.integers(0, 2, shown.shape[:3]).astype(np.float32),
         ("a", "b"),
     )
-    scores = score(cube, frames)
+    scores = score(cube, targets)
     for index, view in enumerate(scores["views"]):
-        pair = encode(shown[index]), encode(frames.pictures[index])
-        assert view["psnr"] == pytest.approx(psnr(*pair, frames.weight[index]), rel=1e-4)
+        pair = encode(shown[index]), encode(targets.pictures[index])
+        assert view["psnr"] == pytest.approx(psnr(*pair, targets.weight[index]), rel=1e-4)
         difference = deltaE_ciede2000(rgb2lab(pair[0]), rgb2lab(pair[1]))
-        weight = frames.weight[index]
+        weight = targets.weight[index]
         assert view["delta_e"] == pytest.approx(np.sum(difference * weight) / weight.sum(), rel=1e-3)
         assert view["name"] == "ab"[index]
     assert scores["psnr_mean"] == pytest.approx(np.mean([view["psnr"] for view in scores["views"]]))
     assert scores["psnr_min"] == min(view["psnr"] for view in scores["views"])
-    assert mean_psnr(shown, frames) == pytest.approx(scores["psnr_mean"], rel=1e-4)
-    assert score(cube, Frames(shown, cube.rig))["psnr_mean"] == 100
+    assert mean_psnr(shown, targets) == pytest.approx(scores["psnr_mean"], rel=1e-4)
+    assert score(cube, Targets(shown, cube.rig))["psnr_mean"] == 100
 
 
-def test_the_score_without_frames_is_against_the_8_bit_targets() -> None:
+def test_the_score_without_targets_is_against_the_8_bit_ones() -> None:
     cube = make_cube([10.0, 100.0])
-    frames = Frames(np.clip(play(cube), 0, 1), cube.rig)
-    with_targets = Cube(cube.extinction, cube.grid, cube.rig, targets=targets(frames))
+    targets = Targets(np.clip(play(cube), 0, 1), cube.rig)
+    with_targets = Cube(cube.extinction, cube.grid, cube.rig, targets=as_levels(targets))
     assert 55 < score(with_targets)["psnr_mean"] < 65
     with pytest.raises(InputError, match="no targets"):
         score(cube)
     with pytest.raises(InputError, match="do not fit"):
-        score(cube, frames.take([0]))
+        score(cube, targets.take([0]))
 
 
 def test_mirror_conflicts_are_found_only_where_there_are_any() -> None:
     grid = Grid(SHAPE)
     random = np.random.default_rng(4)
-    for elevation, expected in ((0.0, [(0, 2)]), (35.0, [])):
-        rig = turntable(grid, [10, 50, 190], elevation=elevation, picture_shape=(3, 5))
+    for elevation_deg, expected in ((0.0, [(0, 2)]), (35.0, [])):
+        rig = turntable(grid, [10, 50, 190], elevation_deg=elevation_deg, picture_shape=(3, 5))
         pictures = random.random((3, 3, 5, 3)).astype(np.float32)
-        assert mirror_conflicts(Frames(pictures, rig)) == expected
+        assert mirror_conflicts(Targets(pictures, rig)) == expected
         pictures[2] = pictures[0][:, ::-1]
-        assert mirror_conflicts(Frames(pictures, rig)) == []
+        assert mirror_conflicts(Targets(pictures, rig)) == []
 
 
 def test_contact_sheets_show_wanted_above_shown_above_difference() -> None:
     cube = make_cube([10.0, 100.0])
     shown = play(cube)
     pictures = np.ones_like(shown)
-    sheet = contact_sheet(shown, Frames(pictures, cube.rig), [1.0, 2.0])
+    sheet = contact_sheet(shown, Targets(pictures, cube.rig), [1.0, 2.0])
     assert sheet.ndim == 3
     assert sheet.dtype == np.uint8
     tile = 43 * 3  # 3 rows enlarged 43-fold
@@ -238,16 +242,16 @@ def test_contact_sheets_show_wanted_above_shown_above_difference() -> None:
     assert np.all(sheet[top + 5, 12] == 255)
     expected = np.rint(encode(shown[0, 0, 0]) * 255)
     assert np.all(np.abs(sheet[top + tile + 2 + 5, 12].astype(int) - expected) <= 1)
-    many = Frames(np.ones((50, 3, 5, 3), np.float32), turntable(cube.grid, np.arange(50), picture_shape=(3, 5)))
+    many = Targets(np.ones((50, 3, 5, 3), np.float32), turntable(cube.grid, np.arange(50), picture_shape=(3, 5)))
     assert contact_sheet(many.pictures, many, [1.0] * 50).shape[1] <= 1800 + 8
 
 
 def test_the_nearest_stop_stands_beside() -> None:
     rig = turntable(Grid(SHAPE), [10.0, 350.0], picture_shape=(3, 5))
     pictures = np.stack([np.full((3, 5, 3), 0.25), np.full((3, 5, 3), 0.75)]).astype(np.float32)
-    frames = Frames(pictures, rig)
+    targets = Targets(pictures, rig)
     shown = np.zeros((3, 3, 5, 3), np.float32)
-    beside = np.stack(list(beside_targets(shown, frames, np.array([1.0, 359.0, 181.0]))))
+    beside = np.stack(list(beside_targets(shown, targets, np.array([1.0, 359.0, 181.0]))))
     assert beside.shape == (3, 3, 12, 3)
     assert [float(p[0, -1, 0]) for p in beside] == [0.25, 0.75, 0.75]
 
@@ -258,19 +262,19 @@ def test_cast_is_lazy() -> None:
     assert np.array_equal(next(pictures), play(cube)[0])
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_a_picture_that_stands_aside_is_shown_there(elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_a_picture_that_stands_aside_is_shown_there(elevation_deg: float) -> None:
     """At and around each stop the window is where the stop's picture stands; level, half a turn on, mirrored."""
     grid = Grid((5, 8, 6))
-    rig = turntable(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 2))
+    rig = turntable(grid, [20.0, 110.0], elevation_deg=elevation_deg, picture_shape=(3, 2))
     offsets = np.array([[1, -1], [-1, 0]])
     moved = rig.shifted(offsets)
     extinction = np.random.default_rng(5).random((3, 5, 8, 6)).astype(np.float32)
     cube = Cube(extinction, grid, moved)
     assert np.allclose(play(cube), play(cube, [20.0, 110.0]), atol=1e-6)
-    whole = play(cube, [20.3], whole_screen=True)[0]
+    whole = play(cube, [20.3], whole_shadow=True)[0]
     rows, columns = whole.shape[0] // 2, whole.shape[1] // 2
     window = whole[rows - 1 - 1 : rows + 2 - 1, columns - 1 + 1 : columns + 1 + 1]
     assert np.allclose(play(cube, [20.3])[0], window, atol=1e-6)
-    if elevation == 0:
+    if elevation_deg == 0:
         assert np.allclose(play(cube, [200.0])[0], play(cube, [20.0])[0][:, ::-1], atol=1e-6)

@@ -47,8 +47,8 @@ def on_stage(stage: Stage, *, lamp_samples: int = 1, pixel_samples: int = 1, **m
     return Cube(extinction.astype(np.float32), GRID, rig, powers, **more)
 
 
-def table(*angles: float, elevation: float = 0.0) -> Rig:
-    return turntable(GRID, angles, elevation=elevation, picture_shape=(3, 5))
+def table(*angles_deg: float, elevation_deg: float = 0.0) -> Rig:
+    return turntable(GRID, angles_deg, elevation_deg=elevation_deg, picture_shape=(3, 5))
 
 
 def shifted(rig: Rig) -> Rig:
@@ -58,7 +58,7 @@ def shifted(rig: Rig) -> Rig:
 
 LAMPS = (
     Lamp("sun", direction=(2.0, 0.3, -1.2), colour=(1.0, 0.5, 0.0), reach_mm=6.0, falloff_mm=8.0, size_deg=5.0),
-    Lamp("bulb", position=(-9.0, 2.0, 7.0), full_at_mm=12.0, falloff_mm=np.inf, reach_mm=3.0, size_deg=9.0),
+    Lamp("bulb", position_mm=(-9.0, 2.0, 7.0), full_at_mm=12.0, falloff_mm=np.inf, reach_mm=3.0, size_deg=9.0),
     Lamp("moon", direction=(1.0, -0.4, -1.1), reach_mm=10.0, falloff_mm=0.0, turns=True),
 )
 SCREENS = (
@@ -74,16 +74,16 @@ SHOTS = (
 )
 STOPS = (-10.0, 130.0, 200.0)
 TURNING = Stage(GRID, LAMPS, SCREENS, SHOTS, STOPS, (0.1, -0.2, 1.0))
-FAR = Stage(GRID, LAMPS[:1], (replace(SCREENS[0], centre=(60.0, 8.0, -35.0)),), (Shot("a", "wall", ("sun",)),))
+FAR = Stage(GRID, LAMPS[:1], (replace(SCREENS[0], centre_mm=(60.0, 8.0, -35.0)),), (Shot("a", "wall", ("sun",)),))
 CUBES = {
     "level": on_table(table(10, 75, 140)),
     "level, one stop": on_table(table(30)),
     "level, stops half a turn apart": on_table(table(20, 110, 200, 290), hold_deg=4.0),
-    "raised": on_table(table(0, 77, 181, 300, elevation=35)),
-    "from below, held": on_table(table(0, 10, 77, 300, elevation=-20), hold_deg=8.0),
+    "raised": on_table(table(0, 77, 181, 300, elevation_deg=35)),
+    "from below, held": on_table(table(0, 10, 77, 300, elevation_deg=-20), hold_deg=8.0),
     "level, moved, held": on_table(shifted(table(5, 95, 170)), hold_deg=3.0, transfer="linear"),
-    "raised, moved": on_table(shifted(table(5, 95, 270, elevation=30))),
-    "one colour": on_table(table(10, 75, 140, elevation=10), channels=1),
+    "raised, moved": on_table(shifted(table(5, 95, 270, elevation_deg=30))),
+    "one colour": on_table(table(10, 75, 140, elevation_deg=10), channels=1),
     "stage": on_stage(TURNING, hold_deg=5.0),
     "soft lamps": on_stage(TURNING, lamp_samples=3, pixel_samples=2),
     "far wall": on_stage(FAR),

@@ -20,9 +20,9 @@ def beam_of_pixel(views: Views, view: int, row: int, column: int) -> tuple[Array
     """
     rows, columns = views.picture_shape
     point = (
-        views.origins[view]
-        + (column - (columns - 1) / 2) * views.column_steps[view]
-        + (row - (rows - 1) / 2) * views.row_steps[view]
+        views.origins_mm[view]
+        + (column - (columns - 1) / 2) * views.column_steps_mm[view]
+        + (row - (rows - 1) / 2) * views.row_steps_mm[view]
     )
     if views.lamps[view, 3] == 0:
         direction = views.lamps[view, :3]

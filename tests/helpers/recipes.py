@@ -1,4 +1,4 @@
-"""What `solve` and `make_job` are asked for, from options in one row; frames under other lamps."""
+"""What `solve` and `make_job` are asked for, from options in one row; targets under other lamps."""
 
 from dataclasses import fields, replace
 from typing import Any
@@ -10,14 +10,15 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
 from lightcube.optics.rig import power_bounds
 from lightcube.pictures.fitting import Fit, fit, turntable_for
-from lightcube.pictures.frames import Frames, Pictures
+from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.targets import Targets
 from lightcube.solvers import find_method
 
 _OWN = {each.name for each in fields(Recipe)}
 _LIGHT = ("lamp_power", "lamp_max", "black")
 
 
-def asked(frames: Frames, grid: Grid, **options: Any) -> dict[str, Any]:
+def asked(targets: Targets, grid: Grid, **options: Any) -> dict[str, Any]:
     """What `solve` takes: options of the recipe (`max_extinction` its material's), of lamp and screen, and others."""
     own = {name: value for name, value in options.items() if name in _OWN}
     light = {name: value for name, value in options.items() if name in _LIGHT}
@@ -26,23 +27,23 @@ def asked(frames: Frames, grid: Grid, **options: Any) -> dict[str, Any]:
         light["lamp_power"] = 1.0  # they cannot choose it
     if "max_extinction" in others:
         own["material"] = Material(others.pop("max_extinction"))
-    return {"frames": lit(frames, **light), "grid": grid, "recipe": Recipe(**own), **others}
+    return {"targets": lit(targets, **light), "grid": grid, "recipe": Recipe(**own), **others}
 
 
 def lit(
-    frames: Frames, *, lamp_power: float | None = None, lamp_max: float | None = None, black: float | None = None
-) -> Frames:
-    """The same frames under lamps of one given power, or of another largest one, on screens of another black."""
-    rig = frames.rig
+    targets: Targets, *, lamp_power: float | None = None, lamp_max: float | None = None, black: float | None = None
+) -> Targets:
+    """The same targets under lamps of one given power, or of another largest one, on screens of another black."""
+    rig = targets.rig
     lamps, screens = rig.lamps, rig.screens
     if lamp_power is not None or lamp_max is not None:
         least, most = power_bounds(lamp_power, lamp_max)
         lamps = replace(lamps, least=np.full(len(lamps.names), least), most=np.full(len(lamps.names), most))
     if black is not None:
         screens = replace(screens, black=np.full(len(screens.names), black))
-    return replace(frames, rig=replace(rig, lamps=lamps, screens=screens))
+    return replace(targets, rig=replace(rig, lamps=lamps, screens=screens))
 
 
-def fitted(pictures: Pictures, grid: Grid, *, fit_mode: Fit = "crop", **more: Any) -> Frames:
+def fitted(pictures: Pictures, grid: Grid, *, fit_mode: Fit = "crop", **more: Any) -> Targets:
     """Pictures fitted to a turntable that is made for them."""
     return fit(pictures, turntable_for(pictures, grid, **more), fit_mode)

@@ -51,11 +51,11 @@ def ray_lengths(shape: tuple[int, int], through: Matrix, along: Matrix) -> Matri
     return lengths.ravel()
 
 
-def projections(shape: tuple[int, int], views: int, beams: int, span: float = 180.0) -> Matrix:
+def projections(shape: tuple[int, int], views: int, beams: int, span_deg: float = 180.0) -> Matrix:
     """Matrix of `views` parallel views of a grid of unit pixels, half a step from 0 degrees; beams one pixel apart."""
     rows = []
-    for angle in np.radians((np.arange(views) + 0.5) * span / views):
-        along = np.array([np.cos(angle), np.sin(angle)])
+    for angle_deg in np.radians((np.arange(views) + 0.5) * span_deg / views):
+        along = np.array([np.cos(angle_deg), np.sin(angle_deg)])
         across = np.array([along[1], -along[0]])
         rows += [ray_lengths(shape, (k - (beams - 1) / 2) * across, along) for k in range(beams)]
     return np.array(rows)

@@ -30,7 +30,7 @@ PHONE = {"width": 390, "height": 844, "has_touch": True, "is_mobile": True}
 def turning() -> Cube:
     """A random cube on a turntable with a raised lamp, and random pictures wanted of it."""
     random = np.random.default_rng(3)
-    rig = turntable(GRID, STOPS, elevation=35.0, picture_shape=(ROWS, COLUMNS))
+    rig = turntable(GRID, STOPS, elevation_deg=35.0, picture_shape=(ROWS, COLUMNS))
     targets = random.integers(0, 256, (len(STOPS), ROWS, COLUMNS, 4), dtype=np.uint8)
     powers = random.uniform(0.5, 2.0, (len(STOPS), 3))
     return Cube(glass(GRID.shape), GRID, rig, powers, targets=targets, names=NAMES)
@@ -93,7 +93,7 @@ def rested(tab: Any) -> None:
     until(tab, f"{CUBE}.resting")
 
 
-def angle(tab: Any) -> float:
+def angle_deg(tab: Any) -> float:
     return tab.evaluate(f"{CUBE}.angle")
 
 
@@ -101,7 +101,7 @@ def stands(tab: Any, where: float) -> None:
     """Wait until the cube stands at an angle."""
     until(tab, f"Math.abs({CUBE}.angle - {where}) < 1e-6")
     rested(tab)
-    assert angle(tab) == pytest.approx(where)
+    assert angle_deg(tab) == pytest.approx(where)
 
 
 def turned_to(tab: Any, where: float) -> None:
@@ -114,13 +114,13 @@ def middle(tab: Any, selector: str) -> tuple[float, float]:
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
-def drag(tab: Any, across: float, down: float = 0, *, button: str = "left", hold: bool = True) -> None:
+def drag(tab: Any, across: float, down: float = 0, *, button: str = "left", hold_deg: bool = True) -> None:
     """Drag over the room, still before letting go unless it is thrown."""
     x, y = middle(tab, "canvas.room")
     tab.mouse.move(x - across / 2, y)
     tab.mouse.down(button=button)
     tab.mouse.move(x + across / 2, y + down, steps=8)
-    if hold:
+    if hold_deg:
         tab.wait_for_timeout(150)
     tab.mouse.up(button=button)
 
@@ -154,4 +154,4 @@ def shown(tab: Any) -> np.ndarray:
 
 
 def right(cube: Cube, where: float, *, whole: bool = False) -> np.ndarray:
-    return 255 * encode(np.clip(play(pack(cube).cube, [where], whole_screen=whole), 0, 1).astype(float), cube.transfer)
+    return 255 * encode(np.clip(play(pack(cube).cube, [where], whole_shadow=whole), 0, 1).astype(float), cube.transfer)

@@ -41,8 +41,8 @@ def smooth(count: int = 12, rows: int = 65, columns: int = 97) -> Levels:
     return np.rint(127.5 + 120 * np.stack(waves, axis=3)).astype(np.uint8)
 
 
-def views(count: int, elevation: float = 20.0) -> Views:
-    return turntable_views(Grid((5, 7, 7)), np.arange(count) * 31.7 + 350, elevation=elevation)
+def views(count: int, elevation_deg: float = 20.0) -> Views:
+    return turntable_views(Grid((5, 7, 7)), np.arange(count) * 31.7 + 350, elevation_deg=elevation_deg)
 
 
 def files_in(folder: Path) -> list[str]:
@@ -170,9 +170,9 @@ def test_a_folder_holds_its_views(tmp_path: Path) -> None:
     save(from_uint8(wanted), tmp_path / "a", views=views(11), names=names)
     assert files_in(tmp_path / "a") == [*(f"{index:02d}.png" for index in range(1, 12)), "views.toml"]
     read = read_pictures(tmp_path / "a")
-    assert read.angles is not None
-    np.testing.assert_array_equal(read.angles, views(11).angles)
-    assert read.elevation == views(11).elevations[0]
+    assert read.angles_deg is not None
+    np.testing.assert_array_equal(read.angles_deg, views(11).angles_deg)
+    assert read.elevation_deg == views(11).elevations_deg[0]
     assert read.names == tuple(names)
 
 
@@ -185,9 +185,9 @@ def test_views_that_the_file_cannot_hold_are_refused(tmp_path: Path) -> None:
     low, high = views(2, 10), views(2, 20)
     mixed = Views(
         np.concatenate([low.lamps[:1], high.lamps[:1]]),
-        low.origins,
-        low.column_steps,
-        low.row_steps,
+        low.origins_mm,
+        low.column_steps_mm,
+        low.row_steps_mm,
         low.picture_shape,
     )
     near = replace(low, lamps=low.lamps + np.array([0, 0, 0, 1]))

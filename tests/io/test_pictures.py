@@ -134,8 +134,8 @@ def test_each_kind_of_file_gives_its_pictures_exactly(tmp_path: Path, suffix: st
     pictures = sample(path)
     read = read_pictures(path)
     assert read.names == ("1", "2", "3")
-    assert read.angles is None
-    assert read.elevation is None
+    assert read.angles_deg is None
+    assert read.elevation_deg is None
     for image, picture in zip(read.images, pictures, strict=True):
         assert image.dtype == np.float32
         np.testing.assert_array_equal(image, from_uint8(picture))
@@ -309,40 +309,40 @@ class TestViewsToml:
         return folder_of(tmp_path / "f", [Image.fromarray(picture) for picture in noise()])
 
     def test_angles_elevation_and_names(self, folder: Path) -> None:
-        (folder / "views.toml").write_text('angles = [350, 0.5, -7]\nelevation = 20\nnames = ["a", "ü", "c"]\n')
+        (folder / "views.toml").write_text('angles_deg = [350, 0.5, -7]\nelevation_deg = 20\nnames = ["a", "ü", "c"]\n')
         read = read_pictures(folder)
-        assert read.angles is not None
-        np.testing.assert_array_equal(read.angles, [350, 0.5, -7])
-        assert read.elevation == 20
+        assert read.angles_deg is not None
+        np.testing.assert_array_equal(read.angles_deg, [350, 0.5, -7])
+        assert read.elevation_deg == 20
         assert read.names == ("a", "ü", "c")
 
     def test_span_spreads_the_angles(self, folder: Path) -> None:
-        (folder / "views.toml").write_text("span = 90.0\n")
+        (folder / "views.toml").write_text("span_deg = 90.0\n")
         read = read_pictures(folder)
-        assert read.angles is not None
-        np.testing.assert_array_equal(read.angles, spread_angles(3, 90.0))
+        assert read.angles_deg is not None
+        np.testing.assert_array_equal(read.angles_deg, spread_angles(3, 90.0))
 
     @pytest.mark.parametrize(
         ("text", "message"),
         [
-            ("angles = [1, 2]", "angles: 2 are listed for 3 pictures"),
+            ("angles_deg = [1, 2]", "angles_deg: 2 are listed for 3 pictures"),
             ('names = ["a"]', "names: 1 are listed for 3 pictures"),
-            ("angles = [1, 2, 361]", "angles: angles number 1 and 3"),
-            ("angles = [1, 2, nan]", "angles.2: "),
-            ("angles = [1, 2, inf]", "angles.2: "),
-            ("angles = [1, 2, true]", "angles.2: "),
-            ("angles = [1, 2, '3']", "angles.2: "),
-            ("angles = 3", "angles: "),
-            ("span = 0", "span: "),
-            ("span = 720", "span: "),
-            ("span = 90\nangles = [1, 2, 3]", "span: angles are given already"),
-            ("elevation = 90", "elevation: "),
-            ("elevation = -90", "elevation: "),
-            ("elevation = nan", "elevation: "),
+            ("angles_deg = [1, 2, 361]", "angles_deg: angles number 1 and 3"),
+            ("angles_deg = [1, 2, nan]", "angles_deg.2: "),
+            ("angles_deg = [1, 2, inf]", "angles_deg.2: "),
+            ("angles_deg = [1, 2, true]", "angles_deg.2: "),
+            ("angles_deg = [1, 2, '3']", "angles_deg.2: "),
+            ("angles_deg = 3", "angles_deg: "),
+            ("span_deg = 0", "span_deg: "),
+            ("span_deg = 720", "span_deg: "),
+            ("span_deg = 90\nangles_deg = [1, 2, 3]", "span_deg: angles_deg is given already"),
+            ("elevation_deg = 90", "elevation_deg: "),
+            ("elevation_deg = -90", "elevation_deg: "),
+            ("elevation_deg = nan", "elevation_deg: "),
             ("elevations = 3", "elevations: there is no such key"),
             ("names = [1, 2, 3]", "names.0: "),
-            ("angles = [1, 2", "not a TOML file"),
-            ("angles = [1, 2, 3]\xff", "not a TOML file"),
+            ("angles_deg = [1, 2", "not a TOML file"),
+            ("angles_deg = [1, 2, 3]\xff", "not a TOML file"),
         ],
     )
     def test_faults_name_the_file_and_the_key(self, folder: Path, text: str, message: str) -> None:

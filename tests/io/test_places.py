@@ -31,7 +31,7 @@ fsspec = pytest.importorskip("fsspec", reason="URLs need the extra remote")
 
 RANDOM = np.random.default_rng(23)
 LEVELS = RANDOM.integers(0, 256, (4, 5, 7, 3), dtype=np.uint8)
-VIEWS = turntable(Grid((5, 7, 7)), np.arange(4) * 31.7 + 350, elevation=20).views
+VIEWS = turntable(Grid((5, 7, 7)), np.arange(4) * 31.7 + 350, elevation_deg=20).views
 SUFFIXES = (".zarr", ".zarr.zip", ".npz")
 
 
@@ -161,7 +161,7 @@ def test_pictures_come_back(folder: str, suffix: str) -> None:
     np.testing.assert_array_equal(np.stack([to_uint8(image) for image in read.images]), LEVELS)
     if not suffix:
         assert read.names == names
-        np.testing.assert_array_equal(read.angles, VIEWS.angles)
+        np.testing.assert_array_equal(read.angles_deg, VIEWS.angles_deg)
     with pytest.raises(InputError, match="exists already"):
         save(from_uint8(LEVELS), url)
     save(from_uint8(LEVELS[:2, :3]), url, overwrite=True)

@@ -20,8 +20,8 @@ from lightcube.jobs.cubes import UnfinishedCube
 from lightcube.jobs.partial import DiskStore, load_job, open_partial
 from lightcube.optics.cube import Cube
 from lightcube.optics.rig import Rig, turntable
-from lightcube.pictures.fitting import targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import as_levels
+from lightcube.pictures.targets import Targets
 from tests.backward.test_job import same
 from tests.helpers.recipes import asked
 from tests.io.test_cubes import SUFFIXES, change, partial_path, put
@@ -60,7 +60,7 @@ def test_a_cube_of_a_stage_comes_back_bit_for_bit(tmp_path: Path, suffix: str) -
 
 
 def test_rigs_come_back_from_json_bit_for_bit() -> None:
-    for rig in (ROOM.rig(), some_cube().rig, turntable(GRID, [1 / 3, 77.0], elevation=12.3)):
+    for rig in (ROOM.rig(), some_cube().rig, turntable(GRID, [1 / 3, 77.0], elevation_deg=12.3)):
         text = json.dumps(rig_to_json(rig), allow_nan=False)
         assert_same_rig(RigJson.model_validate(json.loads(text)).rig(), rig)
 
@@ -84,8 +84,8 @@ def test_rigs_come_back_from_json_bit_for_bit() -> None:
         (put("rig", "fading", "reach_mm", 0, value=[1.0]), r"rig\.fading\.reach_mm\.0"),
         (put("rig", "fading", "falloff_mm", 0, 0, value="far"), r"rig\.fading\.falloff_mm\.0\.0"),
         (put("rig", "turning", "axis", value=[0.0, 0.0]), r"rig\.turning\.axis"),
-        (put("rig", "stops", "angle", 0, value=float("nan")), r"rig\.stops\.angle\.0"),
-        (put("rig", "stops", "angle", value=[]), "angle|screen|order|stops"),
+        (put("rig", "stops", "angle_deg", 0, value=float("nan")), r"rig\.stops\.angle_deg\.0"),
+        (put("rig", "stops", "angle_deg", value=[]), "angle|screen|order|stops"),
         (put("rig", "stops", "window", 0, value=[5]), r"rig\.stops\.window\.0"),
         (put("rig", "lamps", "least", 0, value=100.0), "least before the largest"),
         (put("rig", value=None), "rig"),
@@ -107,8 +107,8 @@ def job(**options: Any) -> Job:
     stage = replace(ROOM, lamps=(replace(ROOM.lamps[0], power=1.1), *ROOM.lamps[1:]))
     rig = stage.rig()
     pictures = np.random.default_rng(2).uniform(0.1, 1, (4, 5, 5, 3)).astype(np.float32)
-    frames = Frames(pictures, rig, rig.inside.astype(np.float32))
-    return make_job(**asked(frames, GRID, **{"passes": 4, **options}))
+    targets = Targets(pictures, rig, rig.inside.astype(np.float32))
+    return make_job(**asked(targets, GRID, **{"passes": 4, **options}))
 
 
 KINDS: list[dict[str, Any]] = [
@@ -126,24 +126,24 @@ def test_a_job_of_a_stage_comes_back_from_the_disk(tmp_path: Path, options: dict
     store = open_partial(out, one)
     again = load_job(partial_path(out))
     assert fingerprint(again) == fingerprint(one)
-    assert_same_rig(again.frames.rig, one.frames.rig)
+    assert_same_rig(again.targets.rig, one.targets.rig)
     for name in again.pieces:
         assert not solve_piece(again, name, store, lambda step: True)
         with pytest.warns(UnfinishedCube, match="still being made"):
             reached = load(partial_path(out))
         assert reached.status == "interrupted"
-        assert_same_rig(reached.rig, one.frames.rig)
+        assert_same_rig(reached.rig, one.targets.rig)
         assert solve_piece(again, name, DiskStore(partial_path(out)))
     whole = solved(one)
     assert same(merged(again, store), whole)
-    np.testing.assert_array_equal(merged(again, store).cube.targets, targets(one.frames))
-    assert_same_rig(whole.cube.rig, one.frames.rig)
+    np.testing.assert_array_equal(merged(again, store).cube.targets, as_levels(one.targets))
+    assert_same_rig(whole.cube.rig, one.targets.rig)
 
 
 def test_a_folder_begun_under_other_lamps_is_refused(tmp_path: Path) -> None:
     one = job()
     open_partial(tmp_path / "a.zarr", one)
-    rig = one.frames.rig
+    rig = one.targets.rig
     others = [
         replace(rig, sums=replace(rig.sums, share=rig.sums.share * 0.5)),
         replace(rig, fading=replace(rig.fading, reach_mm=rig.fading.reach_mm + 1)),
@@ -151,7 +151,7 @@ def test_a_folder_begun_under_other_lamps_is_refused(tmp_path: Path) -> None:
         replace(rig, screens=replace(rig.screens, black=rig.screens.black * 2)),
     ]
     for changed in others:
-        other = replace(one, frames=replace(one.frames, rig=changed))
+        other = replace(one, targets=replace(one.targets, rig=changed))
         assert "the lamps and screens differ" in differences(fingerprint(one), fingerprint(other))
         with pytest.raises(InputError, match="the lamps and screens differ"):
             open_partial(tmp_path / "a.zarr", other)
@@ -169,7 +169,7 @@ def test_a_damaged_rig_of_an_unfinished_cube_is_one_sentence(tmp_path: Path) -> 
     ):
         damaged = {**whole["rig"], part: {**whole["rig"][part], name: value}}
         file.write_text(json.dumps({**whole, "rig": damaged}))
-        with pytest.raises(InputError, match=f"job.json is damaged|frames.npz is damaged.*{message}") as caught:
+        with pytest.raises(InputError, match=f"job.json is damaged|targets.npz is damaged.*{message}") as caught:
             load_job(file.parent)
         assert message.replace("\\", "") in str(caught.value)
         assert "\n" not in str(caught.value)

@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io import TransparentPictures, is_stage, read_stage, read_stage_frames
+from lightcube.io import TransparentPictures, is_stage, read_stage, read_stage_targets
 from lightcube.optics.stage import Lamp, Screen
 from lightcube.optics.transfer import from_uint8
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import fit
-from lightcube.pictures.frames import Pictures
+from lightcube.pictures.pictures import Pictures
 
 SUN = {"name": "sun", "direction": [1, 0.25, -0.5]}
-BULB = {"name": "bulb", "position": [-300, 20, 150.5]}
-WALL = {"name": "wall", "centre": [90, 0, -45], "size_mm": [28, 20], "pitch_mm": 4}
-FLOOR = {"name": "floor", "centre": [0, 10, -90], "size_mm": [12, 44], "pitch_mm": 4}
+BULB = {"name": "bulb", "position_mm": [-300, 20, 150.5]}
+WALL = {"name": "wall", "centre_mm": [90, 0, -45], "size_mm": [28, 20], "pitch_mm": 4}
+FLOOR = {"name": "floor", "centre_mm": [0, 10, -90], "size_mm": [12, 44], "pitch_mm": 4}
 MINIMAL: dict[str, Any] = {
     "cube": {"shape": [4, 5, 8]},
     "lamp": [SUN],
@@ -76,7 +76,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_what_a_file_leaves_out_has_its_default(folder: Path) -> None:
     stage, pictures, fits = read_stage(stage_file(folder, MINIMAL | {"screen": [WALL | {"pitch_mm": 2.5}]}))
     assert (stage.grid.shape, stage.grid.voxel_mm, stage.cube_turns) == ((4, 5, 8), 100 / 8, True)
-    assert (stage.stops, stage.axis) == ((0.0,), (0.0, 0.0, 1.0))
+    assert (stage.stops_deg, stage.axis) == ((0.0,), (0.0, 0.0, 1.0))
     assert stage.lamps == (Lamp("sun", direction=(1.0, 0.25, -0.5)),)
     assert stage.screens == (Screen("wall", (90.0, 0.0, -45.0), (28.0, 20.0), 2.5),)
     assert [(shot.name, shot.screen, shot.lamps, shot.stop) for shot in stage.shots] == [("one", "wall", ("sun",), 0)]
@@ -99,13 +99,13 @@ def test_every_key_is_heard(folder: Path) -> None:
     screen |= {"reach_mm": 60, "falloff_mm": 3, "cosine": True}
     tables = {
         "cube": {"shape": [4, 5, 8], "size_mm": 64, "turns": False},
-        "turntable": {"stops": [5, 20.5], "axis": [0, 1, 1]},
+        "turntable": {"stops_deg": [5, 20.5], "axis": [0, 1, 1]},
         "lamp": [SUN | lamp, BULB | point],
         "screen": [WALL | screen],
         "picture": [{"file": "one.png", "screen": "wall", "lamps": ["bulb", "sun"], "stop": 2, "fit": "pad"}],
     }
     stage, _, fits = read_stage(stage_file(folder, tables))
-    assert (stage.grid.voxel_mm, stage.cube_turns, stage.stops, stage.axis) == (8, False, (5, 20.5), (0, 1, 1))
+    assert (stage.grid.voxel_mm, stage.cube_turns, stage.stops_deg, stage.axis) == (8, False, (5, 20.5), (0, 1, 1))
     for made, said in ((stage.lamps[0], SUN | lamp), (stage.screens[0], WALL | screen), (stage.lamps[1], BULB | point)):
         for key, value in said.items():
             if key != "colour" or not isinstance(value, str):
@@ -116,7 +116,7 @@ def test_every_key_is_heard(folder: Path) -> None:
 
 def test_stops_are_counted_over_the_whole_turn(folder: Path) -> None:
     stage, _, _ = read_stage(stage_file(folder, MINIMAL | {"turntable": {"count": 7}}))
-    np.testing.assert_array_equal(stage.stops, spread_angles(7, 360.0))
+    np.testing.assert_array_equal(stage.stops_deg, spread_angles(7, 360.0))
 
 
 def test_pictures_of_a_folder_go_to_stop_after_stop(folder: Path) -> None:
@@ -137,12 +137,12 @@ def test_pictures_of_a_folder_go_to_stop_after_stop(folder: Path) -> None:
 
 
 def test_a_movie_gives_its_pictures(folder: Path) -> None:
-    frames = [Image.fromarray(levels_of(5, 6)), Image.fromarray(levels_of(6, 5).reshape(5, 6, 3))]
-    frames[0].save(folder / "two.webp", save_all=True, append_images=frames[1:], lossless=True)
+    targets = [Image.fromarray(levels_of(5, 6)), Image.fromarray(levels_of(6, 5).reshape(5, 6, 3))]
+    targets[0].save(folder / "two.webp", save_all=True, append_images=targets[1:], lossless=True)
     tables = MINIMAL | {"turntable": {"count": 2}, "picture": [{"file": "two.webp", "screen": "wall"}]}
     stage, read, _ = read_stage(stage_file(folder, tables))
     assert [(shot.name, shot.stop) for shot in stage.shots] == [("1", 0), ("2", 1)]
-    np.testing.assert_array_equal(read.images[1], from_uint8(np.asarray(frames[1])))
+    np.testing.assert_array_equal(read.images[1], from_uint8(np.asarray(targets[1])))
 
 
 def test_equal_names_are_told_apart(folder: Path) -> None:
@@ -169,10 +169,10 @@ def test_pictures_are_looked_up_beside_the_file(folder: Path, monkeypatch: pytes
 
 def test_which_paths_are_stages(folder: Path, tmp_path: Path) -> None:
     assert is_stage(stage_file(folder, MINIMAL))
-    (tmp_path / "frames.toml").mkdir()
+    (tmp_path / "pictures.toml").mkdir()
     (tmp_path / "STAGE.TOML").touch()
     assert is_stage(str(tmp_path / "STAGE.TOML"))
-    for other in (folder / "photos", folder / "one.png", tmp_path / "frames.toml", "s3://bucket/stage.toml"):
+    for other in (folder / "photos", folder / "one.png", tmp_path / "pictures.toml", "s3://bucket/stage.toml"):
         assert not is_stage(other)
 
 
@@ -194,7 +194,7 @@ def test_transfer_and_opacity_are_as_of_other_pictures(folder: Path, tmp_path: P
         read_stage(stage_file(folder, MINIMAL), transfer="gamma")  # type: ignore[arg-type]
 
 
-def test_frames_lie_at_the_upper_left_of_the_raster(folder: Path) -> None:
+def test_pictures_lie_at_the_upper_left_of_the_raster(folder: Path) -> None:
     """Screens of 5 x 7 and 11 x 3 pixels, pictures of three sizes and three ways to fit."""
     pictures = [
         {"file": "photos/b.png", "screen": "wall", "lamps": ["sun"]},
@@ -202,18 +202,18 @@ def test_frames_lie_at_the_upper_left_of_the_raster(folder: Path) -> None:
         {"file": "one.png", "screen": "wall", "lamps": ["bulb"], "fit": "stretch"},
     ]
     tables = MINIMAL | {"lamp": [SUN | {"size_deg": 2}, BULB], "screen": [WALL, FLOOR], "picture": pictures}
-    stage, frames = read_stage_frames(stage_file(folder, tables), lamp_samples=3, pixel_samples=2, transfer="linear")
-    assert frames.pictures.shape == (3, 11, 7, 3)
-    assert len(frames.rig.views) == (3 + 3 + 1 + 1) * 4
-    assert frames.names == tuple(shot.name for shot in stage.shots) == ("b", "one on floor", "one on wall")
-    np.testing.assert_array_equal(frames.pictures[0, :5, :7], from_uint8(levels_of(5, 7), "linear"))
-    windows = frames.rig.inside
-    assert np.all(frames.weight <= windows)
-    np.testing.assert_array_equal(frames.weight[[0, 2]], windows[[0, 2]])
+    stage, targets = read_stage_targets(stage_file(folder, tables), lamp_samples=3, pixel_samples=2, transfer="linear")
+    assert targets.pictures.shape == (3, 11, 7, 3)
+    assert len(targets.rig.views) == (3 + 3 + 1 + 1) * 4
+    assert targets.names == tuple(shot.name for shot in stage.shots) == ("b", "one on floor", "one on wall")
+    np.testing.assert_array_equal(targets.pictures[0, :5, :7], from_uint8(levels_of(5, 7), "linear"))
+    windows = targets.rig.inside
+    assert np.all(targets.weight <= windows)
+    np.testing.assert_array_equal(targets.weight[[0, 2]], windows[[0, 2]])
     # 9 x 11 pixels padded to the 11 x 3 of the floor: a band across it, in the middle.
-    np.testing.assert_array_equal(frames.weight[1, :, 0], [0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0])
-    np.testing.assert_array_equal(frames.weight[1].sum(axis=1) // 3, frames.weight[1, :, 0])
-    assert np.all(frames.pictures[frames.weight == 0] == 1)
+    np.testing.assert_array_equal(targets.weight[1, :, 0], [0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0])
+    np.testing.assert_array_equal(targets.weight[1].sum(axis=1) // 3, targets.weight[1, :, 0])
+    assert np.all(targets.pictures[targets.weight == 0] == 1)
 
 
 def test_a_stage_wants_as_many_pictures_as_it_has(folder: Path) -> None:
@@ -244,9 +244,9 @@ BAD = [
     ({"screen": WALL}, "screen: must be a list of tables: begin each with [[screen]]"),
     ({"screen": [WALL, 5]}, "screen 2: must be a table, not 5"),
     ({"screen": [WALL | {"rear": 1}]}, "screen 1: rear: must be true or false, not 1"),
-    ({"screen": [WALL | {"centre": [1, 2, INF]}]}, "screen 1: centre.2: must be a finite number, not inf"),
+    ({"screen": [WALL | {"centre_mm": [1, 2, INF]}]}, "screen 1: centre_mm.2: must be a finite number, not inf"),
     ({"lamp": [SUN, BULB, SUN]}, "there are two lamps called 'sun'"),
-    ({"lamp": [SUN | {"position": [1, 2, 3]}]}, "lamp 'sun': give either a direction"),
+    ({"lamp": [SUN | {"position_mm": [1, 2, 3]}]}, "lamp 'sun': give either a direction"),
     ({"lamp": [{"name": "sun"}]}, "lamp 'sun': give either a direction"),
     ({"lamp": [SUN | {"power": -2.5}]}, "lamp 'sun': power must lie between 0.0001 and 1e6, not -2.5"),
     ({"lamp": [SUN | {"power": True}]}, "lamp 1: power: must be a number, not True"),
@@ -268,9 +268,9 @@ BAD = [
     ({"cube": {}}, "cube.shape: is missing"),
     ({"cube": {"shape": [4, 5, 8], "a\nb": 1}}, r"cube.'a\nb': no such key here"),
     ({"cubes": 3}, "cubes: no such key here"),
-    ({"turntable": {"stops": []}}, "turntable.stops: is too short"),
-    ({"turntable": {"stops": [0, NAN]}}, "turntable.stops.1: must be a finite number, not nan"),
-    ({"turntable": {"stops": [0], "count": 3}}, "turntable: stops and count are both given"),
+    ({"turntable": {"stops_deg": []}}, "turntable.stops_deg: is too short"),
+    ({"turntable": {"stops_deg": [0, NAN]}}, "turntable.stops_deg.1: must be a finite number, not nan"),
+    ({"turntable": {"stops_deg": [0], "count": 3}}, "turntable: stops_deg and count are both given"),
     ({"turntable": {"count": 0}}, "turntable.count: must be >= 1, not 0"),
     ({"turntable": {"axis": [0, 0, 0]}}, "the turntable: axis must be three finite numbers that are not all 0"),
     ({"picture": []}, "no picture is wanted on this stage"),
@@ -358,10 +358,10 @@ JUNK = st.recursive(
 PLACES = [
     *((key,) for key in ("cube", "turntable", "lamp", "screen", "picture", "other")),
     *(("cube", key) for key in ("shape", "size_mm", "turns", "other")),
-    *(("turntable", key) for key in ("stops", "count", "axis", "other")),
-    *(("lamp", key) for key in ("name", "direction", "position", "colour", "power", "power_max", "turns")),
+    *(("turntable", key) for key in ("stops_deg", "count", "axis", "other")),
+    *(("lamp", key) for key in ("name", "direction", "position_mm", "colour", "power", "power_max", "turns")),
     *(("lamp", key) for key in ("size_deg", "reach_mm", "falloff_mm", "full_at_mm", "other")),
-    *(("screen", key) for key in ("name", "centre", "size_mm", "pitch_mm", "normal", "up", "rear", "turns")),
+    *(("screen", key) for key in ("name", "centre_mm", "size_mm", "pitch_mm", "normal", "up", "rear", "turns")),
     *(("screen", key) for key in ("reach_mm", "falloff_mm", "cosine", "other")),
     *(("picture", key) for key in ("file", "screen", "lamps", "stop", "fit", "other")),
 ]

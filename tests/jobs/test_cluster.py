@@ -26,15 +26,15 @@ from lightcube.jobs.partial import DiskStore, open_partial
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from tests.backward.test_job import same
-from tests.cli.test_cli import frames, run
+from tests.cli.test_cli import pictures, run
 from tests.conftest import INTERPRETED
 from tests.helpers.recipes import asked
 from tests.io.test_cubes import assert_same, content
 from tests.io.test_places import bucket
 
-__all__ = ["bucket", "frames", "run"]
+__all__ = ["bucket", "pictures", "run"]
 
 distributed = pytest.importorskip("distributed", reason="schedulers need the extra cluster")
 
@@ -65,9 +65,9 @@ DiskStore.keep = slow
 
 
 def some_job(**options: Any) -> Job:
-    rig = turntable(GRID, spread_angles(3, elevation=0.0), picture_shape=(12, 4))
+    rig = turntable(GRID, spread_angles(3, elevation_deg=0.0), picture_shape=(12, 4))
     pictures = np.random.default_rng(5).uniform(0.1, 1, (3, 12, 4, 3)).astype(np.float32)
-    return make_job(**asked(Frames(pictures, rig), GRID, **{"passes": 9, "units": 4, **options}))
+    return make_job(**asked(Targets(pictures, rig), GRID, **{"passes": 9, "units": 4, **options}))
 
 
 @pytest.fixture(autouse=True)
@@ -222,28 +222,39 @@ def test_schedulers_that_are_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.skipif(INTERPRETED, reason="five interpreted solves take too long")
 def test_the_command_line_solves_there_or_here(  # type: ignore[no-untyped-def]
-    run, frames: Path, bucket: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run, pictures: Path, bucket: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Begun with three workers and stopped, gone on with two, finished without any: at a URL."""
     out, here = f"{bucket}/cluster/a.npz", tmp_path / "a.npz"
-    said = ("--shape", "6,7,8", "--hold", "0", "--iterations", str(PASSES), "--max-extinction", "1", "--elevation", "0")
+    said = (
+        "--shape",
+        "6,7,8",
+        "--hold-deg",
+        "0",
+        "--iterations",
+        str(PASSES),
+        "--max-extinction",
+        "1",
+        "--elevation-deg",
+        "0",
+    )
     for workers in (3, 2):
         (tmp_path / str(workers)).mkdir()
         with scheduler(tmp_path / str(workers), workers=workers) as address, monkeypatch.context() as patch:
             pressing(patch, 1)
-            stopped = run("solve", frames, "-o", out, *said, "--scheduler", address)
+            stopped = run("solve", pictures, "-o", out, *said, "--scheduler", address)
         assert stopped.code == 130, stopped.err
         assert "the same command goes on" in stopped.err
-    again = run("solve", frames, "-o", out, *said)
+    again = run("solve", pictures, "-o", out, *said)
     assert again.code == 0, again.err
     assert " of 3 units" in again.err
     for unit in ("1/3", "2/3", "3/3"):
-        assert run("solve", frames, "-o", here, *said, "--unit", unit).code == 0
+        assert run("solve", pictures, "-o", here, *said, "--unit", unit).code == 0
     assert run("publish", f"{here}.partial").code == 0
     assert_same(load(out), load(here))
 
 
-def test_one_says_how_many_units_there_are(run, frames: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    told = run("solve", frames, "-o", tmp_path / "a.npz", "--unit", "1/2", "--scheduler", "local")
+def test_one_says_how_many_units_there_are(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    told = run("solve", pictures, "-o", tmp_path / "a.npz", "--unit", "1/2", "--scheduler", "local")
     assert told.code == 2
     assert "--unit and --scheduler both say" in told.err

@@ -43,7 +43,7 @@ from lightcube.__main__ import main
 main()
 """
 PASSES = 4 if INTERPRETED else 300
-LEVEL_LAMP = ("--elevation", "0", "--max-extinction", "1")
+LEVEL_LAMP = ("--elevation-deg", "0", "--max-extinction", "1")
 
 
 @pytest.fixture
@@ -58,7 +58,7 @@ def photographs(tmp_path: Path) -> Path:
 
 
 def options(*more: str) -> list[str]:
-    return ["--shape", "6,8,7", "--frame-width", "0.7", "--hold", "0", "--iterations", str(PASSES), *more]
+    return ["--shape", "6,8,7", "--picture-width", "0.7", "--hold-deg", "0", "--iterations", str(PASSES), *more]
 
 
 def process(*arguments: object) -> list[str]:
@@ -89,7 +89,7 @@ def test_killed_anywhere_the_same_command_comes_to_the_same_cube(
     command = process("solve", photographs, "-o", out, *said, "--json")
     events, moments = [], np.random.default_rng()
     for how in (signal.SIGKILL, signal.SIGKILL, signal.SIGINT):
-        kept = [file for file in partial_path(out).glob("*.npz") if file.name != "frames.npz"]
+        kept = [file for file in partial_path(out).glob("*.npz") if file.name != "targets.npz"]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
             assert running.stdout is not None
             events.append(json.loads(running.stdout.readline())["event"])
@@ -292,10 +292,10 @@ def test_writers_at_the_same_time_leave_one_whole_file(tmp_path: Path) -> None:
     while any(writer.is_alive() for writer in writers):
         found = store.state("unit-0")
         assert found is None or len(np.unique(found["x"])) == 1
-    assert files_in(Path(store.folder)) == ["frames.npz", "job.json", "unit-0.state.npz"]
+    assert files_in(Path(store.folder)) == ["job.json", "targets.npz", "unit-0.state.npz"]
 
 
-@pytest.mark.parametrize("name", ["unit-0.npz", "unit-0.state.npz", "frames.npz", "job.json"])
+@pytest.mark.parametrize("name", ["unit-0.npz", "unit-0.state.npz", "targets.npz", "job.json"])
 @pytest.mark.parametrize("harm", ["cut", "flip", "empty", "text"])
 def test_damage_is_one_sentence(tmp_path: Path, name: str, harm: str) -> None:
     made = job(**RAISED)
@@ -347,7 +347,7 @@ def test_old_leftovers_are_removed_and_fresh_ones_are_not(tmp_path: Path) -> Non
         leftover.write_bytes(b"half")
     os.utime(old, (0, 0))
     open_partial(tmp_path / "a.zarr", job())
-    assert files_in(Path(store.folder)) == [fresh.name, "frames.npz", "job.json"]
+    assert files_in(Path(store.folder)) == [fresh.name, "job.json", "targets.npz"]
 
 
 @pytest.mark.parametrize("at", range(7))

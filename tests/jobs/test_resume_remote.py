@@ -21,7 +21,7 @@ from tests.io.test_places import bucket, files_at, put, remote, s3
 
 __all__ = ["bucket", "remote", "run", "s3"]
 
-SMALL = ("--shape", "6,8,7", "--frame-width", "0.7", "--hold", "0", "--iterations", "5")
+SMALL = ("--shape", "6,8,7", "--picture-width", "0.7", "--hold-deg", "0", "--iterations", "5")
 
 
 def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
@@ -32,7 +32,7 @@ def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch
         stopped = run("solve", photographs, "-o", out, *SMALL)
     assert stopped.code == 130, stopped.err
     assert f"lightcube publish {out}.partial" in stopped.err
-    assert set(files_at(f"{out}.partial")) == {"frames.npz", "job.json", "unit-0.state.npz"}
+    assert set(files_at(f"{out}.partial")) == {"targets.npz", "job.json", "unit-0.state.npz"}
     with pytest.warns(UnfinishedCube):
         assert load(f"{out}.partial").status == "interrupted"
     changed = run("solve", photographs, "-o", out, *SMALL, "--lamp-max", "4")

@@ -77,7 +77,7 @@ def test_exponential_ends_in_0_and_in_numbers() -> None:
 @pytest.mark.parametrize("shape", SHAPES)
 def test_tiles_that_do_not_divide_agree_with_plain_boxes(shape: tuple[int, int, int], elevation: float) -> None:
     grid = Grid(shape, voxel_mm=0.7)
-    rig = turntable_views(grid, [0.0, 33.0, 90.0], elevation=elevation, picture_shape=(shape[0], 2 + shape[2] % 2))
+    rig = turntable_views(grid, [0.0, 33.0, 90.0], elevation_deg=elevation, picture_shape=(shape[0], 2 + shape[2] % 2))
     volume = np.random.default_rng(1).random((1, *shape))
     matrix = Projector(grid, rig)
     x = volume[0].transpose(1, 2, 0).reshape(matrix.shape[1], -1)
@@ -97,7 +97,7 @@ def test_many_groups_of_views_and_all_tiles_are_one_matrix(
     grid = Grid(shape)
     angles = np.linspace(0, 180, GROUP + 3, endpoint=False) + 1
     matrix = Projector(
-        grid, turntable_views(grid, angles, elevation=elevation, picture_shape=(shape[0], 4 + shape[2] % 2))
+        grid, turntable_views(grid, angles, elevation_deg=elevation, picture_shape=(shape[0], 4 + shape[2] % 2))
     )
     sparse = matrix.to_sparse()
     columns = channels * (shape[0] if matrix.shape[1] == shape[1] * shape[2] else 1)

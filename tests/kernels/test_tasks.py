@@ -27,10 +27,10 @@ from lightcube.kernels.compiled import compiled
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles, turntable_views
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
 from lightcube.projection.rays import Rays
-from lightcube.scene.tracer import scene_frames, scene_rig
+from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.solvers.contract import Lighting, Mixture, Wanted
 from lightcube.solvers.display import display_values
 from tests.conftest import INTERPRETED
@@ -55,24 +55,26 @@ def as_before() -> Iterator[None]:
         yield
 
 
-def pictures(number: int = 0, elevation: float = 35.0) -> tuple[Frames, Grid]:
+def pictures(number: int = 0, elevation_deg: float = 35.0) -> tuple[Targets, Grid]:
     grid = Grid((2, 19, 18))
-    views = turntable(grid, spread_angles(3, elevation=elevation), elevation=elevation, picture_shape=(2, 9))
-    return Frames(np.random.default_rng(number).random((3, 2, 9, 3), dtype=np.float32), views), grid
+    views = turntable(
+        grid, spread_angles(3, elevation_deg=elevation_deg), elevation_deg=elevation_deg, picture_shape=(2, 9)
+    )
+    return Targets(np.random.default_rng(number).random((3, 2, 9, 3), dtype=np.float32), views), grid
 
 
-def of_solver(method: str, elevation: float, **options: Any) -> list[Any]:
-    frames, grid = pictures(elevation=elevation)
-    solution = solve(**asked(frames, grid, method=method, passes=4, **options))
+def of_solver(method: str, elevation_deg: float, **options: Any) -> list[Any]:
+    targets, grid = pictures(elevation_deg=elevation_deg)
+    solution = solve(**asked(targets, grid, method=method, passes=4, **options))
     return [solution.cube.extinction, solution.cube.powers, solution.residuals]
 
 
 def of_matrix() -> list[Any]:
     found = []
-    for elevation, views in ((0.0, 1), (0.0, 9), (35.0, 4)):
+    for elevation_deg, views in ((0.0, 1), (0.0, 9), (35.0, 4)):
         grid = Grid((2, 19, 18))
-        matrix = Projector(grid, turntable_views(grid, np.arange(views) * 17.0 + 3, elevation=elevation))
-        x = np.random.default_rng(0).random((matrix.shape[1], 6 if elevation == 0 else 3), dtype=np.float32)
+        matrix = Projector(grid, turntable_views(grid, np.arange(views) * 17.0 + 3, elevation_deg=elevation_deg))
+        x = np.random.default_rng(0).random((matrix.shape[1], 6 if elevation_deg == 0 else 3), dtype=np.float32)
         found += [matrix.forward(x), matrix.adjoint(matrix.forward(x))]
     return found
 
@@ -106,8 +108,8 @@ def of_scene() -> list[Any]:
     grid, views = scene_rig(scene, 2, (12, 9), None, None)
     shaded = lightcube.read_scene("juggler")
     return [
-        scene_frames(scene, views, grid).pictures,
-        scene_frames(shaded, scene_rig(shaded, 2, (12, 9), None, None)[1], grid).pictures,
+        scene_targets(scene, views, grid).pictures,
+        scene_targets(shaded, scene_rig(shaded, 2, (12, 9), None, None)[1], grid).pictures,
     ]
 
 
@@ -331,11 +333,11 @@ def test_the_command_line_refuses_what_is_no_number_of_threads(
 
 def test_threads_of_the_command_line_hold_and_stand_in_no_cube(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_NUM_THREADS", "2")
-    lightcube.save(pictures()[0].pictures, tmp_path / "frames")
+    lightcube.save(pictures()[0].pictures, tmp_path / "pictures")
     for name, options in (("one", ["--threads", "2"]), ("other", [])):
         tasks.set_threads(1)
-        command = ["lightcube", "solve", str(tmp_path / "frames"), "-o", str(tmp_path / f"{name}.zarr"), "--n", "9"]
-        monkeypatch.setattr(sys, "argv", [*command, "--iterations", "2", "--elevation", "0", *options])
+        command = ["lightcube", "solve", str(tmp_path / "pictures"), "-o", str(tmp_path / f"{name}.zarr"), "--n", "9"]
+        monkeypatch.setattr(sys, "argv", [*command, "--iterations", "2", "--elevation-deg", "0", *options])
         with pytest.raises(SystemExit) as stop:
             main()
         assert not stop.value.code

@@ -75,13 +75,15 @@ def test_other_sizes_are_solved(name: str) -> None:
 
 @every_method
 @every_dtype
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_a_cubes_own_shadows_come_back(name: str, dtype: type[np.floating], elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_a_cubes_own_shadows_come_back(name: str, dtype: type[np.floating], elevation_deg: float) -> None:
     """At least 60 dB in display values, in most methods; lamp powers differ between views and colours."""
     grid = Grid((2, 3, 5), 0.7)
-    projector = Projector(grid, turntable_views(grid, spread_angles(9, elevation=elevation), elevation=elevation))
+    projector = Projector(
+        grid, turntable_views(grid, spread_angles(9, elevation_deg=elevation_deg), elevation_deg=elevation_deg)
+    )
     rng = np.random.default_rng(11)
-    columns = 6 if elevation == 0 else 3
+    columns = 6 if elevation_deg == 0 else 3
     x = (rng.uniform(0, 0.8, (projector.shape[1], columns)) * (rng.random((projector.shape[1], 1)) < 0.6)).astype(dtype)
     powers = rng.uniform(0.5, 2.0, (9, 3))
     lamp = powers[projector.view_of_row][:, np.arange(columns) % 3]

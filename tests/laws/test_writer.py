@@ -49,7 +49,7 @@ def a_cube(number: int, suffix: str) -> Cube:
     shape = ((9, 11, 13), (13, 9, 11))[number]
     grid = Grid(shape, 0.3)
     random = np.random.default_rng(number)
-    views = turntable(grid, [10.0, 41.7], elevation=20, picture_shape=(3, 5))
+    views = turntable(grid, [10.0, 41.7], elevation_deg=20, picture_shape=(3, 5))
     return Cube(random.random((3, *shape), dtype=np.float32), grid, views, random.random((2, 3)) + 0.1)
 
 

@@ -21,8 +21,8 @@ from lightcube.optics.law import fade, falling_light
 from lightcube.optics.rig import Lamps, Rig, Screens, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import halved
+from lightcube.pictures.targets import Targets
 from tests.helpers import plain
 
 GRID = Grid((4, 5, 6), 0.7)
@@ -31,7 +31,7 @@ ROOM = Stage(
     GRID,
     (
         Lamp("sun", direction=(2.0, 0.3, -1.2), colour=(1.0, 0.5, 0.0), reach_mm=6.0, falloff_mm=8.0),
-        Lamp("bulb", position=(-9.0, 2.0, 7.0), full_at_mm=12.0, falloff_mm=math.inf, reach_mm=3.0),
+        Lamp("bulb", position_mm=(-9.0, 2.0, 7.0), full_at_mm=12.0, falloff_mm=math.inf, reach_mm=3.0),
         Lamp("moon", direction=(1.0, -0.4, -1.1), reach_mm=10.0, falloff_mm=0.0),
     ),
     (
@@ -73,7 +73,7 @@ def light_by_hand(rig: Rig, view: int, row: int, column: int) -> tuple[float, fl
     pixel, way, first, _ = plain.beam_of_pixel(views, view, row, column)
     light, shadow = 1.0, 1.0
     if rig.fading.cosine[view]:
-        normal = np.cross(views.column_steps[view], views.row_steps[view])
+        normal = np.cross(views.column_steps_mm[view], views.row_steps_mm[view])
         light *= abs(float(way @ normal)) / math.sqrt(float(normal @ normal))
     if views.lamps[view, 3] == 1 and rig.fading.full_at_mm[view] < math.inf:
         light *= rig.fading.full_at_mm[view] ** 2 / first**2
@@ -110,9 +110,9 @@ def test_the_light_of_every_pixel_is_what_the_words_say() -> None:
 
 
 def test_a_lamp_that_stands_on_a_pixel_shines_on_it() -> None:
-    lamp = Lamp("lamp", position=(9.0, 0.0, -5.4), full_at_mm=10.0, reach_mm=1.0)
+    lamp = Lamp("lamp", position_mm=(9.0, 0.0, -5.4), full_at_mm=10.0, reach_mm=1.0)
     rig = replace(ROOM, lamps=(lamp,), shots=(Shot("1", "floor", ("lamp",)),)).rig()
-    on_it = replace(rig, views=replace(rig.views, origins=rig.views.lamps[:, :3]))
+    on_it = replace(rig, views=replace(rig.views, origins_mm=rig.views.lamps[:, :3]))
     for numbers in (*falling_light(on_it), *falling_light(rig)):
         assert np.all(np.isfinite(numbers))
 
@@ -128,13 +128,13 @@ def test_what_is_cast_is_the_plain_sum(samples: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("powers_of_lamps", ["per-picture", "shared"])
-@pytest.mark.parametrize("hold", [0.0, 3.0])
-def test_solvers_see_the_plain_sum(powers_of_lamps: Any, hold: float) -> None:
+@pytest.mark.parametrize("hold_deg", [0.0, 3.0])
+def test_solvers_see_the_plain_sum(powers_of_lamps: Any, hold_deg: float) -> None:
     """And so does whoever asks a problem for what is shown; at the stops themselves where pictures are held."""
     cube = made(ROOM)
     wanted = np.full((4, 5, 5, 3), 0.5, np.float32)
-    recipe = Recipe(powers=powers_of_lamps, hold_deg=hold, dtype="float64")
-    problem = pose(Frames(wanted, cube.rig), GRID, recipe)
+    recipe = Recipe(powers=powers_of_lamps, hold_deg=hold_deg, dtype="float64")
+    problem = pose(Targets(wanted, cube.rig), GRID, recipe)
     assert problem.lighting.mixture is not None
     powers = cube.powers if powers_of_lamps == "per-picture" else powers_of(cube.rig)[:3]
     each = powers if powers_of_lamps == "per-picture" else powers[cube.rig.pairs[:, 1]]
@@ -153,12 +153,12 @@ def test_the_parts_of_a_problem_are_the_problem(level: bool, count: int) -> None
     shots = (Shot("1", "wall", ("a", "b")), Shot("2", "wall", ("b",), 1))
     cube = made(Stage(GRID, lamps, (wall,), shots, (10.0, 50.0)))
     wanted = np.random.default_rng(3).random((2, 4, 5, 3)).astype(np.float32)
-    frames = Frames(wanted, cube.rig)
-    whole = pose(frames, GRID, Recipe())
+    targets = Targets(wanted, cube.rig)
+    whole = pose(targets, GRID, Recipe())
     assert whole.matrix.level == level
     shown = whole.shown(whole.matrix.forward(whole.unknowns(cube.extinction)), cube.powers)
     for part in split(GRID.shape, 3, count, level=level):
-        own = pose(frames, GRID, Recipe(), part)
+        own = pose(targets, GRID, Recipe(), part)
         absorbed = own.matrix.forward(own.unknowns(cube.extinction[part.colours, part.slices]))
         mine = own.shown(absorbed, cube.powers[:, part.colours])
         np.testing.assert_allclose(mine, shown[:, own.rows, :, part.colours], rtol=1e-6)
@@ -207,7 +207,7 @@ def test_a_disc_blurs_an_edge_by_its_angle_times_the_distance(point: bool) -> No
         assert np.sum((sharp > 1e-3) & (sharp < 1 - 1e-3)) <= 1
 
 
-@pytest.mark.parametrize("place", [{"direction": (1.0, -2.0, -0.5)}, {"position": (3.0, 1.0, 40.0)}])
+@pytest.mark.parametrize("place", [{"direction": (1.0, -2.0, -0.5)}, {"position_mm": (3.0, 1.0, 40.0)}])
 @pytest.mark.parametrize("samples", [2, 3, 5, 16])
 def test_samples_of_a_disc_lie_in_it_and_their_mean_is_the_lamp(place: Any, samples: int) -> None:
     lamp = Lamp("lamp", colour=(1.0, 0.5, 0.1), size_deg=8.0, **place)
@@ -263,12 +263,12 @@ def test_samples_that_cannot_be_are_refused(samples: dict[str, Any]) -> None:
 
 def test_some_pictures_of_many_keep_their_views() -> None:
     cube = made(ROOM)
-    frames = Frames(np.random.default_rng(2).random((4, 5, 5, 3), np.float32), cube.rig)
-    some = frames.take([2, 0, 2])
+    targets = Targets(np.random.default_rng(2).random((4, 5, 5, 3), np.float32), cube.rig)
+    some = targets.take([2, 0, 2])
     assert some.rig.sums.picture.tolist() == [0, 0, 0, 1, 1, 2, 2, 2]
     assert some.rig.starts.tolist() == [0, 3, 5, 8]
-    assert some.angles.tolist() == [130, 10, 130]
-    np.testing.assert_array_equal(some.pictures, frames.pictures[[2, 0, 2]])
+    assert some.angles_deg.tolist() == [130, 10, 130]
+    np.testing.assert_array_equal(some.pictures, targets.pictures[[2, 0, 2]])
     np.testing.assert_array_equal(some.rig.views.lamps, cube.rig.views.lamps[[3, 4, 5, 0, 1, 3, 4, 5]])
     everything = pictures(cube, cube.rig)
     for picture, (row, pair) in enumerate(zip((2, 0, 2), (3, 0, 3), strict=True)):
@@ -309,35 +309,37 @@ def test_what_does_not_fit_a_rig_is_refused() -> None:
     with pytest.raises(InputError, match="not all of 7 views"):
         replace(rig, views=rig.views.take(slice(7)))
     with pytest.raises(InputError, match="pictures of shape"):
-        Frames(np.ones((8, 5, 5, 3), np.float32), rig)
+        Targets(np.ones((8, 5, 5, 3), np.float32), rig)
     with pytest.raises(InputError, match="a rig of 3 colours does not fit 1"):
-        Frames(np.ones((4, 5, 5, 1), np.float32), rig)
+        Targets(np.ones((4, 5, 5, 1), np.float32), rig)
     with pytest.raises(InputError, match="does not fit"):
         Cube(extinction()[:1], GRID, rig)
     with pytest.raises(InputError, match="lamp powers must be"):
         Cube(extinction(), GRID, rig, np.ones((4, 3)))
 
 
-@pytest.mark.parametrize("elevation", [0.0, 30.0])
-@pytest.mark.parametrize("angles", [[20.0, 75.0, 130.0], [10.0, 190.0, 250.0]])
-def test_a_turntable_is_a_stage_with_one_lamp_and_a_screen_behind(elevation: float, angles: list[float]) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 30.0])
+@pytest.mark.parametrize("angles_deg", [[20.0, 75.0, 130.0], [10.0, 190.0, 250.0]])
+def test_a_turntable_is_a_stage_with_one_lamp_and_a_screen_behind(
+    elevation_deg: float, angles_deg: list[float]
+) -> None:
     """The same room said in two ways casts the same at its stops and between, half a turn on, and off."""
-    tilt = math.radians(elevation)
+    tilt = math.radians(elevation_deg)
     light = math.cos(tilt), 0.0, -math.sin(tilt)
     high, wide = GRID.shape[0] * 0.7, 5 * 0.7
     wall = Screen("screen", (9 * light[0], 0.0, 9 * light[2]), (wide, high), 0.7, normal=(-1.0, 0.0, 0.0))
-    shots = tuple(Shot(str(stop + 1), "screen", ("lamp",), stop) for stop in range(len(angles)))
-    stage = Stage(GRID, (Lamp("lamp", light),), (wall,), shots, tuple(angles))
-    one = turntable(GRID, angles, elevation=elevation, picture_shape=(4, 5))
+    shots = tuple(Shot(str(stop + 1), "screen", ("lamp",), stop) for stop in range(len(angles_deg)))
+    stage = Stage(GRID, (Lamp("lamp", light),), (wall,), shots, tuple(angles_deg))
+    one = turntable(GRID, angles_deg, elevation_deg=elevation_deg, picture_shape=(4, 5))
     powers = powers_of(one)
     turned, staged = (Cube(extinction(), GRID, rig, powers, hold_deg=2.0) for rig in (one, stage.rig()))
-    assert turned.rig.period == staged.rig.period == (180 if elevation == 0 and angles[1] != 190 else 360)
-    assert turned.rig.widest_hold == pytest.approx(staged.rig.widest_hold)
+    assert turned.rig.period_deg == staged.rig.period_deg == (180 if elevation_deg == 0 and angles_deg[1] != 190 else 360)
+    assert turned.rig.widest_hold_deg == pytest.approx(staged.rig.widest_hold_deg)
     np.testing.assert_allclose(play(turned), play(staged), rtol=1e-4, atol=1e-6)
-    between = [angle + off for angle in angles for off in (0.0, 1.0, 7.5, 180.0, 200.0, -90.0)]
+    between = [angle_deg + off for angle_deg in angles_deg for off in (0.0, 1.0, 7.5, 180.0, 200.0, -90.0)]
     np.testing.assert_allclose(play(turned, between), play(staged, between), rtol=1e-4, atol=1e-6)
-    frames = [Frames(play(turned), rig, transfer="linear") for rig in (one, stage.rig())]
-    problems = [pose(each, GRID, Recipe(hold_deg=2.0)) for each in frames]
+    targets = [Targets(play(turned), rig, transfer="linear") for rig in (one, stage.rig())]
+    problems = [pose(each, GRID, Recipe(hold_deg=2.0)) for each in targets]
     for name in ("light", "weights"):
         np.testing.assert_allclose(getattr(problems[0], name), getattr(problems[1], name), rtol=1e-6)
     np.testing.assert_array_equal(problems[0].lighting.lamp, problems[1].lighting.lamp)
@@ -350,20 +352,20 @@ def test_a_turntable_is_a_stage_with_one_lamp_and_a_screen_behind(elevation: flo
 def test_half_a_turn_mirrors_where_light_is_level_and_screens_go_along() -> None:
     rig = turntable(GRID, [20.0, 75.0], picture_shape=(4, 5)).shifted(np.array([[1, 0], [-1, 0]]))
     assert rig.mirrors
-    assert not turntable(GRID, [20.0, 75.0], elevation=10.0).mirrors
+    assert not turntable(GRID, [20.0, 75.0], elevation_deg=10.0).mirrors
     assert not ROOM.rig().mirrors
     cube = Cube(extinction(), GRID, rig, powers_of(rig))
     np.testing.assert_allclose(play(cube, [200.0, 255.0])[:, :, ::-1], play(cube), rtol=1e-4, atol=1e-6)
     both = rig.both_sides
-    assert both.stops.angle.tolist() == [20, 75, 200, 255]
+    assert both.stops.angle_deg.tolist() == [20, 75, 200, 255]
     assert both.both_sides is both
 
 
 def test_the_whole_shadow_is_shown_where_the_screen_has_no_edges() -> None:
-    rig = turntable(GRID, [20.0, 75.0], elevation=30.0, picture_shape=(4, 5)).shifted(np.array([[1, 2], [-1, 0]]))
+    rig = turntable(GRID, [20.0, 75.0], elevation_deg=30.0, picture_shape=(4, 5)).shifted(np.array([[1, 2], [-1, 0]]))
     whole = rig.whole(GRID)
-    np.testing.assert_allclose(whole.views.origins, 0, atol=1e-12)
-    assert whole.picture_shape == turntable(GRID, [0.0], elevation=30.0).picture_shape
+    np.testing.assert_allclose(whole.views.origins_mm, 0, atol=1e-12)
+    assert whole.picture_shape == turntable(GRID, [0.0], elevation_deg=30.0).picture_shape
     assert ROOM.rig().whole(GRID).picture_shape == ROOM.rig().picture_shape
 
 
@@ -393,7 +395,7 @@ TURNED = replace(
         for stop in (0, 1, 2)
         for name, lamps in (("floor", ("moon",)), ("wall", ("sun", "bulb") if stop != 1 else ("sun",)))
     ),
-    stops=(20.0, 100.0, 250.0),
+    stops_deg=(20.0, 100.0, 250.0),
 )
 
 
@@ -401,7 +403,7 @@ def test_at_the_stops_a_stage_shows_the_pictures_of_the_cube() -> None:
     """One for each screen, in the order of the screens; and player and play show the same."""
     cube = made(TURNED)
     own, order = play(cube), [1, 0, 3, 2, 5, 4]
-    np.testing.assert_allclose(play(cube, TURNED.stops), own[order], rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(play(cube, TURNED.stops_deg), own[order], rtol=1e-4, atol=1e-6)
     np.testing.assert_allclose(player(cube)([20.0 + 360, 100.0 - 720]), own[order[:4]], rtol=1e-4, atol=1e-6)
     np.testing.assert_array_equal(player(cube)(None), own)
 
@@ -410,7 +412,7 @@ def test_between_two_stops_each_lamp_goes_by_equal_factors() -> None:
     cube = made(TURNED)
     rig, powers = moment(cube, [60.0, 40.0, 315.0])
     assert rig.stops.screen.tolist() == [0, 1, 0, 1, 0, 1]
-    assert rig.stops.angle.tolist() == [60, 60, 40, 40, 315, 315]
+    assert rig.stops.angle_deg.tolist() == [60, 60, 40, 40, 315, 315]
     # pairs of the cube by stop: floor with moon, wall with sun and bulb (with sun alone at the second)
     moon, sun, bulb = cube.powers[[0, 3, 5]], cube.powers[[1, 4, 6]], cube.powers[[2, 7]]
     found = {(int(picture), int(lamp)): power for (picture, lamp), power in zip(rig.pairs, powers, strict=True)}
@@ -428,8 +430,8 @@ def test_a_screen_without_a_picture_at_the_nearest_stop_is_dark() -> None:
     powers = whole.powers[np.isin(whole.rig.pairs[:, 0], [1, 2])]
     cube = replace(whole, rig=kept, lamp_powers=powers, names=())
     own = play(cube)
-    for angle, lit in ((20.0, own[0]), (100.0, own[1])):
-        shown = play(cube, [angle])
+    for angle_deg, lit in ((20.0, own[0]), (100.0, own[1])):
+        shown = play(cube, [angle_deg])
         dark = [not np.any(picture) for picture in shown]
         assert sorted(dark) == [False, True]
         np.testing.assert_allclose(shown[dark.index(False)], lit, rtol=1e-4, atol=1e-6)
@@ -450,16 +452,16 @@ def test_held_pictures_are_asked_for_on_either_side_under_the_same_lamps() -> No
     """The views at stop and hold are those of the same stage at stops that far aside."""
     cube = made(TURNED)
     several = held(cube.rig, Recipe(hold_deg=4.0), GRID)
-    angles = len(several) // len(cube.rig)
-    assert angles == 3
-    problem = pose(Frames(play(cube), cube.rig), GRID, Recipe(hold_deg=4.0))
+    angles_deg = len(several) // len(cube.rig)
+    assert angles_deg == 3
+    problem = pose(Targets(play(cube), cube.rig), GRID, Recipe(hold_deg=4.0))
     for index, off in enumerate((-4.0, 0.0, 4.0)):
-        aside = replace(TURNED, stops=tuple(stop + off for stop in TURNED.stops)).rig().views
-        mine = np.flatnonzero(np.isin(several.sums.picture, np.arange(index, len(several), angles)))
+        aside = replace(TURNED, stops_deg=tuple(stop + off for stop in TURNED.stops_deg)).rig().views
+        mine = np.flatnonzero(np.isin(several.sums.picture, np.arange(index, len(several), angles_deg)))
         np.testing.assert_allclose(several.views.take(mine).lamps, aside.lamps, atol=1e-12)
-        np.testing.assert_allclose(several.views.take(mine).origins, aside.origins, atol=1e-12)
+        np.testing.assert_allclose(several.views.take(mine).origins_mm, aside.origins_mm, atol=1e-12)
         np.testing.assert_array_equal(problem.lighting.lamp[mine], cube.rig.pair)
-        np.testing.assert_allclose(several.stops.angle[index::angles], cube.rig.stops.angle + off)
+        np.testing.assert_allclose(several.stops.angle_deg[index::angles_deg], cube.rig.stops.angle_deg + off)
 
 
 def test_a_hold_that_reaches_the_next_stop_is_refused() -> None:
@@ -476,28 +478,30 @@ def test_halved_pictures_keep_their_rig() -> None:
     """The same room with pixels twice as large: lamps, middles of pictures, and light that falls on them."""
     wall, shots = replace(ROOM.screens[0], size_mm=(4.2, 2.8)), ROOM.shots[:1]
     cube = made(replace(ROOM, screens=(wall,), shots=shots))
-    frames, grid = halved(Frames(play(cube), cube.rig), GRID)
+    targets, grid = halved(Targets(play(cube), cube.rig), GRID)
     same = replace(ROOM, grid=grid, screens=(replace(wall, pitch_mm=1.4),), shots=shots).rig()
-    for one, other in zip(falling_light(frames.rig), falling_light(same), strict=True):
+    for one, other in zip(falling_light(targets.rig), falling_light(same), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-6)
 
 
 @given(st.floats(0.01, 20), st.integers(4, 200), st.sampled_from([0.0, 35.0]))
-def test_held_pictures_are_dense_enough_and_keep_the_stop_in_the_middle(hold: float, n: int, elevation: float) -> None:
+def test_held_pictures_are_dense_enough_and_keep_the_stop_in_the_middle(
+    hold_deg: float, n: int, elevation_deg: float
+) -> None:
     grid = Grid((4, n, 4))
-    rig = turntable(grid, [20.0, 70.0, 150.0], elevation=elevation, picture_shape=(2, 2))
-    angles = held(rig, Recipe(hold_deg=hold), grid).stops.angle.reshape(3, -1)
-    assert np.allclose(angles[:, angles.shape[1] // 2], rig.stops.angle)
-    assert np.allclose(angles[:, -1] - angles[:, 0], 2 * hold)
-    assert np.max(np.diff(angles, axis=1)) <= 0.5 * 64 / n + 1e-6
-    assert angles.shape[1] == 1 + 2 * np.ceil(hold / (0.5 * 64 / n) - 1e-9)
+    rig = turntable(grid, [20.0, 70.0, 150.0], elevation_deg=elevation_deg, picture_shape=(2, 2))
+    angles_deg = held(rig, Recipe(hold_deg=hold_deg), grid).stops.angle_deg.reshape(3, -1)
+    assert np.allclose(angles_deg[:, angles_deg.shape[1] // 2], rig.stops.angle_deg)
+    assert np.allclose(angles_deg[:, -1] - angles_deg[:, 0], 2 * hold_deg)
+    assert np.max(np.diff(angles_deg, axis=1)) <= 0.5 * 64 / n + 1e-6
+    assert angles_deg.shape[1] == 1 + 2 * np.ceil(hold_deg / (0.5 * 64 / n) - 1e-9)
 
 
 def test_a_turntable_that_has_turned_on_is_one_at_other_angles() -> None:
-    rig = turntable(GRID, [10.0, 80.0], elevation=20.0).turned([20.0, -10.0])
-    expected = turntable(GRID, [30.0, 70.0], elevation=20.0)
-    np.testing.assert_allclose(rig.stops.angle, expected.stops.angle)
-    for name in ("lamps", "origins", "column_steps", "row_steps"):
+    rig = turntable(GRID, [10.0, 80.0], elevation_deg=20.0).turned([20.0, -10.0])
+    expected = turntable(GRID, [30.0, 70.0], elevation_deg=20.0)
+    np.testing.assert_allclose(rig.stops.angle_deg, expected.stops.angle_deg)
+    for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
         np.testing.assert_allclose(getattr(rig.views, name), getattr(expected.views, name), atol=1e-12)
 
 

@@ -19,8 +19,8 @@ from tests.helpers import plain
 
 GRID = Grid((4, 5, 6), 0.7)
 SUN = Lamp("sun", direction=(2.0, 0.0, -1.2))
-WALL = Screen("wall", centre=(9.0, 0.0, -5.4), size_mm=(4.9, 2.8), pitch_mm=0.7, normal=(-1.0, 0.0, 0.0))
-BULB = Lamp("bulb", position=(-9.0, 2.0, 7.0))
+WALL = Screen("wall", centre_mm=(9.0, 0.0, -5.4), size_mm=(4.9, 2.8), pitch_mm=0.7, normal=(-1.0, 0.0, 0.0))
+BULB = Lamp("bulb", position_mm=(-9.0, 2.0, 7.0))
 STOPS = (0.0, 25.0, 90.0, 211.0)
 
 
@@ -47,20 +47,20 @@ def assert_close(one: np.ndarray, other: np.ndarray) -> None:
     np.testing.assert_allclose(one, other, atol=2e-5)
 
 
-def turntable_pictures(angles: tuple[float, ...]) -> np.ndarray:
+def turntable_pictures(angles_deg: tuple[float, ...]) -> np.ndarray:
     """What a turntable shows of the same cube, lamp and window."""
-    elevation = math.degrees(math.atan2(1.2, 2.0))
-    rig = turntable(GRID, angles, elevation=elevation, picture_shape=(4, 7))
+    elevation_deg = math.degrees(math.atan2(1.2, 2.0))
+    rig = turntable(GRID, angles_deg, elevation_deg=elevation_deg, picture_shape=(4, 7))
     return play(Cube(extinction(), GRID, rig))
 
 
 def test_a_raised_lamp_and_a_vertical_wall_are_a_turntable() -> None:
     rig = on_stage(*STOPS).rig()
-    table = turntable(GRID, STOPS, elevation=math.degrees(math.atan2(1.2, 2.0)), picture_shape=(4, 7))
+    table = turntable(GRID, STOPS, elevation_deg=math.degrees(math.atan2(1.2, 2.0)), picture_shape=(4, 7))
     np.testing.assert_allclose(rig.views.lamps / np.hypot(2.0, 1.2), table.views.lamps, atol=1e-12)
-    np.testing.assert_allclose(rig.views.column_steps, table.views.column_steps, atol=1e-12)
-    np.testing.assert_allclose(rig.views.row_steps, table.views.row_steps, atol=1e-12)
-    np.testing.assert_allclose(rig.stops.angle, STOPS)
+    np.testing.assert_allclose(rig.views.column_steps_mm, table.views.column_steps_mm, atol=1e-12)
+    np.testing.assert_allclose(rig.views.row_steps_mm, table.views.row_steps_mm, atol=1e-12)
+    np.testing.assert_allclose(rig.stops.angle_deg, STOPS)
     assert rig.is_thin
     assert_close(shown(on_stage(*STOPS)), turntable_pictures(STOPS))
 
@@ -92,16 +92,16 @@ def third_turned(volume: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("lamp", [SUN, BULB])
 @pytest.mark.parametrize(
-    ("turned", "angle", "axis"),
+    ("turned", "angle_deg", "axis"),
     [(quarter_turned, 90.0, (0.0, 0.0, 1.0)), (third_turned, 120.0, (2.0, 2.0, 2.0))],
 )
-def test_turning_the_table_is_turning_the_voxels(lamp: Lamp, turned: Any, angle: float, axis: Any) -> None:
+def test_turning_the_table_is_turning_the_voxels(lamp: Lamp, turned: Any, angle_deg: float, axis: Any) -> None:
     """The cube is turned by hand, voxel by voxel, in a room that stands still."""
     still = turned(extinction())
     grid = Grid(still.shape[1:], GRID.voxel_mm)
     screen = replace(WALL, size_mm=(7.7, 5.6))
     by_hand = shown(on_stage(0.0, lamp=lamp, screen=screen, grid=grid), still)
-    assert_close(shown(on_stage(angle, lamp=lamp, screen=screen, axis=axis)), by_hand)
+    assert_close(shown(on_stage(angle_deg, lamp=lamp, screen=screen, axis=axis)), by_hand)
 
 
 @pytest.mark.parametrize("lamp", [SUN, BULB])
@@ -109,7 +109,7 @@ def test_a_lamp_that_the_table_carries_goes_round_a_cube_that_it_does_not(lamp: 
     """And the screen, which it does not carry, stays: the same as a lamp that was put elsewhere by hand."""
     there: dict[str, Any] = {
         "direction": (0.0, 2.0, -1.2) if lamp.direction else None,
-        "position": (-2.0, -9.0, 7.0) if lamp.position else None,
+        "position_mm": (-2.0, -9.0, 7.0) if lamp.position_mm else None,
     }
     screen = Screen("wall", (0.8, 7.6, -5.2), (5.6, 4.2), 0.7)
     carried = on_stage(90.0, lamp=replace(lamp, turns=True), screen=screen, cube_turns=False)
@@ -118,7 +118,7 @@ def test_a_lamp_that_the_table_carries_goes_round_a_cube_that_it_does_not(lamp: 
 
 def test_a_second_screen_at_a_right_angle_sees_a_quarter_turn_on_what_the_first_saw() -> None:
     lamps = (SUN, Lamp("moon", direction=(0.0, 2.0, -1.2)))
-    screens = (WALL, replace(WALL, name="door", centre=(0.0, 9.0, -5.4), normal=(0.0, -1.0, 0.0)))
+    screens = (WALL, replace(WALL, name="door", centre_mm=(0.0, 9.0, -5.4), normal=(0.0, -1.0, 0.0)))
     shots = [Shot(f"{name}{stop}", name, (lamp,), stop) for stop in (0, 1) for name, lamp in PAIRS]
     wall, door, wall_on, door_on = shown(Stage(GRID, lamps, screens, tuple(shots), (20.0, 110.0)))
     assert_close(door_on, wall)
@@ -149,7 +149,7 @@ def test_up_rotates_the_picture() -> None:
 
 @pytest.mark.parametrize("lamp", [SUN, BULB])
 @pytest.mark.parametrize(
-    ("centre", "normal", "up", "right"),
+    ("centre_mm", "normal", "up", "right"),
     [
         ((9.0, 0.0, -5.0), None, (0.0, 0.0, 1.0), (0.0, -1.0, 0.0)),
         ((8.0, 1.0, -9.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, -1.0, 0.0)),  # a floor
@@ -157,17 +157,17 @@ def test_up_rotates_the_picture() -> None:
         ((7.0, -3.0, -6.0), (-1.0, 1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, -1.0, 0.0)),
     ],
 )
-def test_pixels_lie_where_the_screen_does(lamp: Lamp, centre: Any, normal: Any, up: Any, right: Any) -> None:
+def test_pixels_lie_where_the_screen_does(lamp: Lamp, centre_mm: Any, normal: Any, up: Any, right: Any) -> None:
     """Pixel by pixel in plain Python; `right` is that of somebody who looks at the lit side."""
-    screen = Screen("wall", centre, (3.5, 2.8), 0.7, normal=normal)
-    out = np.array(normal or [-each for each in centre])
+    screen = Screen("wall", centre_mm, (3.5, 2.8), 0.7, normal=normal)
+    out = np.array(normal or [-each for each in centre_mm])
     above = np.array(up) - (np.array(up) @ out) / (out @ out) * out
     volume, expected = extinction(), np.zeros((4, 5, 3))
     for row, column in np.ndindex(4, 5):
         along, across = 0.7 * (1.5 - row), 0.7 * (column - 2)
         aside = np.array(right) if normal else np.cross(above, out)
-        pixel = np.array(centre) + along * above / np.linalg.norm(above) + across * aside / np.linalg.norm(aside)
-        way = np.array(lamp.direction) if lamp.direction else pixel - np.array(lamp.position)
+        pixel = np.array(centre_mm) + along * above / np.linalg.norm(above) + across * aside / np.linalg.norm(aside)
+        way = np.array(lamp.direction) if lamp.direction else pixel - np.array(lamp.position_mm)
         length = float(np.linalg.norm(way))
         ends = (-math.inf, math.inf) if lamp.direction else (-length, 0.0)
         lengths = plain.lengths_of_beam(GRID, pixel, way / length, *ends)
@@ -208,8 +208,8 @@ def test_turning_on_by_two_angles_is_turning_on_by_their_sum(cube_turns: bool) -
         for part in parts:
             each = each.turned(part)
         at_once = rig.turned(np.sum(np.broadcast_arrays(*parts), axis=0))
-        np.testing.assert_allclose(each.stops.angle, at_once.stops.angle)
-        for name in ("lamps", "origins", "column_steps", "row_steps"):
+        np.testing.assert_allclose(each.stops.angle_deg, at_once.stops.angle_deg)
+        for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
             np.testing.assert_allclose(getattr(each.views, name), getattr(at_once.views, name), atol=1e-12)
             if whole:
                 np.testing.assert_allclose(getattr(each.views, name), getattr(rig.views, name), atol=1e-12)
@@ -217,9 +217,9 @@ def test_turning_on_by_two_angles_is_turning_on_by_their_sum(cube_turns: bool) -
 
 def test_turning_on_from_a_stop_is_standing_at_another() -> None:
     """What moves keeps its distance from the axis and from the cube, also about a slanted one."""
-    first, second = (replace(MIXED, stops=(start, 40.0 + start)).rig() for start in (0.0, 71.0))
+    first, second = (replace(MIXED, stops_deg=(start, 40.0 + start)).rig() for start in (0.0, 71.0))
     moved, axis = first.turned(71.0), first.turning.axis
-    for name in ("lamps", "origins", "column_steps", "row_steps"):
+    for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
         np.testing.assert_allclose(getattr(moved.views, name), getattr(second.views, name), atol=1e-12)
         before, after = getattr(first.views, name)[:, :3], getattr(moved.views, name)[:, :3]
         np.testing.assert_allclose(np.linalg.norm(after, axis=1), np.linalg.norm(before, axis=1))
@@ -244,7 +244,7 @@ def test_what_is_said_of_lamps_and_screens_is_said_of_every_view() -> None:
     assert rig.sums.disc_deg.tolist() == [0, 0.5, 0, 0.5]
     assert rig.fading.cosine.tolist() == [True, True, False, False]
     assert rig.turning.turns.tolist() == [[False, False], [True, False], [False, True], [True, True]]
-    assert rig.stops.angle.tolist() == [50, 10, 50]
+    assert rig.stops.angle_deg.tolist() == [50, 10, 50]
     assert rig.stops.screen.tolist() == [1, 0, 0]
     assert rig.lamps.least.tolist() == [3, 1e-4]
     assert rig.lamps.most.tolist() == [3, 7]
@@ -269,8 +269,8 @@ def test_what_is_said_of_lamps_and_screens_is_said_of_every_view() -> None:
         ({"shots": (Shot("a", "wall", ("sun", "sun")),)}, "'a' names a lamp twice"),
         ({"shots": (Shot("a", "wall", ("sun",), 2),)}, "'a': there is no stop 3: the turntable has 2"),
         ({"shots": (Shot("a", "wall", ("sun",), -1),)}, "'a': there is no stop 0"),
-        ({"stops": ()}, "the turntable has 0"),
-        ({"stops": (0.0, math.nan)}, "stops must be finite"),
+        ({"stops_deg": ()}, "the turntable has 0"),
+        ({"stops_deg": (0.0, math.nan)}, "stops must be finite"),
         ({"axis": (0.0, 0.0, 0.0)}, "turntable: axis"),
     ],
 )
@@ -283,11 +283,11 @@ def test_what_cannot_be_a_stage_is_refused(changes: dict[str, Any], message: str
 @pytest.mark.parametrize(
     ("lamp", "message"),
     [
-        ({"position": (1, 2, 3)}, "give either a direction .* or a position"),
-        ({"direction": None}, "give either a direction .* or a position"),
+        ({"position_mm": (1, 2, 3)}, "give either a direction .* or a position_mm"),
+        ({"direction": None}, "give either a direction .* or a position_mm"),
         ({"direction": (0, 0, 0)}, "direction must be three finite numbers"),
         ({"direction": (0, 1)}, "direction must be three"),
-        ({"direction": None, "position": (0, math.inf, 0)}, "position must be three finite"),
+        ({"direction": None, "position_mm": (0, math.inf, 0)}, "position_mm must be three finite"),
         ({"colour": (0, 0, 0)}, "colour must be"),
         ({"colour": (1, -1, 0)}, "colour must be"),
         ({"power": 0.0}, "power must lie between"),
@@ -295,7 +295,7 @@ def test_what_cannot_be_a_stage_is_refused(changes: dict[str, Any], message: str
         ({"power_max": 1e7}, "power_max must lie"),
         ({"size_deg": 90.0}, "size_deg"),
         ({"full_at_mm": 5.0}, "full_at_mm is for point lamps"),
-        ({"direction": None, "position": (1, 2, 3), "full_at_mm": 0.0}, "full_at_mm must be above 0"),
+        ({"direction": None, "position_mm": (1, 2, 3), "full_at_mm": 0.0}, "full_at_mm must be above 0"),
         ({"reach_mm": -1.0}, "reach_mm must be at least 0"),
         ({"falloff_mm": math.nan}, "falloff_mm must be at least 0"),
     ],
@@ -308,8 +308,8 @@ def test_what_cannot_be_a_lamp_is_refused(lamp: dict[str, Any], message: str) ->
 @pytest.mark.parametrize(
     ("screen", "message"),
     [
-        ({"centre": (0, 0, 0), "normal": None}, "centre must be three finite numbers that are not all 0"),
-        ({"centre": (0, math.nan, 0)}, "centre must be three finite numbers"),
+        ({"centre_mm": (0, 0, 0), "normal": None}, "centre_mm must be three finite numbers that are not all 0"),
+        ({"centre_mm": (0, math.nan, 0)}, "centre_mm must be three finite numbers"),
         ({"normal": (0, 0, 0)}, "normal must be"),
         ({"up": (-2, 0, 0)}, "up must not point straight out"),
         ({"up": (0, 0, 0)}, "up must be three"),
@@ -336,9 +336,13 @@ def test_any_numbers_make_a_stage_or_one_sentence(data: st.DataObject) -> None:
     numbers: dict[str, Any] = {"stop": 0.0, "axis": (0.0, 0.0, 1.0)}
     things: list[Any] = [replace(data.draw(st.sampled_from([SUN, BULB]))), WALL]
     for index, thing in enumerate(things):
-        names = [each.name for each in fields(thing) if each.name.endswith(("mm", "deg", "power", "max"))]
+        names = [
+            each.name
+            for each in fields(thing)
+            if each.name not in ("position_mm", "centre_mm") and each.name.endswith(("mm", "deg", "power", "max"))
+        ]
         vectors = [
-            name for name in ("direction", "position", "colour", "centre", "normal", "up") if hasattr(thing, name)
+            name for name in ("direction", "position_mm", "colour", "centre_mm", "normal", "up") if hasattr(thing, name)
         ]
         chosen = data.draw(st.sets(st.sampled_from(names + vectors), max_size=2))
         values: dict[str, Any] = {name: any_float if name in names else vector for name in chosen}
@@ -354,5 +358,5 @@ def test_any_numbers_make_a_stage_or_one_sentence(data: st.DataObject) -> None:
     except InputError as error:
         assert "\n" not in str(error)  # noqa: PT017 - any other exception fails the test
     else:
-        assert np.all(np.any(np.cross(rig.views.column_steps, rig.views.row_steps) != 0, axis=1))
+        assert np.all(np.any(np.cross(rig.views.column_steps_mm, rig.views.row_steps_mm) != 0, axis=1))
         assert np.all(np.any(rig.views.lamps[:, :3] != 0, axis=1))

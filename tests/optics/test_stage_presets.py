@@ -9,11 +9,11 @@ import pytest
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
 from lightcube.forward.casting import cast, play
-from lightcube.io import read_stage, read_stage_frames
+from lightcube.io import read_stage, read_stage_targets
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.stage import Stage
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.planning.placement import doubtful, impossible
 from lightcube.scoring.metrics import score
 from tests.conftest import INTERPRETED
@@ -33,7 +33,7 @@ def smaller(stage: Stage, side: int) -> Stage:
     return replace(stage, grid=grid, screens=screens, shots=few)
 
 
-def known(stage: Stage, lamp_samples: int = 1) -> tuple[Cube, Frames]:
+def known(stage: Stage, lamp_samples: int = 1) -> tuple[Cube, Targets]:
     """A random cube on a stage, under lamps of random powers, and its shadows."""
     random = np.random.default_rng(0)
     rig = stage.rig().sampled(lamp=lamp_samples)
@@ -42,7 +42,7 @@ def known(stage: Stage, lamp_samples: int = 1) -> tuple[Cube, Frames]:
     cube = Cube(extinction, stage.grid, rig, powers)
     shadows = np.stack(list(cast(cube, rig, powers)))
     inside = rig.inside.astype(np.float32)
-    return cube, Frames(shadows, rig, inside)
+    return cube, Targets(shadows, rig, inside)
 
 
 def test_there_is_a_stage_for_each_way_to_light_a_cube() -> None:
@@ -55,26 +55,26 @@ def test_there_is_a_stage_for_each_way_to_light_a_cube() -> None:
 @pytest.mark.parametrize("path", STAGES, ids=lambda path: path.stem)
 def test_the_shadows_of_a_known_cube_come_back(path: Path) -> None:
     stage = smaller(read_stage(path)[0], SIDE)
-    cube, frames = known(stage, 3 if path.stem == "soft-lamp" else 1)
-    assert np.mean(frames.pictures < 0.5) > 0.1  # there are shadows
-    solved = solve(frames, stage.grid, Recipe(passes=100 if INTERPRETED else 400))
-    scores = score(solved.cube, frames)
+    cube, targets = known(stage, 3 if path.stem == "soft-lamp" else 1)
+    assert np.mean(targets.pictures < 0.5) > 0.1  # there are shadows
+    solved = solve(targets, stage.grid, Recipe(passes=100 if INTERPRETED else 400))
+    scores = score(solved.cube, targets)
     assert scores["psnr_min"] >= 50
     assert not np.allclose(solved.cube.extinction, cube.extinction, atol=1e-3)  # other cubes have the same shadows
 
 
 @pytest.mark.parametrize("path", STAGES, ids=lambda path: path.stem)
 def test_nothing_is_wrong_with_it(path: Path) -> None:
-    stage, frames = read_stage_frames(path)
+    stage, targets = read_stage_targets(path)
     assert impossible(stage) == doubtful(stage) == []
-    assert len(frames) == len(stage.shots) == len(set(frames.names))
+    assert len(targets) == len(stage.shots) == len(set(targets.names))
 
 
 def test_a_stage_is_played_at_any_angle() -> None:
     stage = smaller(read_stage(next(path for path in STAGES if path.stem == "two-screens"))[0], SIDE)
-    cube, frames = known(stage)
-    angles = np.unique(frames.angles)
-    assert len(play(cube, angles)) == 2 * len(angles)
-    for picture, angle in enumerate(frames.angles):
-        shown = play(cube, [angle])
-        assert any(np.allclose(each, frames.pictures[picture], atol=1e-6) for each in shown)
+    cube, targets = known(stage)
+    angles_deg = np.unique(targets.angles_deg)
+    assert len(play(cube, angles_deg)) == 2 * len(angles_deg)
+    for picture, angle_deg in enumerate(targets.angles_deg):
+        shown = play(cube, [angle_deg])
+        assert any(np.allclose(each, targets.pictures[picture], atol=1e-6) for each in shown)

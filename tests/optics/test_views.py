@@ -29,12 +29,12 @@ def test_the_papers_rasters() -> None:
 
 @given(st.tuples(*[st.integers(1, 40)] * 3), st.floats(-80, 80))
 def test_the_raster_holds_the_whole_shadow_and_is_no_larger_than_it_must(
-    shape: tuple[int, int, int], elevation: float
+    shape: tuple[int, int, int], elevation_deg: float
 ) -> None:
     nz, ny, nx = shape
-    rows, columns = raster_shape(Grid(shape), elevation)
+    rows, columns = raster_shape(Grid(shape), elevation_deg)
     diagonal = math.hypot(nx, ny)
-    height = nz + diagonal * abs(math.tan(math.radians(elevation)))
+    height = nz + diagonal * abs(math.tan(math.radians(elevation_deg)))
     assert (columns - ny) % 2 == 0
     assert (rows - nz) % 2 == 0
     assert diagonal - 1e-6 <= columns < diagonal + 2
@@ -43,46 +43,46 @@ def test_the_raster_holds_the_whole_shadow_and_is_no_larger_than_it_must(
 
 def test_light_screen_and_turning_are_as_the_conventions_say() -> None:
     grid = Grid((3, 5, 7), 2.0)
-    views = turntable_views(grid, [0.0, 90.0], elevation=30.0)
+    views = turntable_views(grid, [0.0, 90.0], elevation_deg=30.0)
     assert np.allclose(views.lamps[0], [math.cos(math.pi / 6), 0, -0.5, 0])
-    assert np.allclose(views.column_steps[0], [0, -2, 0])
-    assert np.allclose(views.row_steps[0], [0, 0, -2])
+    assert np.allclose(views.column_steps_mm[0], [0, -2, 0])
+    assert np.allclose(views.row_steps_mm[0], [0, 0, -2])
     # turned by +90 degrees, the cube's own +x points along the room's +y: in its frame light goes along -y
     assert np.allclose(views.lamps[1], [0, -math.cos(math.pi / 6), -0.5, 0])
-    assert np.allclose(views.column_steps[1], [-2, 0, 0])
+    assert np.allclose(views.column_steps_mm[1], [-2, 0, 0])
 
 
 @given(st.floats(0, 359.99), st.floats(-85, 85))
-def test_angles_and_elevations_come_back(angle: float, elevation: float) -> None:
-    views = turntable_views(Grid((2, 2, 2)), [angle], elevation=elevation)
-    assert (views.angles[0] - angle + 180) % 360 - 180 == pytest.approx(0, abs=2e-9)
-    assert views.elevations[0] == pytest.approx(elevation, abs=2e-9)
+def test_angles_and_elevations_come_back(angle_deg: float, elevation_deg: float) -> None:
+    views = turntable_views(Grid((2, 2, 2)), [angle_deg], elevation_deg=elevation_deg)
+    assert (views.angles_deg[0] - angle_deg + 180) % 360 - 180 == pytest.approx(0, abs=2e-9)
+    assert views.elevations_deg[0] == pytest.approx(elevation_deg, abs=2e-9)
 
 
-@pytest.mark.parametrize("span", [180.0, 360.0])
+@pytest.mark.parametrize("span_deg", [180.0, 360.0])
 @pytest.mark.parametrize("count", range(1, 40))
-def test_spread_angles_avoid_multiples_of_90(count: int, span: float) -> None:
-    angles = spread_angles(count, span)
-    assert np.allclose(np.diff(angles), span / count)
-    assert np.all((angles > 0) & (angles < span))
-    assert np.min(np.abs((angles + 45) % 90 - 45)) > 0.1
-    half = np.abs((span / count * (np.arange(count) + 0.5) + 45) % 90 - 45).min() > 1e-9
-    assert angles[0] == pytest.approx(span / count * (1 / 2 if half else 1 / 3))
+def test_spread_angles_avoid_multiples_of_90(count: int, span_deg: float) -> None:
+    angles_deg = spread_angles(count, span_deg)
+    assert np.allclose(np.diff(angles_deg), span_deg / count)
+    assert np.all((angles_deg > 0) & (angles_deg < span_deg))
+    assert np.min(np.abs((angles_deg + 45) % 90 - 45)) > 0.1
+    half = np.abs((span_deg / count * (np.arange(count) + 0.5) + 45) % 90 - 45).min() > 1e-9
+    assert angles_deg[0] == pytest.approx(span_deg / count * (1 / 2 if half else 1 / 3))
 
 
 def test_spread_follows_the_elevation() -> None:
     assert spread_angles(4)[-1] < 180
-    assert spread_angles(4, elevation=35)[-1] > 180
+    assert spread_angles(4, elevation_deg=35)[-1] > 180
 
 
 @given(st.floats(0.01, 1.4), st.floats(0.2, 5), st.floats(-60, 60), st.tuples(*[st.integers(2, 60)] * 3))
 def test_picture_shapes_have_the_rasters_parity_and_fit(
-    width: float, aspect: float, elevation: float, shape: tuple[int, int, int]
+    width: float, aspect: float, elevation_deg: float, shape: tuple[int, int, int]
 ) -> None:
     grid = Grid(shape)
-    raster = raster_shape(grid, elevation)
+    raster = raster_shape(grid, elevation_deg)
     try:
-        rows, columns = picture_shape(grid, width, aspect, elevation)
+        rows, columns = picture_shape(grid, width, aspect, elevation_deg)
     except InputError:
         assert width * shape[1] > raster[1] - 2
         return
@@ -102,8 +102,8 @@ def test_picture_shapes_have_the_rasters_parity_and_fit(
         lambda: Grid((3, 3, 3), math.nan),
         lambda: turntable_views(Grid((3, 3, 3)), []),
         lambda: turntable_views(Grid((3, 3, 3)), [math.nan]),
-        lambda: turntable_views(Grid((3, 3, 3)), [0], elevation=90),
-        lambda: turntable_views(Grid((3, 3, 3)), [0], elevation=-90),
+        lambda: turntable_views(Grid((3, 3, 3)), [0], elevation_deg=90),
+        lambda: turntable_views(Grid((3, 3, 3)), [0], elevation_deg=-90),
         lambda: turntable_views(Grid((3, 3, 3)), [0], picture_shape=(3, 7)),
         lambda: turntable_views(Grid((3, 3, 3)), [0], picture_shape=(0, 3)),
         lambda: picture_shape(Grid((3, 3, 3)), 0.0, 1.0),

@@ -1,4 +1,4 @@
-"""From pictures to frames: sizes, resampling, angles, and what is refused."""
+"""From pictures to targets: sizes, resampling, angles, and what is refused."""
 
 import math
 from dataclasses import replace
@@ -15,8 +15,9 @@ from lightcube.optics.grid import Grid, picture_shape
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import to_uint8
 from lightcube.optics.views import distinct_angles, spread_angles
-from lightcube.pictures.fitting import Fit, fit_report, frames_from_targets, targets
-from lightcube.pictures.frames import Frames, Pictures
+from lightcube.pictures.fitting import Fit, as_levels, fit_report, targets_of
+from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.targets import Targets
 from tests.helpers.recipes import fitted
 
 GRID = Grid((12, 16, 14))
@@ -57,31 +58,31 @@ def plain_resize(image: NDArray[np.float32], rows: int, columns: int, box: tuple
 
 
 @pytest.mark.parametrize("mode", FITS)
-@pytest.mark.parametrize("elevation", [0.0, 30.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 30.0])
 @pytest.mark.parametrize("shape", [(12, 16), (6, 8), (10, 14), (12, 6)])
-def test_at_the_frames_size_pictures_are_not_touched(mode: Fit, elevation: float, shape: tuple[int, int]) -> None:
+def test_at_the_targets_size_pictures_are_not_touched(mode: Fit, elevation_deg: float, shape: tuple[int, int]) -> None:
     read = pictures(shape, shape, shape)
-    frames = fitted(read, GRID, elevation=elevation, frame_width=shape[1] / 16, fit_mode=mode)
-    assert frames.rig.picture_shape == shape
-    np.testing.assert_array_equal(frames.pictures.view(np.uint32), np.stack(read.images).view(np.uint32))
-    np.testing.assert_array_equal(frames.weight, 1)
-    assert frames.names == read.names
+    targets = fitted(read, GRID, elevation_deg=elevation_deg, picture_width=shape[1] / 16, fit_mode=mode)
+    assert targets.rig.picture_shape == shape
+    np.testing.assert_array_equal(targets.pictures.view(np.uint32), np.stack(read.images).view(np.uint32))
+    np.testing.assert_array_equal(targets.weight, 1)
+    assert targets.names == read.names
 
 
 @pytest.mark.parametrize("size", [(14, 18), (22, 26), (18, 22), (49, 47), (61, 59)])
 def test_rounding_of_the_aspect_touches_nothing(size: tuple[int, int]) -> None:
     read = pictures(size, size)
-    frames = fitted(read, Grid((size[0], size[1], size[1])))
-    np.testing.assert_array_equal(frames.pictures, np.stack(read.images))
+    targets = fitted(read, Grid((size[0], size[1], size[1])))
+    np.testing.assert_array_equal(targets.pictures, np.stack(read.images))
 
 
 @pytest.mark.parametrize("first", [(9, 12), (30, 40), (45, 60), (31, 40)])
 def test_crop_is_a_centred_lanczos_of_the_part_with_the_right_aspect(first: tuple[int, int]) -> None:
     read = pictures(first, (40, 30), (11, 60), (12, 17))
-    frames = fitted(read, GRID)
+    targets = fitted(read, GRID)
     rows, columns = picture_shape(GRID, 1.0, first[1] / first[0])
-    assert frames.rig.picture_shape == (rows, columns)
-    for image, frame in zip(read.images, frames.pictures, strict=True):
+    assert targets.rig.picture_shape == (rows, columns)
+    for image, frame in zip(read.images, targets.pictures, strict=True):
         high, wide = image.shape[:2]
         aspect = columns / rows
         if wide > high * aspect:
@@ -95,8 +96,8 @@ def test_crop_is_a_centred_lanczos_of_the_part_with_the_right_aspect(first: tupl
 
 def test_stretch_takes_all_of_each_picture() -> None:
     read = pictures((9, 12), (40, 30), (5, 60))
-    frames = fitted(read, GRID, fit_mode="stretch")
-    for image, frame in zip(read.images, frames.pictures, strict=True):
+    targets = fitted(read, GRID, fit_mode="stretch")
+    for image, frame in zip(read.images, targets.pictures, strict=True):
         high, wide = image.shape[:2]
         np.testing.assert_allclose(frame, plain_resize(image, 12, 16, (0, 0, wide, high)), atol=2e-5)
 
@@ -114,25 +115,25 @@ def test_stretch_takes_all_of_each_picture() -> None:
 )
 def test_pad_keeps_all_and_does_not_care_about_the_rest(size: tuple[int, int], inside: tuple[int, int]) -> None:
     read = pictures((24, 32), size)
-    frames = fitted(read, GRID, fit_mode="pad")
-    assert frames.rig.picture_shape == (12, 16)
+    targets = fitted(read, GRID, fit_mode="pad")
+    assert targets.rig.picture_shape == (12, 16)
     top, left = (12 - inside[0]) // 2, (16 - inside[1]) // 2
     window = (slice(top, top + inside[0]), slice(left, left + inside[1]))
     wanted = plain_resize(read.images[1], *inside, (0, 0, size[1], size[0]))
-    np.testing.assert_allclose(frames.pictures[1][window], wanted, atol=2e-5)
+    np.testing.assert_allclose(targets.pictures[1][window], wanted, atol=2e-5)
     if size == inside:
-        np.testing.assert_array_equal(frames.pictures[1][window], read.images[1])
+        np.testing.assert_array_equal(targets.pictures[1][window], read.images[1])
     outside = np.ones((12, 16), bool)
     outside[window] = False
-    np.testing.assert_array_equal(frames.weight[1], ~outside)
-    np.testing.assert_array_equal(frames.pictures[1][outside], 1)
-    np.testing.assert_array_equal(frames.weight[0], 1)
+    np.testing.assert_array_equal(targets.weight[1], ~outside)
+    np.testing.assert_array_equal(targets.pictures[1][outside], 1)
+    np.testing.assert_array_equal(targets.weight[0], 1)
 
 
 def test_pad_never_loses_a_picture_altogether() -> None:
     for grid in (Grid((3, 5, 7)), Grid((4, 6, 6)), Grid((1, 1, 1)), Grid((2, 2, 2))):
-        frames = fitted(pictures((20, 20), (1, 300), (300, 1)), grid, fit_mode="pad")
-        assert np.all(frames.weight.max(axis=(1, 2)) == 1)
+        targets = fitted(pictures((20, 20), (1, 300), (300, 1)), grid, fit_mode="pad")
+        assert np.all(targets.weight.max(axis=(1, 2)) == 1)
 
 
 @settings(max_examples=60, deadline=None)
@@ -140,23 +141,23 @@ def test_pad_never_loses_a_picture_altogether() -> None:
     sizes=st.lists(st.tuples(st.integers(1, 20), st.integers(1, 20)), min_size=2, max_size=4),
     shape=st.tuples(*[st.integers(1, 9)] * 3),
     mode=st.sampled_from(FITS),
-    frame_width=st.floats(0.2, 1.0),
-    elevation=st.sampled_from([0.0, 35.0, -20.0]),
+    picture_width=st.floats(0.2, 1.0),
+    elevation_deg=st.sampled_from([0.0, 35.0, -20.0]),
 )
 def test_laws_of_any_fit(
-    sizes: list[tuple[int, int]], shape: tuple[int, int, int], mode: Fit, frame_width: float, elevation: float
+    sizes: list[tuple[int, int]], shape: tuple[int, int, int], mode: Fit, picture_width: float, elevation_deg: float
 ) -> None:
     read = pictures(*sizes)
     grid = Grid(shape)
     try:
-        frames = fitted(read, grid, frame_width=frame_width, elevation=elevation, fit_mode=mode)
+        targets = fitted(read, grid, picture_width=picture_width, elevation_deg=elevation_deg, fit_mode=mode)
     except InputError as error:
         assert "wider than the cube's screen" in str(error)  # noqa: PT017 - any other exception fails the test
         return
     first = read.images[0].shape
-    assert frames.rig.picture_shape == picture_shape(grid, frame_width, first[1] / first[0], elevation)
-    assert frames.pictures.dtype == np.float32
-    for image, frame, weight in zip(read.images, frames.pictures, frames.weight, strict=True):
+    assert targets.rig.picture_shape == picture_shape(grid, picture_width, first[1] / first[0], elevation_deg)
+    assert targets.pictures.dtype == np.float32
+    for image, frame, weight in zip(read.images, targets.pictures, targets.weight, strict=True):
         assert set(np.unique(weight)) <= {0, 1}
         assert weight.max() == 1
         inside = frame[weight > 0]
@@ -164,99 +165,99 @@ def test_laws_of_any_fit(
         assert np.all(inside <= image.max(axis=(0, 1)))
         np.testing.assert_array_equal(frame[weight == 0], 1)
     flat = replace(read, images=tuple(image * 0 + np.float32(0.3) for image in read.images))
-    same = fitted(flat, grid, frame_width=frame_width, elevation=elevation, fit_mode=mode)
+    same = fitted(flat, grid, picture_width=picture_width, elevation_deg=elevation_deg, fit_mode=mode)
     np.testing.assert_array_equal(same.pictures[same.weight > 0], np.float32(0.3))
     mirrored = replace(read, images=tuple(image[::-1, ::-1] for image in read.images))
-    turned = fitted(mirrored, grid, frame_width=frame_width, elevation=elevation, fit_mode=mode)
-    np.testing.assert_allclose(turned.pictures, frames.pictures[:, ::-1, ::-1], atol=2e-5)
-    np.testing.assert_array_equal(turned.weight, frames.weight[:, ::-1, ::-1])
+    turned = fitted(mirrored, grid, picture_width=picture_width, elevation_deg=elevation_deg, fit_mode=mode)
+    np.testing.assert_allclose(turned.pictures, targets.pictures[:, ::-1, ::-1], atol=2e-5)
+    np.testing.assert_array_equal(turned.weight, targets.weight[:, ::-1, ::-1])
 
 
 def test_shrinking_keeps_the_light() -> None:
     """A fine checker of black and white becomes half the light, not half the display value."""
     checker = np.indices((96, 128)).sum(axis=0) % 2
     image = np.repeat(checker[:, :, None].astype(np.float32), 3, axis=2)
-    frames = fitted(Pictures((image, image), ("a", "b")), GRID)
-    np.testing.assert_allclose(frames.pictures, 0.5, atol=1e-3)
+    targets = fitted(Pictures((image, image), ("a", "b")), GRID)
+    np.testing.assert_allclose(targets.pictures, 0.5, atol=1e-3)
 
 
 class TestAngles:
     def test_those_asked_for_win(self) -> None:
-        read = replace(pictures((12, 16), (12, 16)), angles=np.array([1.0, 2.0]), elevation=10.0)
-        frames = fitted(read, GRID, angles=[30, -40], elevation=20)
-        np.testing.assert_allclose(frames.rig.views.angles, [30, 320])
-        np.testing.assert_allclose(frames.rig.views.elevations, 20)
+        read = replace(pictures((12, 16), (12, 16)), angles_deg=np.array([1.0, 2.0]), elevation_deg=10.0)
+        targets = fitted(read, GRID, angles_deg=[30, -40], elevation_deg=20)
+        np.testing.assert_allclose(targets.rig.views.angles_deg, [30, 320])
+        np.testing.assert_allclose(targets.rig.views.elevations_deg, 20)
 
     def test_then_a_span(self) -> None:
-        read = replace(pictures((12, 16), (12, 16)), angles=np.array([1.0, 2.0]))
-        np.testing.assert_allclose(fitted(read, GRID, span=90).angles, spread_angles(2, 90))
+        read = replace(pictures((12, 16), (12, 16)), angles_deg=np.array([1.0, 2.0]))
+        np.testing.assert_allclose(fitted(read, GRID, span_deg=90).angles_deg, spread_angles(2, 90))
 
     def test_then_those_of_the_pictures(self) -> None:
-        read = replace(pictures((12, 16), (12, 16)), angles=np.array([1.0, 2.0]), elevation=10.0)
-        frames = fitted(read, GRID)
-        np.testing.assert_allclose(frames.rig.views.angles, [1, 2])
-        np.testing.assert_allclose(frames.rig.views.elevations, 10)
-        np.testing.assert_allclose(fitted(read, GRID, elevation=0).rig.views.elevations, 0)
+        read = replace(pictures((12, 16), (12, 16)), angles_deg=np.array([1.0, 2.0]), elevation_deg=10.0)
+        targets = fitted(read, GRID)
+        np.testing.assert_allclose(targets.rig.views.angles_deg, [1, 2])
+        np.testing.assert_allclose(targets.rig.views.elevations_deg, 10)
+        np.testing.assert_allclose(fitted(read, GRID, elevation_deg=0).rig.views.elevations_deg, 0)
 
-    @pytest.mark.parametrize("elevation", [0.0, 35.0])
-    def test_else_spread_evenly(self, elevation: float) -> None:
-        frames = fitted(pictures(*[(12, 16)] * 5), GRID, elevation=elevation)
-        np.testing.assert_allclose(frames.rig.views.angles, spread_angles(5, elevation=elevation))
+    @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+    def test_else_spread_evenly(self, elevation_deg: float) -> None:
+        targets = fitted(pictures(*[(12, 16)] * 5), GRID, elevation_deg=elevation_deg)
+        np.testing.assert_allclose(targets.rig.views.angles_deg, spread_angles(5, elevation_deg=elevation_deg))
 
-    @pytest.mark.parametrize("angles", [[0, 360], [10, -350], [5, 5], [-1e-12, 0], [359.9999999999, 0]])
-    def test_the_same_view_twice_is_refused(self, angles: list[float]) -> None:
+    @pytest.mark.parametrize("angles_deg", [[0, 360], [10, -350], [5, 5], [-1e-12, 0], [359.9999999999, 0]])
+    def test_the_same_view_twice_is_refused(self, angles_deg: list[float]) -> None:
         with pytest.raises(InputError, match=r"number 1 and 2 .* are the same view"):
-            fitted(pictures((12, 16), (12, 16)), GRID, angles=angles)
+            fitted(pictures((12, 16), (12, 16)), GRID, angles_deg=angles_deg)
         with pytest.raises(InputError, match=r"number 1 and 2 .* are the same view"):
-            distinct_angles(angles)
+            distinct_angles(angles_deg)
 
     @settings(max_examples=100, deadline=None)
-    @given(angles=st.lists(st.integers(-2000, 2000), min_size=1, max_size=6))
-    def test_distinct_angles_are_those_with_distinct_remainders(self, angles: list[int]) -> None:
-        if len({angle % 360 for angle in angles}) == len(angles):
-            np.testing.assert_array_equal(distinct_angles(angles), angles)
+    @given(angles_deg=st.lists(st.integers(-2000, 2000), min_size=1, max_size=6))
+    def test_distinct_angles_are_those_with_distinct_remainders(self, angles_deg: list[int]) -> None:
+        if len({angle_deg % 360 for angle_deg in angles_deg}) == len(angles_deg):
+            np.testing.assert_array_equal(distinct_angles(angles_deg), angles_deg)
         else:
             with pytest.raises(InputError, match="same view"):
-                distinct_angles(angles)
+                distinct_angles(angles_deg)
 
 
 class TestRefused:
     @pytest.mark.parametrize("bad", [math.nan, math.inf])
     def test_angles_that_are_not_finite(self, bad: float) -> None:
         with pytest.raises(InputError, match="angle number 2"):
-            fitted(pictures((12, 16), (12, 16)), GRID, angles=[0, bad])
+            fitted(pictures((12, 16), (12, 16)), GRID, angles_deg=[0, bad])
 
     def test_another_number_of_angles(self) -> None:
         with pytest.raises(InputError, match="3 angles for 2 pictures"):
-            fitted(pictures((12, 16), (12, 16)), GRID, angles=[1, 2, 3])
+            fitted(pictures((12, 16), (12, 16)), GRID, angles_deg=[1, 2, 3])
 
     def test_angles_and_span(self) -> None:
         with pytest.raises(InputError, match="use one of the two"):
-            fitted(pictures((12, 16), (12, 16)), GRID, angles=[1, 2], span=90)
+            fitted(pictures((12, 16), (12, 16)), GRID, angles_deg=[1, 2], span_deg=90)
 
-    @pytest.mark.parametrize("span", [0, 361, math.nan])
-    def test_spans(self, span: float) -> None:
+    @pytest.mark.parametrize("span_deg", [0, 361, math.nan])
+    def test_spans(self, span_deg: float) -> None:
         with pytest.raises(InputError, match="span"):
-            fitted(pictures((12, 16), (12, 16)), GRID, span=span)
+            fitted(pictures((12, 16), (12, 16)), GRID, span_deg=span_deg)
 
-    @pytest.mark.parametrize("elevation", [90, -90, math.nan, math.inf])
-    def test_elevations(self, elevation: float) -> None:
+    @pytest.mark.parametrize("elevation_deg", [90, -90, math.nan, math.inf])
+    def test_elevations(self, elevation_deg: float) -> None:
         with pytest.raises(InputError, match="elevation"):
-            fitted(pictures((12, 16), (12, 16)), GRID, elevation=elevation)
+            fitted(pictures((12, 16), (12, 16)), GRID, elevation_deg=elevation_deg)
 
     @pytest.mark.parametrize("count", [0, 1])
     def test_fewer_than_two_pictures(self, count: int) -> None:
         with pytest.raises(InputError, match=f"^{count} picture{'s' if count != 1 else ''} cannot"):
             fitted(pictures(*[(12, 16)] * count), GRID)
 
-    def test_frames_wider_than_the_screen(self) -> None:
+    def test_pictures_wider_than_the_screen(self) -> None:
         with pytest.raises(InputError, match="wider than its screen"):
-            fitted(pictures((12, 16), (12, 16)), GRID, frame_width=2)
+            fitted(pictures((12, 16), (12, 16)), GRID, picture_width=2)
 
-    @pytest.mark.parametrize("frame_width", [0, -1, math.nan, math.inf])
-    def test_widths(self, frame_width: float) -> None:
-        with pytest.raises(InputError, match="frame width"):
-            fitted(pictures((12, 16), (12, 16)), GRID, frame_width=frame_width)
+    @pytest.mark.parametrize("picture_width", [0, -1, math.nan, math.inf])
+    def test_widths(self, picture_width: float) -> None:
+        with pytest.raises(InputError, match="picture width"):
+            fitted(pictures((12, 16), (12, 16)), GRID, picture_width=picture_width)
 
     def test_unknown_fits(self) -> None:
         with pytest.raises(InputError, match="crop, pad, stretch"):
@@ -288,34 +289,34 @@ def test_the_report_says_what_was_done(sizes: list[tuple[int, int]], mode: Fit, 
 
 
 class TestTargets:
-    def frames(self) -> Frames:
+    def targets(self) -> Targets:
         random = np.random.default_rng(24)
         light = random.uniform(0, 1.2, (2, 3, 5, 3)).astype(np.float32)
         weights = random.uniform(0.001, 4, (2, 3, 5)).astype(np.float32)
         weights[0, 0] = 0
         weights[1, 2, 4] = 4
         weights[0, 1, 1] = 1e-6
-        return Frames(light, turntable(Grid((3, 5, 7)), [1, 2], picture_shape=(3, 5)), weights, ("a", "b"), "linear")
+        return Targets(light, turntable(Grid((3, 5, 7)), [1, 2], picture_shape=(3, 5)), weights, ("a", "b"), "linear")
 
     def test_levels_and_scaled_weights(self) -> None:
-        frames = self.frames()
-        made = targets(frames)
+        targets = self.targets()
+        made = as_levels(targets)
         assert made.dtype == np.uint8
-        np.testing.assert_array_equal(made[..., :3], to_uint8(frames.pictures, "linear"))
-        np.testing.assert_array_equal(made[..., 3] == 0, frames.weight == 0)
+        np.testing.assert_array_equal(made[..., :3], to_uint8(targets.pictures, "linear"))
+        np.testing.assert_array_equal(made[..., 3] == 0, targets.weight == 0)
         assert made[1, 2, 4, 3] == 255
         assert made[0, 1, 1, 3] == 1
-        np.testing.assert_allclose(made[..., 3] / 255 * 4, frames.weight, atol=4 / 255)
+        np.testing.assert_allclose(made[..., 3] / 255 * 4, targets.weight, atol=4 / 255)
 
     def test_a_picture_of_no_weight_is_refused(self) -> None:
-        weights = self.frames().weight.copy()
+        weights = self.targets().weight.copy()
         weights[1] = 0
         with pytest.raises(InputError, match="picture 'b' has no pixel"):
-            replace(self.frames(), weights=weights)
+            replace(self.targets(), weights=weights)
 
     @settings(max_examples=30, deadline=None)
     @given(seed=st.integers(0, 2**32 - 1), transfer=st.sampled_from(["srgb", "linear"]))
-    def test_a_cube_gives_its_frames_back(self, seed: int, transfer: str) -> None:
+    def test_a_cube_gives_its_targets_back(self, seed: int, transfer: str) -> None:
         grid = Grid((3, 5, 7))
         rig = turntable(grid, [1, 2], picture_shape=(3, 5))
         levels = np.random.default_rng(seed).integers(0, 256, (2, 3, 5, 4), dtype=np.uint8)
@@ -328,14 +329,14 @@ class TestTargets:
             names=("a", "b"),
             transfer=transfer,  # type: ignore[arg-type]
         )
-        frames = frames_from_targets(cube)
-        np.testing.assert_array_equal(targets(frames), levels)
-        assert frames.names == ("a", "b")
-        assert frames.transfer == transfer
-        assert frames.rig is rig
+        targets = targets_of(cube)
+        np.testing.assert_array_equal(as_levels(targets), levels)
+        assert targets.names == ("a", "b")
+        assert targets.transfer == transfer
+        assert targets.rig is rig
 
     def test_a_cube_without_targets_is_refused(self) -> None:
         grid = Grid((3, 5, 7))
         cube = Cube(np.zeros((3, 3, 5, 7), np.float32), grid, turntable(grid, [1]))
         with pytest.raises(InputError, match="no targets"):
-            frames_from_targets(cube)
+            targets_of(cube)

@@ -15,8 +15,8 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.frames import Frames
 from lightcube.pictures.samples import photographs
+from lightcube.pictures.targets import Targets
 from lightcube.planning.consistency import (
     advice,
     check,
@@ -28,7 +28,7 @@ from lightcube.planning.consistency import (
     row_conflicts,
 )
 from lightcube.projection.projector import Projector
-from lightcube.scene.tracer import scene_frames
+from lightcube.scene.tracer import scene_targets
 from tests.helpers.recipes import fitted, lit
 
 JIT_OFF = bool(getattr(config, "DISABLE_JIT", 0))
@@ -38,27 +38,29 @@ GEMS = Grid((16, 16, 16)) if JIT_OFF else Grid((32, 34, 30))
 ANGLES = [11.0, 52.0, 83.0, 124.0, 165.0]
 
 
-def pictures_of(cube: NDArray[Any], grid: Grid, rig: Any, powers: NDArray[Any] | float = 1.0) -> Frames:
+def pictures_of(cube: NDArray[Any], grid: Grid, rig: Any, powers: NDArray[Any] | float = 1.0) -> Targets:
     """What a cube ``(channel, z, y, x)`` casts."""
     absorbance = Projector(grid, rig).forward(columns_from_volume(cube)).reshape(-1, rig.picture_shape[0] * 3)
     light = pictures_from_columns(np.exp(-absorbance), rig.picture_shape, 3)
-    return Frames((light * powers).astype(np.float32), rig)
+    return Targets((light * powers).astype(np.float32), rig)
 
 
-def gems(angles: Any, elevation: float) -> Frames:
-    return scene_frames(read_scene("gems"), turntable(GEMS, angles, elevation=elevation), GEMS)
+def gems(angles_deg: Any, elevation_deg: float) -> Targets:
+    return scene_targets(read_scene("gems"), turntable(GEMS, angles_deg, elevation_deg=elevation_deg), GEMS)
 
 
-def unrelated(elevation: float) -> Frames:
-    whole = turntable(GEMS, [0.0], elevation=elevation).picture_shape[1]
-    return fitted(photographs(5), GEMS, angles=ANGLES, elevation=elevation, frame_width=whole / GEMS.shape[1])
+def unrelated(elevation_deg: float) -> Targets:
+    whole = turntable(GEMS, [0.0], elevation_deg=elevation_deg).picture_shape[1]
+    return fitted(
+        photographs(5), GEMS, angles_deg=ANGLES, elevation_deg=elevation_deg, picture_width=whole / GEMS.shape[1]
+    )
 
 
-def grey(seed: int = 0, columns: int = 9, angles: Any = ANGLES, elevation: float = 0.0) -> Frames:
+def grey(seed: int = 0, columns: int = 9, angles_deg: Any = ANGLES, elevation_deg: float = 0.0) -> Targets:
     """Pictures of 3 rows, between a fifth and a third of white."""
-    rig = turntable(Grid(SHAPE, SIDE), angles, elevation=elevation, picture_shape=(3, columns))
+    rig = turntable(Grid(SHAPE, SIDE), angles_deg, elevation_deg=elevation_deg, picture_shape=(3, columns))
     light = np.random.default_rng(seed).uniform(0.2, 0.3, (len(rig), 3, columns, 3))
-    return Frames(light.astype(np.float32), rig, names=tuple("abcdefgh"[: len(rig)]))
+    return Targets(light.astype(np.float32), rig, names=tuple("abcdefgh"[: len(rig)]))
 
 
 @pytest.mark.parametrize("columns", [3, 4, 6, 7, 9])
@@ -68,11 +70,11 @@ def test_no_cube_s_own_pictures_conflict(shape: tuple[int, int, int], filled: fl
     grid = Grid(shape, SIDE)
     for seed in range(3 if JIT_OFF else 20):
         random = np.random.default_rng(seed)
-        angles = np.append(random.uniform(0, 360, 7), [0.0, 45.0, 90.0, 180.0, 225.0, 270.0])
+        angles_deg = np.append(random.uniform(0, 360, 7), [0.0, 45.0, 90.0, 180.0, 225.0, 270.0])
         cube = random.exponential(1.0, (3, *shape)) * (random.random((3, *shape)) < filled)
-        powers = random.uniform(0.25, 1, (len(angles), 1, 1, 3))
-        frames = pictures_of(cube, grid, turntable(grid, angles, picture_shape=(3, columns)), powers)
-        assert row_conflicts(frames, grid, lamp_max=1.0) == []
+        powers = random.uniform(0.25, 1, (len(angles_deg), 1, 1, 3))
+        targets = pictures_of(cube, grid, turntable(grid, angles_deg, picture_shape=(3, columns)), powers)
+        assert row_conflicts(targets, grid, lamp_max=1.0) == []
 
 
 def test_one_voxel_s_totals_differ_by_the_factor_that_is_allowed() -> None:
@@ -91,11 +93,11 @@ def test_one_voxel_s_totals_differ_by_the_factor_that_is_allowed() -> None:
 
 @pytest.mark.parametrize(("view", "row", "channel"), [(3, 0, 1), (1, 2, 2)])
 def test_a_white_row_is_found_where_it_is(view: int, row: int, channel: int) -> None:
-    grid, frames = Grid(SHAPE, SIDE), grey()
-    light = frames.pictures.copy()
+    grid, targets = Grid(SHAPE, SIDE), grey()
+    light = targets.pictures.copy()
     light[:, 0, 0] = 1  # so that no weak lamp makes the pictures' grey white
     light[view, row, :, channel] = 1
-    (found,) = row_conflicts(replace(frames, pictures=light), grid, lamp_max=1.0)
+    (found,) = row_conflicts(replace(targets, pictures=light), grid, lamp_max=1.0)
     assert (found["row"], found["channel"]) == (row, ("red", "green", "blue")[channel])
     assert found["bright"] == "abcde"[view]
     assert found["dark"] != found["bright"]
@@ -108,12 +110,12 @@ def test_a_white_row_is_found_where_it_is(view: int, row: int, channel: int) -> 
 
 
 def test_a_white_row_forces_nothing_where_one_of_its_pixels_may_be_as_dark_as_it_likes() -> None:
-    grid, frames = Grid(SHAPE, SIDE), grey()
-    light, weights = frames.pictures.copy(), frames.weight.copy()
+    grid, targets = Grid(SHAPE, SIDE), grey()
+    light, weights = targets.pictures.copy(), targets.weight.copy()
     light[:, 0, 0] = 1
     light[3, 1] = 1
     light[0, 1] = 0.13  # darker than one black beam elsewhere could account for
-    white = replace(frames, pictures=light)
+    white = replace(targets, pictures=light)
     assert row_conflicts(white, grid, 1.0)
     weights[3, 1, 2] = 0
     assert row_conflicts(replace(white, weights=weights), grid, 1.0) == []
@@ -125,56 +127,56 @@ def test_a_stronger_lamp_a_raised_lamp_and_a_margin_each_undo_a_white_row() -> N
     grid = Grid(SHAPE, SIDE)
 
     def conflicts(lamp_max: float = 1.0, **how: Any) -> list[dict[str, Any]]:
-        frames = grey(**how)
-        light = frames.pictures.copy()
+        targets = grey(**how)
+        light = targets.pictures.copy()
         light[:, 0, 0] = 1
         light[1, 2] = 1
-        return row_conflicts(replace(frames, pictures=light), grid, lamp_max)
+        return row_conflicts(replace(targets, pictures=light), grid, lamp_max)
 
     found = conflicts()
     assert [(each["row"], each["channel"]) for each in found] == [(2, "red"), (2, "green"), (2, "blue")]
     needed = max(each["lamp"] for each in found)
     assert conflicts(0.9 * needed)
     assert not conflicts(1.001 * needed)
-    assert not conflicts(elevation=30.0)
+    assert not conflicts(elevation_deg=30.0)
     assert not conflicts(columns=3)
     # ... but not a margin between views that look through the same strip
-    assert conflicts(columns=5, angles=[10.0, 12.0, 100.0])
+    assert conflicts(columns=5, angles_deg=[10.0, 12.0, 100.0])
 
 
 def test_shadows_of_a_solid_have_the_moments_of_one_and_photographs_have_not() -> None:
-    for elevation in (0.0, 35.0):
-        solid, photos = moments(gems(ANGLES, elevation)), moments(unrelated(elevation))
+    for elevation_deg in (0.0, 35.0):
+        solid, photos = moments(gems(ANGLES, elevation_deg)), moments(unrelated(elevation_deg))
         assert solid["total"] < 0.05
         assert max(solid["across"], solid["down"]) < 0.01
         assert photos["total"] > 0.25
         assert photos["across"] > 0.02
-        assert (photos["down"] > 0.01) == (elevation > 0)
-        assert (photos["total_with_lamps"] > 0.15) == (elevation == 0)
+        assert (photos["down"] > 0.01) == (elevation_deg > 0)
+        assert (photos["total_with_lamps"] > 0.15) == (elevation_deg == 0)
 
 
 def test_mirrored_shadows_of_a_solid_are_no_conflict() -> None:
-    frames = gems([20.0, 77.0, 200.0], 0.0)
-    assert mirror_conflicts(frames) == []
-    assert mirror_conflicts(replace(frames, pictures=frames.pictures[[0, 1, 1]])) == [(0, 2)]
+    targets = gems([20.0, 77.0, 200.0], 0.0)
+    assert mirror_conflicts(targets) == []
+    assert mirror_conflicts(replace(targets, pictures=targets.pictures[[0, 1, 1]])) == [(0, 2)]
 
 
 def test_moments_are_those_of_plain_sums() -> None:
     level = moments(grey(1))
     assert level == pytest.approx(plain_moments(grey(1)), rel=1e-5)
-    raised = grey(2, angles=[10.0, 60.0, 200.0, 250.0, 300.0], elevation=30.0)
+    raised = grey(2, angles_deg=[10.0, 60.0, 200.0, 250.0, 300.0], elevation_deg=30.0)
     assert moments(raised) == pytest.approx(plain_moments(raised), rel=1e-5, abs=1e-12)
 
 
-def plain_moments(frames: Frames) -> dict[str, float]:
-    rig, rows, columns, _ = frames.pictures.shape
-    raised = frames.rig.views.elevations[0] > 0
-    turn = np.radians(frames.rig.views.angles)
+def plain_moments(targets: Targets) -> dict[str, float]:
+    rig, rows, columns, _ = targets.pictures.shape
+    raised = targets.rig.views.elevations_deg[0] > 0
+    turn = np.radians(targets.rig.views.angles_deg)
     total: dict[tuple[int, int, int], float] = {}
     across: dict[tuple[int, int, int], float] = {}
     down: dict[tuple[int, int, int], float] = {}
-    for v, r, k, c in np.ndindex(frames.pictures.shape):
-        absorbance = -np.log(float(frames.pictures[v, r, k, c]))
+    for v, r, k, c in np.ndindex(targets.pictures.shape):
+        absorbance = -np.log(float(targets.pictures[v, r, k, c]))
         slot = (v, 0 if raised else r, c)
         total[slot] = total.get(slot, 0) + absorbance
         across[slot] = across.get(slot, 0) + absorbance * (k - columns / 2 + 0.5)
@@ -206,28 +208,28 @@ def left_by(design: NDArray[Any], values: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(values - design @ np.linalg.solve(design.T @ design, design.T @ values))
 
 
-@pytest.mark.parametrize("elevation", [0.0, 30.0])
-def test_lamp_powers_change_totals_only(elevation: float) -> None:
-    frames = grey(3, elevation=elevation)
+@pytest.mark.parametrize("elevation_deg", [0.0, 30.0])
+def test_lamp_powers_change_totals_only(elevation_deg: float) -> None:
+    targets = grey(3, elevation_deg=elevation_deg)
     powers = np.random.default_rng(3).uniform(0.3, 1, (5, 1, 1, 3))
     powers /= np.exp(np.mean(np.log(powers)))  # keeps the mean total, which the figures are parts of
-    dimmed = replace(frames, pictures=(frames.pictures * powers).astype(np.float32))
-    before, after = moments(frames), moments(dimmed)
+    dimmed = replace(targets, pictures=(targets.pictures * powers).astype(np.float32))
+    before, after = moments(targets), moments(dimmed)
     assert after["total"] > 2 * before["total"]
     for name in ("total_with_lamps", "across", "down"):
         assert after[name] == pytest.approx(before[name], rel=1e-4, abs=1e-9)
 
 
 def test_duplicates_are_those_a_loop_finds() -> None:
-    frames = grey(4, angles=[*ANGLES, 170.0])
-    light = frames.pictures.copy()
+    targets = grey(4, angles_deg=[*ANGLES, 170.0])
+    light = targets.pictures.copy()
     light[3], light[4] = light[1], decode(encode(light[0]) + np.float32(0.8 / 255))
     light[5] = light[0]
     light[5, ..., 0] += 0.01
     weights = np.random.default_rng(4).uniform(0, 2, light.shape[:3]).astype(np.float32)
     weights[2, :, 3:] = 0
     light[2, :, :3] = light[1, :, :3]
-    made = replace(frames, pictures=light, weights=weights)
+    made = replace(targets, pictures=light, weights=weights)
     expected = []
     for first in range(6):
         for second in range(first + 1, 6):
@@ -240,41 +242,41 @@ def test_duplicates_are_those_a_loop_finds() -> None:
 
 
 def test_white_and_blank_rows_count_only_what_matters() -> None:
-    frames = grey(5, columns=7)
-    light, weights = frames.pictures.copy(), frames.weight.copy()
+    targets = grey(5, columns=7)
+    light, weights = targets.pictures.copy(), targets.weight.copy()
     light[1, :2] = 0.995
     light[2, 1] = [0.1, 0.5, 0.9]
     light[3, 2, 1:] = 1
     weights[3, 2, 0] = 0
     weights[4, 0] = 0
     light[0, 2, 1:] = 1
-    white, blank = plain_rows(replace(frames, pictures=light, weights=weights))
+    white, blank = plain_rows(replace(targets, pictures=light, weights=weights))
     assert white == {1: [[0, 1]], 3: [[2, 2]]}
     assert blank == {2: [[1, 1]]}
 
 
-@pytest.mark.parametrize("elevation", [0.0, 30.0])
-def test_what_is_don_t_care_changes_nothing(elevation: float) -> None:
-    grid, frames = Grid(SHAPE, SIDE), grey(6, elevation=elevation)
-    weights = frames.weight.copy()
+@pytest.mark.parametrize("elevation_deg", [0.0, 30.0])
+def test_what_is_don_t_care_changes_nothing(elevation_deg: float) -> None:
+    grid, targets = Grid(SHAPE, SIDE), grey(6, elevation_deg=elevation_deg)
+    weights = targets.weight.copy()
     weights[1, :, :2] = 0
     weights[2, 1] = 0
     weights[:, 2, 4] = 0
     weights[:, 0] = 0
-    light = frames.pictures.copy()
+    light = targets.pictures.copy()
     light[3, 1] = 1
-    made = replace(frames, pictures=light, weights=weights)
+    made = replace(targets, pictures=light, weights=weights)
     other = np.where(weights[..., None] > 0, light, np.random.default_rng(7).random(light.shape)).astype(np.float32)
     made = lit(made, lamp_power=1.0)
     facts = check(made, grid)
     assert facts == check(replace(made, pictures=other), grid)
-    assert bool(facts["row_conflicts"]) == (elevation == 0)
+    assert bool(facts["row_conflicts"]) == (elevation_deg == 0)
 
 
 def test_the_load_counts_widths_or_areas() -> None:
     grid = Grid((6, 5, 7))
     level = turntable(grid, ANGLES, picture_shape=(4, 3))
-    raised = turntable(grid, ANGLES, elevation=30.0, picture_shape=(4, 3))
+    raised = turntable(grid, ANGLES, elevation_deg=30.0, picture_shape=(4, 3))
     assert load(level.views, grid) == pytest.approx(5 * 3 / 5)
     assert load(raised.views, grid) == pytest.approx(5 * 3 * 4 / (5 * 6))
 
@@ -285,31 +287,34 @@ def test_facts_go_through_json_and_say_whether_the_whole_shadow_is_seen() -> Non
     assert json.loads(json.dumps(facts)) == facts
     assert facts["whole_shadow"]
     assert not check(grey(columns=7), grid)["whole_shadow"]
-    assert not check(grey(elevation=30.0), grid)["whole_shadow"]
+    assert not check(grey(elevation_deg=30.0), grid)["whole_shadow"]
     white = check(replace(grey(), pictures=np.ones((5, 3, 9, 3), np.float32)), grid)
     assert set(white["moments"].values()) == {0.0}
 
 
 def test_good_pictures_need_no_advice() -> None:
     grid = Grid((32, 32, 32))
-    assert advice(check(fitted(photographs(16), grid, elevation=35.0, frame_width=0.5), grid)) == []
-    for elevation in (0.0, 35.0):
-        assert advice(check(lit(gems(spread_angles(5, elevation=elevation), elevation), lamp_power=1.0), GEMS)) == []
+    assert advice(check(fitted(photographs(16), grid, elevation_deg=35.0, picture_width=0.5), grid)) == []
+    for elevation_deg in (0.0, 35.0):
+        assert (
+            advice(check(lit(gems(spread_angles(5, elevation_deg=elevation_deg), elevation_deg), lamp_power=1.0), GEMS))
+            == []
+        )
 
 
 def test_advice_names_pictures_rows_and_a_way_out() -> None:
     grid = Grid((24, 24, 24))
-    frames = fitted(photographs(8), grid, span=360.0, elevation=0.0, frame_width=1.4)
-    light = frames.pictures.copy()
+    targets = fitted(photographs(8), grid, span_deg=360.0, elevation_deg=0.0, picture_width=1.4)
+    light = targets.pictures.copy()
     light[3, 4:7] = 1
     light[3, 9] = 1
     light[6], light[5, :2] = light[1], 0.5
-    facts = check(lit(replace(frames, pictures=light), lamp_power=1.0), grid)
+    facts = check(lit(replace(targets, pictures=light), lamp_power=1.0), grid)
     said = advice(facts)
     for beginning, part in [
         ("The load is 11.3; unrelated pictures come out well up to 4.5: use at most 3 pictures", "at most 13 pixels"),
-        ("No solid casts these shadows", "--frame-width"),
-        ("astronaut and cat are half a turn apart", "--elevation 35"),
+        ("No solid casts these shadows", "--picture-width"),
+        ("astronaut and cat are half a turn apart", "--elevation-deg 35"),
         ("moon and clock are the same picture: leave one of them out", ""),
         ("brick is too bright for a lamp of 1 in rows", "--lamp-max"),
         ("rocket is of one colour in rows 0-1", "cut such edges off"),

@@ -16,7 +16,7 @@ from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.arranging import spread_over_screen
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.planning import order as orders
 from lightcube.planning.order import Order, best_order
 from tests.helpers.plain import beam_of_pixel, lengths_of_beam
@@ -24,20 +24,24 @@ from tests.helpers.plain import beam_of_pixel, lengths_of_beam
 GRID = Grid((3, 5, 7), 0.5)
 
 
-def unrelated(count: int, elevation: float = 35.0, grid: Grid = GRID, seed: int = 0) -> Frames:
+def unrelated(count: int, elevation_deg: float = 35.0, grid: Grid = GRID, seed: int = 0) -> Targets:
     """Pictures of noise, 3 pixels high and 5 wide, with weights and names."""
     random = np.random.default_rng(seed)
-    rig = turntable(grid, spread_angles(count, elevation=elevation), elevation=elevation, picture_shape=(3, 5))
+    rig = turntable(
+        grid, spread_angles(count, elevation_deg=elevation_deg), elevation_deg=elevation_deg, picture_shape=(3, 5)
+    )
     pictures = random.random((count, 3, 5, 3)).astype(np.float32)
     weights = random.integers(1, 4, (count, 3, 5)).astype(np.float32)
-    return Frames(pictures, rig, weights, tuple(f"picture {i}" for i in range(count)))
+    return Targets(pictures, rig, weights, tuple(f"picture {i}" for i in range(count)))
 
 
-def cast_by_a_cube(count: int, elevation: float) -> Frames:
+def cast_by_a_cube(count: int, elevation_deg: float) -> Targets:
     extinction = np.random.default_rng(3).random((3, *GRID.shape)).astype(np.float32)
-    rig = turntable(GRID, spread_angles(count, elevation=elevation), elevation=elevation, picture_shape=(3, 5))
+    rig = turntable(
+        GRID, spread_angles(count, elevation_deg=elevation_deg), elevation_deg=elevation_deg, picture_shape=(3, 5)
+    )
     cube = Cube(extinction, GRID, rig)
-    return Frames(play(cube), rig)
+    return Targets(play(cube), rig)
 
 
 @pytest.fixture(autouse=True)
@@ -47,50 +51,50 @@ def few_walks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(orders, "_PASSES", 5)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 @pytest.mark.parametrize("count", [1, 2, 5])
-def test_an_order_is_a_permutation_and_never_worse_than_the_given_one(count: int, elevation: float) -> None:
-    frames = unrelated(count, elevation)
-    order = best_order(frames, GRID)
+def test_an_order_is_a_permutation_and_never_worse_than_the_given_one(count: int, elevation_deg: float) -> None:
+    targets = unrelated(count, elevation_deg)
+    order = best_order(targets, GRID)
     assert sorted(order.pictures) == list(range(count))
     assert order.best_db >= order.given_db
-    kept = best_order(order(frames), GRID)
+    kept = best_order(order(targets), GRID)
     assert kept.given_db == pytest.approx(order.best_db, abs=1e-6)
 
 
 def test_names_and_weights_go_with_their_pictures_and_the_views_stay() -> None:
-    frames = unrelated(4)
-    order = Order(np.array([2, 0, 3, 1]), 0.0, 0.0)(frames)
+    targets = unrelated(4)
+    order = Order(np.array([2, 0, 3, 1]), 0.0, 0.0)(targets)
     assert order.names == ("picture 2", "picture 0", "picture 3", "picture 1")
-    np.testing.assert_array_equal(order.pictures[0], frames.pictures[2])
-    np.testing.assert_array_equal(order.weight[3], frames.weight[1])
-    assert order.rig is frames.rig
+    np.testing.assert_array_equal(order.pictures[0], targets.pictures[2])
+    np.testing.assert_array_equal(order.weight[3], targets.weight[1])
+    assert order.rig is targets.rig
 
 
 def test_the_order_does_not_depend_on_how_the_pictures_are_numbered() -> None:
-    frames = unrelated(5)
-    found = best_order(frames, GRID)
-    relabelled = Order(np.array([3, 1, 4, 0, 2]), 0.0, 0.0)(frames)
+    targets = unrelated(5)
+    found = best_order(targets, GRID)
+    relabelled = Order(np.array([3, 1, 4, 0, 2]), 0.0, 0.0)(targets)
     again = best_order(relabelled, GRID)
     assert found.best_db > max(found.given_db, again.given_db)  # neither given order is the best one
-    np.testing.assert_array_equal(again(relabelled).pictures, found(frames).pictures)
+    np.testing.assert_array_equal(again(relabelled).pictures, found(targets).pictures)
     assert again.best_db == found.best_db
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_pictures_of_a_real_cube_find_an_order_as_good_as_its_own(elevation: float) -> None:
-    frames = cast_by_a_cube(6, elevation)
-    shuffled = Order(np.array([3, 0, 5, 2, 4, 1]), 0.0, 0.0)(frames)
-    own = best_order(frames, GRID).given_db
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_pictures_of_a_real_cube_find_an_order_as_good_as_its_own(elevation_deg: float) -> None:
+    targets = cast_by_a_cube(6, elevation_deg)
+    shuffled = Order(np.array([3, 0, 5, 2, 4, 1]), 0.0, 0.0)(targets)
+    own = best_order(targets, GRID).given_db
     found = best_order(shuffled, GRID)
     assert found.given_db < own - 0.1
     assert found.best_db > own - 0.05
 
 
 def test_equal_pictures_stay_as_they_are() -> None:
-    frames = unrelated(3)
+    targets = unrelated(3)
     same = replace(
-        frames, pictures=np.repeat(frames.pictures[:1], 3, axis=0), weights=np.repeat(frames.weight[:1], 3, axis=0)
+        targets, pictures=np.repeat(targets.pictures[:1], 3, axis=0), weights=np.repeat(targets.weight[:1], 3, axis=0)
     )
     order = best_order(same, GRID)
     np.testing.assert_array_equal(order.pictures, [0, 1, 2])
@@ -98,13 +102,13 @@ def test_equal_pictures_stay_as_they_are() -> None:
 
 
 def test_what_has_no_weight_does_not_matter() -> None:
-    frames = unrelated(4)
-    weights = frames.weight.copy()
+    targets = unrelated(4)
+    weights = targets.weight.copy()
     weights[:, 0, :2] = 0
-    pictures = frames.pictures.copy()
+    pictures = targets.pictures.copy()
     pictures[:, 0, :2] = np.random.default_rng(9).random((4, 2, 3))
-    first = best_order(replace(frames, weights=weights), GRID)
-    second = best_order(replace(frames, weights=weights, pictures=pictures), GRID)
+    first = best_order(replace(targets, weights=weights), GRID)
+    second = best_order(replace(targets, weights=weights, pictures=pictures), GRID)
     np.testing.assert_array_equal(first.pictures, second.pictures)
     assert first.best_db == second.best_db
 
@@ -118,15 +122,15 @@ def test_where_the_model_has_no_room_the_tour_remains(monkeypatch: pytest.Monkey
     pictures = np.full((6, 3, 5, 3), 0.5, np.float32)
     pictures[:, :, :2] += 0.45 * np.cos(turn)[:, None, None, None]
     pictures[:, :, 3:] += 0.4 * np.sin(turn)[:, None, None, None]
-    frames = replace(unrelated(6), pictures=pictures, weights=np.ones((6, 3, 5), np.float32))
-    order = best_order(frames, GRID)
+    targets = replace(unrelated(6), pictures=pictures, weights=np.ones((6, 3, 5), np.float32))
+    order = best_order(targets, GRID)
     steps = np.diff(turn[order.pictures] * 6 / (2 * np.pi))
     assert set(np.rint(steps) % 6) in ({1}, {5})
     assert order.best_db > order.given_db  # so it is the tour
     # the tour goes round by angle, however the views are numbered
     shuffle = np.array([4, 2, 0, 1, 5, 3])
-    again = best_order(frames.take(shuffle), GRID)
-    np.testing.assert_array_equal(again(frames.take(shuffle)).pictures, order(frames).pictures[shuffle])
+    again = best_order(targets.take(shuffle), GRID)
+    np.testing.assert_array_equal(again(targets.take(shuffle)).pictures, order(targets).pictures[shuffle])
 
 
 @pytest.mark.parametrize("shape", [(3, 5), (2, 5), (1, 3), (4, 4)])
@@ -147,17 +151,17 @@ def test_tiles_are_weighted_means(shape: tuple[int, int]) -> None:
         assert mean[view, row, column] == pytest.approx(weight / area)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 @pytest.mark.parametrize("tiles", [(3, 5), (3, 2)])
-def test_the_model_is_what_ridge_regression_leaves(elevation: float, tiles: tuple[int, int]) -> None:
-    frames = unrelated(3, elevation)
-    features = orders._features(frames, tiles)
-    parts = orders._parts(frames.rig.views, GRID, features, tiles)
+def test_the_model_is_what_ridge_regression_leaves(elevation_deg: float, tiles: tuple[int, int]) -> None:
+    targets = unrelated(3, elevation_deg)
+    features = orders._features(targets, tiles)
+    parts = orders._parts(targets.rig.views, GRID, features, tiles)
     order = [1, 2, 0]
     left = sum(parts[:, stop, order[stop]] for stop in range(3))
     matrix = np.zeros((3, 5, 3, 105))
     for view, row, column in np.ndindex(3, 3, 5):
-        lengths = lengths_of_beam(GRID, *beam_of_pixel(frames.rig.views, view, row, column))
+        lengths = lengths_of_beam(GRID, *beam_of_pixel(targets.rig.views, view, row, column))
         matrix[view, column, row] = lengths.ravel()
     edges = [range(round(i * 5 / tiles[1] * 2), round((i + 1) * 5 / tiles[1] * 2)) for i in range(tiles[1])]
     rows = np.stack([np.mean([matrix[:, half // 2] for half in halves], axis=0) for halves in edges], axis=1)
@@ -201,26 +205,28 @@ def test_annealing_recovers_the_best_order_of_pictures_that_do_not_fight() -> No
 
 def test_a_tour_of_points_on_a_circle_goes_round_it() -> None:
     order = np.random.default_rng(0).permutation(9)
-    angle = 2 * np.pi * order / 9
-    points = np.stack([np.cos(angle), 0.8 * np.sin(angle)], axis=1)
+    angle_deg = 2 * np.pi * order / 9
+    points = np.stack([np.cos(angle_deg), 0.8 * np.sin(angle_deg)], axis=1)
     tour = ordering.shortest_tour(np.linalg.norm(points[:, None] - points[None], axis=-1))
     steps = np.diff(order[tour], append=order[tour[0]]) % 9
     assert set(steps) in ({1}, {8})
 
 
-@pytest.mark.parametrize(("elevation", "rows"), [(0.0, 3), (35.0, 3), (20.0, 5)])
-def test_moved_pictures_stand_on_the_screen_and_neighbours_apart(elevation: float, rows: int) -> None:
+@pytest.mark.parametrize(("elevation_deg", "rows"), [(0.0, 3), (35.0, 3), (20.0, 5)])
+def test_moved_pictures_stand_on_the_screen_and_neighbours_apart(elevation_deg: float, rows: int) -> None:
     grid = Grid((5, 12, 14))
-    rig = turntable(grid, spread_angles(6, elevation=elevation), elevation=elevation, picture_shape=(rows, 4))
-    frames = Frames(np.ones((6, rows, 4, 3), np.float32), rig)
-    offsets = spread_over_screen(frames, grid, 2)
-    screen = raster_shape(grid, elevation)
+    rig = turntable(
+        grid, spread_angles(6, elevation_deg=elevation_deg), elevation_deg=elevation_deg, picture_shape=(rows, 4)
+    )
+    targets = Targets(np.ones((6, rows, 4, 3), np.float32), rig)
+    offsets = spread_over_screen(targets, grid, 2)
+    screen = raster_shape(grid, elevation_deg)
     assert np.all(2 * np.abs(offsets) <= np.array([12 - 4, screen[0] - rows]))
     assert len(np.unique(offsets, axis=0)) == 6
-    np.testing.assert_array_equal(np.unique(spread_over_screen(frames, grid, 99)[:, 0]), [-2, 2])
+    np.testing.assert_array_equal(np.unique(spread_over_screen(targets, grid, 99)[:, 0]), [-2, 2])
     shuffle = np.array([3, 5, 0, 1, 4, 2])
-    np.testing.assert_array_equal(spread_over_screen(frames.take(shuffle), grid, 2), offsets[shuffle])
-    np.testing.assert_array_equal(spread_over_screen(frames, grid, 0), 0)
+    np.testing.assert_array_equal(spread_over_screen(targets.take(shuffle), grid, 2), offsets[shuffle])
+    np.testing.assert_array_equal(spread_over_screen(targets, grid, 0), 0)
 
 
 def test_level_pictures_as_high_as_the_cube_move_sideways_only() -> None:
@@ -230,19 +236,19 @@ def test_level_pictures_as_high_as_the_cube_move_sideways_only() -> None:
 
 
 def test_a_moved_window_shows_that_part_of_the_whole_screen() -> None:
-    frames = cast_by_a_cube(4, 35.0)
-    cube = Cube(np.random.default_rng(3).random((3, *GRID.shape)).astype(np.float32), GRID, frames.rig)
+    targets = cast_by_a_cube(4, 35.0)
+    cube = Cube(np.random.default_rng(3).random((3, *GRID.shape)).astype(np.float32), GRID, targets.rig)
     offsets = np.array([[1, 2], [-1, 0], [0, -2], [2, 1]])
-    shown = play(replace(cube, rig=frames.rig.shifted(offsets)))
-    whole = play(cube, whole_screen=True, angles=frames.rig.views.angles)
+    shown = play(replace(cube, rig=targets.rig.shifted(offsets)))
+    whole = play(cube, whole_shadow=True, angles_deg=targets.rig.views.angles_deg)
     for picture, screen, (right, down) in zip(shown, whole, offsets, strict=True):
         top, side = (screen.shape[0] - 3) // 2 + down, (screen.shape[1] - 5) // 2 + right
         np.testing.assert_allclose(picture, screen[top : top + 3, side : side + 5], rtol=1e-5)
 
 
 def test_what_cannot_be_moved_is_refused() -> None:
-    frames = unrelated(3)
+    targets = unrelated(3)
     with pytest.raises(InputError, match="at least 0"):
-        spread_over_screen(frames, GRID, -1)
+        spread_over_screen(targets, GRID, -1)
     with pytest.raises(InputError, match="offsets of shape"):
-        frames.rig.shifted(np.zeros((2, 2), int))
+        targets.rig.shifted(np.zeros((2, 2), int))

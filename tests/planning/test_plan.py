@@ -6,7 +6,8 @@ import pytest
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
-from lightcube.pictures.frames import Frames, Pictures
+from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.targets import Targets
 from lightcube.planning import plan as planning
 from lightcube.planning.plan import WIDTHS, plan, proportions
 from lightcube.planning.prediction import Prediction
@@ -24,12 +25,12 @@ def formula(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """Predict 60 dB less 100 times the part of the cube's area, and 0.8 dB for each degree of hold; count the calls."""
     calls: list[float] = []
 
-    def predict(frames: Frames, grid: Grid, recipe: Recipe) -> Prediction:
-        hold = recipe.hold_deg
-        rows, columns = frames.rig.picture_shape
-        calls.append(hold)
+    def predict(targets: Targets, grid: Grid, recipe: Recipe) -> Prediction:
+        hold_deg = recipe.hold_deg
+        rows, columns = targets.rig.picture_shape
+        calls.append(hold_deg)
         part = rows * columns / (grid.shape[0] * grid.shape[1])
-        return Prediction(np.full(len(frames), 60 - 100 * part - 0.8 * hold), 20)
+        return Prediction(np.full(len(targets), 60 - 100 * part - 0.8 * hold_deg), 20)
 
     monkeypatch.setattr(planning, "predict", predict)
     return calls
@@ -38,39 +39,39 @@ def formula(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 def test_pictures_are_as_wide_as_good_ones_can_be(formula: list[float]) -> None:
     planned = plan(pictures(), 64)
     assert planned.prediction.psnr_mean >= GOOD_DB
-    width = planned.frames.rig.picture_shape[1] / 64
-    wider = plan(pictures(), 64, frame_width=WIDTHS[WIDTHS.index(min(WIDTHS, key=lambda w: abs(w - width))) + 1])
+    width = planned.targets.rig.picture_shape[1] / 64
+    wider = plan(pictures(), 64, picture_width=WIDTHS[WIDTHS.index(min(WIDTHS, key=lambda w: abs(w - width))) + 1])
     assert wider.prediction.psnr_mean < GOOD_DB
     assert len(formula) <= 6
 
 
 def test_where_none_is_good_they_are_as_narrow_as_they_get(monkeypatch: pytest.MonkeyPatch) -> None:
-    def bad(frames: Frames, _grid: Grid, _recipe: Recipe) -> Prediction:
-        return Prediction(np.full(len(frames), 10.0), 20)
+    def bad(targets: Targets, _grid: Grid, _recipe: Recipe) -> Prediction:
+        return Prediction(np.full(len(targets), 10.0), 20)
 
     monkeypatch.setattr(planning, "predict", bad)
-    assert plan(pictures(), 64).frames.rig.picture_shape[1] == 16
+    assert plan(pictures(), 64).targets.rig.picture_shape[1] == 16
 
 
 def test_where_all_are_good_they_fill_the_cube(monkeypatch: pytest.MonkeyPatch) -> None:
-    def good(frames: Frames, _grid: Grid, _recipe: Recipe) -> Prediction:
-        return Prediction(np.full(len(frames), 70.0), 20)
+    def good(targets: Targets, _grid: Grid, _recipe: Recipe) -> Prediction:
+        return Prediction(np.full(len(targets), 70.0), 20)
 
     monkeypatch.setattr(planning, "predict", good)
-    assert plan(pictures(), 64).frames.rig.picture_shape[1] == 64
+    assert plan(pictures(), 64).targets.rig.picture_shape[1] == 64
 
 
 def test_hold_grows_while_it_costs_less_than_a_decibel(formula: list[float]) -> None:
     """At 0.8 dB a degree a hold of 1 degree is the longest of those tried; where nothing is good there is none."""
-    planned = plan(pictures(), 64, longest_hold=True, frame_width=0.4)
-    without = plan(pictures(), 64, frame_width=0.4)
+    planned = plan(pictures(), 64, longest_hold=True, picture_width=0.4)
+    without = plan(pictures(), 64, picture_width=0.4)
     assert planned.recipe.hold_deg == 1.0
     assert planned.prediction.psnr_mean == pytest.approx(without.prediction.psnr_mean - 0.8)
     assert 40 < without.prediction.psnr_mean < 45
-    perfect = plan(pictures(), 64, longest_hold=True, frame_width=0.25)
-    assert 1 < perfect.recipe.hold_deg <= perfect.frames.rig.widest_hold
+    perfect = plan(pictures(), 64, longest_hold=True, picture_width=0.25)
+    assert 1 < perfect.recipe.hold_deg <= perfect.targets.rig.widest_hold_deg
     assert perfect.prediction.psnr_mean >= 44
-    assert plan(pictures(), 64, longest_hold=True, frame_width=0.6).recipe.hold_deg == 0
+    assert plan(pictures(), 64, longest_hold=True, picture_width=0.6).recipe.hold_deg == 0
 
 
 def test_a_hold_that_is_asked_for_is_part_of_the_prediction(formula: list[float]) -> None:
@@ -95,8 +96,8 @@ def test_the_cube_follows_the_pictures(aspect: float, width: float, level: bool,
 
 
 def test_a_level_cube_is_as_high_as_its_pictures(formula: list[float]) -> None:
-    planned = plan(pictures(4, 30, 20), 32, elevation=0.0, frame_width=0.5)
-    assert planned.frames.rig.picture_shape[0] == planned.grid.shape[0]
+    planned = plan(pictures(4, 30, 20), 32, elevation_deg=0.0, picture_width=0.5)
+    assert planned.targets.rig.picture_shape[0] == planned.grid.shape[0]
     assert max(planned.grid.shape) == 32
     assert max(planned.grid.size_mm) == pytest.approx(100)
 
@@ -107,8 +108,8 @@ def test_a_given_shape_stays(formula: list[float]) -> None:
 
 
 def test_the_real_prediction_and_no_pictures() -> None:
-    planned = plan(pictures(3, 8, 8), 8, frame_width=0.5)
+    planned = plan(pictures(3, 8, 8), 8, picture_width=0.5)
     assert 0 <= planned.prediction.psnr_min <= planned.prediction.psnr_mean <= 50
-    assert planned.frames.rig.views.elevations[0] == 35
+    assert planned.targets.rig.views.elevations_deg[0] == 35
     with pytest.raises(InputError, match="at least two"):
         plan(Pictures((), ()), 8)

@@ -13,7 +13,7 @@ from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.planning import prediction
 from lightcube.planning.prediction import Prediction, law, predict, reduced
 from lightcube.scoring.metrics import score
@@ -24,23 +24,25 @@ def problem(
     shape: tuple[int, int, int] = (10, 12, 12),
     rig: int = 4,
     picture: tuple[int, int] = (6, 4),
-    elevation: float = 35.0,
+    elevation_deg: float = 35.0,
     seed: int = 0,
-) -> tuple[Frames, Grid]:
+) -> tuple[Targets, Grid]:
     """Random pictures."""
     grid = Grid(shape, 2.5)
-    stops = turntable(grid, spread_angles(rig, elevation=elevation), elevation=elevation, picture_shape=picture)
+    stops = turntable(
+        grid, spread_angles(rig, elevation_deg=elevation_deg), elevation_deg=elevation_deg, picture_shape=picture
+    )
     pictures = np.random.default_rng(seed).uniform(0.05, 1, (rig, *picture, 3)).astype(np.float32)
-    return Frames(pictures, stops), grid
+    return Targets(pictures, stops), grid
 
 
-def doubled(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
+def doubled(targets: Targets, grid: Grid) -> tuple[Targets, Grid]:
     """The same problem with voxels and pixels of half the size."""
     nz, ny, nx = grid.shape
-    rows, columns = frames.rig.picture_shape
-    fine = frames.rig.with_pixels(0.5, (2 * rows, 2 * columns))
-    pictures, weights = (array.repeat(2, axis=1).repeat(2, axis=2) for array in (frames.pictures, frames.weight))
-    return Frames(pictures, fine, weights), Grid((2 * nz, 2 * ny, 2 * nx), grid.voxel_mm / 2)
+    rows, columns = targets.rig.picture_shape
+    fine = targets.rig.with_pixels(0.5, (2 * rows, 2 * columns))
+    pictures, weights = (array.repeat(2, axis=1).repeat(2, axis=2) for array in (targets.pictures, targets.weight))
+    return Targets(pictures, fine, weights), Grid((2 * nz, 2 * ny, 2 * nx), grid.voxel_mm / 2)
 
 
 @pytest.fixture(autouse=True)
@@ -51,24 +53,24 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(prediction, "_LEAST", 6)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_what_was_doubled_is_reduced_to_what_it_was(elevation: float) -> None:
-    frames, grid = problem(elevation=elevation)
-    frames = replace(frames, weights=np.random.default_rng(1).integers(0, 3, frames.weight.shape).astype(np.float32))
-    small, small_grid = reduced(*doubled(frames, grid), 12)
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_what_was_doubled_is_reduced_to_what_it_was(elevation_deg: float) -> None:
+    targets, grid = problem(elevation_deg=elevation_deg)
+    targets = replace(targets, weights=np.random.default_rng(1).integers(0, 3, targets.weight.shape).astype(np.float32))
+    small, small_grid = reduced(*doubled(targets, grid), 12)
     assert small_grid == grid
     # Where nothing has weight there is nothing to keep.
-    seen = frames.weight > 0
-    np.testing.assert_allclose(small.pictures[seen], frames.pictures[seen], rtol=1e-6)
-    np.testing.assert_allclose(small.weight, frames.weight, rtol=1e-6)
-    for part in ("lamps", "origins", "column_steps", "row_steps"):
+    seen = targets.weight > 0
+    np.testing.assert_allclose(small.pictures[seen], targets.pictures[seen], rtol=1e-6)
+    np.testing.assert_allclose(small.weight, targets.weight, rtol=1e-6)
+    for part in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
         np.testing.assert_allclose(
-            getattr(small.rig.views, part), getattr(frames.rig.views, part), rtol=1e-12, atol=1e-12
+            getattr(small.rig.views, part), getattr(targets.rig.views, part), rtol=1e-12, atol=1e-12
         )
 
 
 @pytest.mark.parametrize(
-    ("shape", "picture", "elevation"),
+    ("shape", "picture", "elevation_deg"),
     [
         ((30, 50, 70), (18, 26), 30.0),
         ((75, 48, 51), (75, 22), 0.0),
@@ -77,49 +79,49 @@ def test_what_was_doubled_is_reduced_to_what_it_was(elevation: float) -> None:
     ],
 )
 def test_reduced_problems_keep_their_proportions(
-    shape: tuple[int, int, int], picture: tuple[int, int], elevation: float
+    shape: tuple[int, int, int], picture: tuple[int, int], elevation_deg: float
 ) -> None:
-    frames, grid = problem(shape, 2, picture, elevation)
+    targets, grid = problem(shape, 2, picture, elevation_deg)
     for width in range(20, 28):
-        _check_proportions(frames, grid, *reduced(frames, grid, width), width)
+        _check_proportions(targets, grid, *reduced(targets, grid, width), width)
 
 
-def _check_proportions(frames: Frames, grid: Grid, small: Frames, small_grid: Grid, width: int) -> None:
-    shape, picture, elevation = grid.shape, frames.rig.picture_shape, float(frames.rig.views.elevations[0])
+def _check_proportions(targets: Targets, grid: Grid, small: Targets, small_grid: Grid, width: int) -> None:
+    shape, picture, elevation_deg = grid.shape, targets.rig.picture_shape, float(targets.rig.views.elevations_deg[0])
     (nz, ny, nx), (rows, columns) = small_grid.shape, small.rig.picture_shape
     assert 0.8 * width - 1 <= max(ny, nx) <= width + 1
-    raster = raster_shape(small_grid, elevation)
+    raster = raster_shape(small_grid, elevation_deg)
     assert (rows - raster[0]) % 2 == (columns - raster[1]) % 2 == 0
     assert max(small_grid.size_mm[1:]) == pytest.approx(max(grid.size_mm[1:]))
     scale = max(ny, nx) / max(shape[1:])
     load = picture[1] / np.sqrt(shape[1] * shape[2]), columns / np.sqrt(ny * nx)
     assert load[1] / load[0] == pytest.approx(1, abs=0.12)
     assert np.array([nz, rows, columns]) == pytest.approx(scale * np.array([shape[0], *picture]), abs=2.1)
-    lengths = np.linalg.norm(small.rig.views.column_steps, axis=1)
+    lengths = np.linalg.norm(small.rig.views.column_steps_mm, axis=1)
     assert lengths == pytest.approx(small_grid.voxel_mm)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 10.0])
-def test_the_largest_pictures_stay_on_the_screen_and_level_ones_as_high_as_the_cube(elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 10.0])
+def test_the_largest_pictures_stay_on_the_screen_and_level_ones_as_high_as_the_cube(elevation_deg: float) -> None:
     for n in range(23, 60):
         grid = Grid((20, n, n - 4))
-        rows, columns = raster_shape(grid, elevation)
-        small, small_grid = reduced(*problem(grid.shape, 1, (rows, columns), elevation), 20)
-        most = raster_shape(small_grid, elevation)
+        rows, columns = raster_shape(grid, elevation_deg)
+        small, small_grid = reduced(*problem(grid.shape, 1, (rows, columns), elevation_deg), 20)
+        most = raster_shape(small_grid, elevation_deg)
         assert np.all(np.array(small.rig.picture_shape) <= most)
-        assert elevation != 0 or small.rig.picture_shape[0] == most[0] == small_grid.shape[0]
+        assert elevation_deg != 0 or small.rig.picture_shape[0] == most[0] == small_grid.shape[0]
 
 
 def test_a_small_problem_stays_as_it_is() -> None:
-    frames, grid = problem()
-    assert reduced(frames, grid, 12) == (frames, grid)
+    targets, grid = problem()
+    assert reduced(targets, grid, 12) == (targets, grid)
 
 
 def test_reduced_pictures_have_the_values_of_the_large_ones_in_the_order_of_their_means() -> None:
-    frames, grid = problem((36, 36, 36), 2, (18, 12))
-    small, _ = reduced(frames, grid, 12)
+    targets, grid = problem((36, 36, 36), 2, (18, 12))
+    small, _ = reduced(targets, grid, 12)
     assert small.rig.picture_shape == (6, 4)
-    for before, after in zip(frames.pictures, small.pictures, strict=True):
+    for before, after in zip(targets.pictures, small.pictures, strict=True):
         # plain: means of 3 x 3 pixels, and of nine values at a time from the darkest on
         means = before.reshape(6, 3, 4, 3, 3).mean(axis=(1, 3)).reshape(24, 3)
         wanted = np.sort(before.reshape(216, 3), axis=0).reshape(24, 9, 3).mean(axis=1)
@@ -129,60 +131,60 @@ def test_reduced_pictures_have_the_values_of_the_large_ones_in_the_order_of_thei
 
 
 def test_pixels_of_no_weight_have_no_say() -> None:
-    frames, grid = problem((20, 24, 22), 3, (12, 8))
-    weights = np.ones_like(frames.weight)
+    targets, grid = problem((20, 24, 22), 3, (12, 8))
+    weights = np.ones_like(targets.weight)
     weights[:, :, 5:] = 0
     weights[1, :5] = 0
-    other = np.where(weights[..., None] > 0, frames.pictures, 0.7).astype(np.float32)
-    one, two = (predict(replace(frames, pictures=p, weights=weights), grid) for p in (frames.pictures, other))
+    other = np.where(weights[..., None] > 0, targets.pictures, 0.7).astype(np.float32)
+    one, two = (predict(replace(targets, pictures=p, weights=weights), grid) for p in (targets.pictures, other))
     np.testing.assert_array_equal(one.psnr, two.psnr)
     assert one.rehearsed < 22
 
 
 def test_a_picture_with_a_single_pixel_of_weight_is_not_lost() -> None:
-    frames, grid = problem((20, 24, 22), 3, (12, 8))
-    weights = np.ones_like(frames.weight)
+    targets, grid = problem((20, 24, 22), 3, (12, 8))
+    weights = np.ones_like(targets.weight)
     weights[2] = 0
     weights[2, 7, 3] = 1
-    small, _ = reduced(replace(frames, weights=weights), grid, 8)
+    small, _ = reduced(replace(targets, weights=weights), grid, 8)
     assert np.sum(small.weight[2] > 0) >= 1
 
 
 def test_what_is_small_enough_is_solved_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    frames, grid = problem()
+    targets, grid = problem()
     monkeypatch.setattr(prediction, "WORK", 1e9)
-    told = predict(frames, grid)
+    told = predict(targets, grid)
     assert told.rehearsed == 12
-    scored = solve(frames, grid, Recipe(passes=12))
-    reached = [view["psnr"] for view in score(scored.cube, frames)["views"]]
+    scored = solve(targets, grid, Recipe(passes=12))
+    reached = [view["psnr"] for view in score(scored.cube, targets)["views"]]
     np.testing.assert_allclose(told.psnr, reached, rtol=1e-4)
 
 
 def test_a_prediction_is_the_same_every_time() -> None:
-    frames, grid = problem((20, 24, 22), 3, (12, 8))
-    np.testing.assert_array_equal(predict(frames, grid).psnr, predict(frames, grid).psnr)
+    targets, grid = problem((20, 24, 22), 3, (12, 8))
+    np.testing.assert_array_equal(predict(targets, grid).psnr, predict(targets, grid).psnr)
 
 
-def _fewer(frames: Frames, _: Grid) -> tuple[Frames, dict[str, Any]]:
-    return frames.take([0, 2]), {}
+def _fewer(targets: Targets, _: Grid) -> tuple[Targets, dict[str, Any]]:
+    return targets.take([0, 2]), {}
 
 
-def _grey(frames: Frames, _: Grid) -> tuple[Frames, dict[str, Any]]:
-    return replace(frames, pictures=0.5 + 0.1 * (frames.pictures - 0.5)), {}
+def _grey(targets: Targets, _: Grid) -> tuple[Targets, dict[str, Any]]:
+    return replace(targets, pictures=0.5 + 0.1 * (targets.pictures - 0.5)), {}
 
 
-def _strong(frames: Frames, _: Grid) -> tuple[Frames, dict[str, Any]]:
-    return frames, {"lamp_max": 64.0}
+def _strong(targets: Targets, _: Grid) -> tuple[Targets, dict[str, Any]]:
+    return targets, {"lamp_max": 64.0}
 
 
 @pytest.mark.parametrize("easier", [_fewer, _grey, _strong])
 def test_what_is_easier_is_not_told_to_be_worse(
-    easier: Callable[[Frames, Grid], tuple[Frames, dict[str, Any]]],
+    easier: Callable[[Targets, Grid], tuple[Targets, dict[str, Any]]],
 ) -> None:
-    frames, grid = problem((16, 20, 18), 5, (8, 12))
-    other, options = easier(frames, grid)
+    targets, grid = problem((16, 20, 18), 5, (8, 12))
+    other, options = easier(targets, grid)
     hard, easy = (
-        predict(lit(frames, lamp_max=2.0), grid),
+        predict(lit(targets, lamp_max=2.0), grid),
         predict(lit(other, **{"lamp_max": 2.0, **options}), grid),
     )
     assert hard.psnr_mean < 50
@@ -191,14 +193,14 @@ def test_what_is_easier_is_not_told_to_be_worse(
 
 
 def test_a_hold_costs_something() -> None:
-    frames, grid = problem((16, 20, 18), 4, (8, 8))
-    assert np.mean(predict(frames, grid, Recipe(hold_deg=8)).psnr) < np.mean(predict(frames, grid).psnr) - 0.5
+    targets, grid = problem((16, 20, 18), 4, (8, 8))
+    assert np.mean(predict(targets, grid, Recipe(hold_deg=8)).psnr) < np.mean(predict(targets, grid).psnr) - 0.5
 
 
 def test_wider_pictures_are_told_to_be_worse() -> None:
     told = [
-        np.mean(predict(lit(frames, lamp_max=2), grid).psnr)
-        for frames, grid in (problem((16, 20, 18), 5, (8, columns)) for columns in (4, 10, 20))
+        np.mean(predict(lit(targets, lamp_max=2), grid).psnr)
+        for targets, grid in (problem((16, 20, 18), 5, (8, columns)) for columns in (4, 10, 20))
     ]
     assert told[0] > told[1] > told[2]
 
@@ -218,15 +220,15 @@ def test_means_and_worst_are_told_up_to_fifty() -> None:
 
 
 def test_what_solve_refuses_is_refused() -> None:
-    frames, grid = problem((20, 24, 22), 4, (12, 8))
+    targets, grid = problem((20, 24, 22), 4, (12, 8))
     with pytest.raises(InputError) as told:
-        predict(frames, grid, Recipe(hold_deg=46.0))
+        predict(targets, grid, Recipe(hold_deg=46.0))
     with pytest.raises(InputError) as solved:
-        solve(frames, grid, Recipe(passes=1, hold_deg=46.0))
+        solve(targets, grid, Recipe(passes=1, hold_deg=46.0))
     assert str(told.value) == str(solved.value)
 
 
 def test_pictures_larger_than_the_screen_are_refused() -> None:
-    frames, _ = problem((20, 24, 22), 4, (40, 8))
+    targets, _ = problem((20, 24, 22), 4, (40, 8))
     with pytest.raises(InputError, match="larger than"):
-        predict(frames, Grid((12, 24, 22), 2.5))
+        predict(targets, Grid((12, 24, 22), 2.5))

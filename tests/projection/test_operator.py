@@ -26,7 +26,7 @@ def operator(kind: str, shape: tuple[int, int, int] = (3, 5, 7)) -> Projector:
     """One of each kind of matrix, on four views of unequal sizes."""
     grid = Grid(shape, 0.7)
     if kind in ("level", "raised"):
-        return Projector(grid, turntable_views(grid, [0.0, 13.0, 90.0, 200.0], elevation=35.0 * (kind == "raised")))
+        return Projector(grid, turntable_views(grid, [0.0, 13.0, 90.0, 200.0], elevation_deg=35.0 * (kind == "raised")))
     lamps = ["near", "inside"] if kind == "point" else ["aslant", "+x"]
     screens = [screens_for(shape)[name] for name in ("slanted", "on faces of x")]
     heard = np.random.default_rng(0).random((4, 2, 5)) < 0.6 if kind == "some pixels" else None

@@ -25,11 +25,11 @@ def project(projector: Projector, volume: np.ndarray) -> np.ndarray:
     return pictures_from_columns(projector.forward(x), projector.views.picture_shape, len(volume))
 
 
-@pytest.mark.parametrize("elevation", ELEVATIONS)
+@pytest.mark.parametrize("elevation_deg", ELEVATIONS)
 @pytest.mark.parametrize("shape", SHAPES)
-def test_agrees_with_plain_boxes(shape: tuple[int, int, int], elevation: float) -> None:
+def test_agrees_with_plain_boxes(shape: tuple[int, int, int], elevation_deg: float) -> None:
     grid = Grid(shape, voxel_mm=0.7)
-    views = turntable_views(grid, ANGLES, elevation=elevation)
+    views = turntable_views(grid, ANGLES, elevation_deg=elevation_deg)
     volume = np.random.default_rng(1).random((2, *shape))
     assert np.allclose(
         project(Projector(grid, views), volume), plain.absorbance_pictures(grid, views, volume), rtol=1e-9, atol=1e-9
@@ -47,14 +47,14 @@ def test_long_rows_agree_with_the_sparse_matrix(turns: int) -> None:
     assert np.allclose(matrix.adjoint(b), matrix.to_sparse().T @ b, rtol=1e-5, atol=1e-5)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 @pytest.mark.parametrize(("rows", "columns"), [(1, 4), (2, 3), (3, 6), (4, 5), (3, 1)])
-def test_windows_of_any_size_agree_with_plain_boxes(rows: int, columns: int, elevation: float) -> None:
+def test_windows_of_any_size_agree_with_plain_boxes(rows: int, columns: int, elevation_deg: float) -> None:
     """Wrong parities put every beam of 0 and 90 degrees on faces and edges: the tie rule in all its forms."""
     grid = Grid((4, 6, 5))
-    if elevation == 0 and rows > 4:
+    if elevation_deg == 0 and rows > 4:
         rows = 4
-    views = turntable_views(grid, [0.0, 90.0, 30.0], elevation=elevation, picture_shape=(rows, columns))
+    views = turntable_views(grid, [0.0, 90.0, 30.0], elevation_deg=elevation_deg, picture_shape=(rows, columns))
     volume = np.random.default_rng(2).random((3, 4, 6, 5))
     assert np.allclose(
         project(Projector(grid, views), volume), plain.absorbance_pictures(grid, views, volume), rtol=1e-9, atol=1e-9
@@ -62,14 +62,17 @@ def test_windows_of_any_size_agree_with_plain_boxes(rows: int, columns: int, ele
 
 
 @pytest.mark.parametrize(("dtype", "bound"), [(np.float32, 1e-5), (np.float64, 1e-12)])
-@pytest.mark.parametrize("elevation", ELEVATIONS)
+@pytest.mark.parametrize("elevation_deg", ELEVATIONS)
 @pytest.mark.parametrize("shape", SHAPES)
 def test_adjoint_is_the_transpose(
-    shape: tuple[int, int, int], elevation: float, dtype: type[np.floating], bound: float
+    shape: tuple[int, int, int], elevation_deg: float, dtype: type[np.floating], bound: float
 ) -> None:
     grid = Grid(shape, voxel_mm=1.3)
     for columns in (1, 3, 7):
-        assert dot_test(Projector(grid, turntable_views(grid, ANGLES, elevation=elevation)), columns, dtype) < bound
+        assert (
+            dot_test(Projector(grid, turntable_views(grid, ANGLES, elevation_deg=elevation_deg)), columns, dtype)
+            < bound
+        )
 
 
 def test_dot_test_finds_a_wrong_transpose() -> None:
@@ -85,14 +88,14 @@ def test_dot_test_finds_a_wrong_transpose() -> None:
     assert dot_test(Wrong()) > 1e-3
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 @pytest.mark.parametrize("picture_shape", [None, (2, 4), (1, 3)])
 def test_sparse_rows_and_linear_operator_are_the_same_matrix(
-    elevation: float, picture_shape: tuple[int, int] | None
+    elevation_deg: float, picture_shape: tuple[int, int] | None
 ) -> None:
     grid = Grid((2, 4, 3), 0.5)
     projector = Projector(
-        grid, turntable_views(grid, [0, 31, 90, 200], elevation=elevation, picture_shape=picture_shape)
+        grid, turntable_views(grid, [0, 31, 90, 200], elevation_deg=elevation_deg, picture_shape=picture_shape)
     )
     dense = projector.forward(np.eye(projector.shape[1]))
     assert np.allclose(projector.to_sparse().toarray(), dense, atol=1e-12)
@@ -109,11 +112,11 @@ def test_sparse_rows_and_linear_operator_are_the_same_matrix(
     assert len(projector.view_of_row) == projector.shape[0]
 
 
-@pytest.mark.parametrize("elevation", [0.0, 20.0, -35.0])
-def test_chords_of_a_box_are_analytic(elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 20.0, -35.0])
+def test_chords_of_a_box_are_analytic(elevation_deg: float) -> None:
     """A grid of ones is a box: each beam's absorbance is its chord by the slab method."""
     grid = Grid((3, 5, 7), 2.0)
-    views = turntable_views(grid, [7.0, 77.0, 160.0], elevation=elevation)
+    views = turntable_views(grid, [7.0, 77.0, 160.0], elevation_deg=elevation_deg)
     pictures = project(Projector(grid, views), np.ones((1, 3, 5, 7)))[..., 0]
     half = np.array(grid.size_mm[::-1]) / 2
     for view, row, column in np.ndindex(*pictures.shape):
@@ -129,15 +132,15 @@ def test_chords_of_a_box_are_analytic(elevation: float) -> None:
         assert pictures[view, row, column] == pytest.approx(max(leave - enter, 0), abs=1e-9)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_chords_of_a_sphere_are_analytic(elevation: float) -> None:
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_chords_of_a_sphere_are_analytic(elevation_deg: float) -> None:
     """A voxelised ball's chords come near ``2 sqrt(R^2 - d^2)``, to a voxel per surface crossed."""
     n = 21
     grid = Grid((n, n, n), 1.0)
     z, y, x = np.meshgrid(*[np.arange(n) - (n - 1) / 2] * 3, indexing="ij")
     radius = 0.4 * n
     ball = (x**2 + y**2 + z**2 < radius**2).astype(np.float64)[None]
-    views = turntable_views(grid, [20.0, 65.0], elevation=elevation)
+    views = turntable_views(grid, [20.0, 65.0], elevation_deg=elevation_deg)
     pictures = project(Projector(grid, views), ball)[..., 0]
     expected = np.zeros_like(pictures)
     for index in np.ndindex(*pictures.shape):
@@ -151,13 +154,13 @@ def test_chords_of_a_sphere_are_analytic(elevation: float) -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("angle", [0.0, 90.0, 180.0, 270.0])
-def test_a_view_along_an_axis_holds_the_whole_mass(shape: tuple[int, int, int], angle: float) -> None:
+@pytest.mark.parametrize("angle_deg", [0.0, 90.0, 180.0, 270.0])
+def test_a_view_along_an_axis_holds_the_whole_mass(shape: tuple[int, int, int], angle_deg: float) -> None:
     """Where toolkits err: beams on faces must neither lose nor double what they run along."""
     grid = Grid(shape, 0.5)
     volume = np.random.default_rng(3).random((1, *shape))
     for columns in (raster_shape(grid)[1], raster_shape(grid)[1] - 1):
-        views = turntable_views(grid, [angle], picture_shape=(shape[0], columns))
+        views = turntable_views(grid, [angle_deg], picture_shape=(shape[0], columns))
         pictures = project(Projector(grid, views), volume)
         assert np.sum(pictures, axis=(0, 2, 3)) == pytest.approx(0.5 * np.sum(volume, axis=(0, 2, 3))[::-1])
 
@@ -165,8 +168,8 @@ def test_a_view_along_an_axis_holds_the_whole_mass(shape: tuple[int, int, int], 
 def test_half_a_turn_is_the_mirror_only_at_elevation_0() -> None:
     grid = Grid((3, 5, 7))
     volume = np.random.default_rng(4).random((2, 3, 5, 7))
-    for elevation, mirrored in ((0.0, True), (20.0, False), (-35.0, False)):
-        views = turntable_views(grid, [33.0, 213.0], elevation=elevation)
+    for elevation_deg, mirrored in ((0.0, True), (20.0, False), (-35.0, False)):
+        views = turntable_views(grid, [33.0, 213.0], elevation_deg=elevation_deg)
         front, back = project(Projector(grid, views), volume)
         assert np.allclose(front, back[:, ::-1], atol=1e-9) == mirrored
 
@@ -176,7 +179,7 @@ def test_raising_the_lamp_looks_along_the_same_columns_shifted() -> None:
     grid = Grid((1, 1, 9))
     volume = np.zeros((1, 1, 1, 9))
     volume[..., 8] = 1
-    views = turntable_views(grid, [0.0], elevation=45.0)
+    views = turntable_views(grid, [0.0], elevation_deg=45.0)
     picture = project(Projector(grid, views), volume)[0, :, :, 0]
     row = int(np.argmax(picture.max(axis=1)))
     # light goes along +x and down: what stands 4 voxels downstream is met by beams that cross the axis 4 higher
@@ -186,16 +189,18 @@ def test_raising_the_lamp_looks_along_the_same_columns_shifted() -> None:
 @settings(max_examples=30, deadline=None)
 @given(
     shape=st.tuples(*[st.integers(1, 4)] * 3),
-    angle=st.floats(-720, 720).filter(lambda a: abs((a + 45) % 90 - 45) > 1e-4 or a % 90 == 0),
-    elevation=st.floats(-80, 80).filter(lambda e: abs(e) > 1e-4 or e == 0),
+    angle_deg=st.floats(-720, 720).filter(lambda a: abs((a + 45) % 90 - 45) > 1e-4 or a % 90 == 0),
+    elevation_deg=st.floats(-80, 80).filter(lambda e: abs(e) > 1e-4 or e == 0),
     side=st.floats(0.01, 10),
 )
 def test_any_view_agrees_with_plain_boxes(
-    shape: tuple[int, int, int], angle: float, elevation: float, side: float
+    shape: tuple[int, int, int], angle_deg: float, elevation_deg: float, side: float
 ) -> None:
     grid = Grid(shape, side)
-    full = turntable_views(grid, [angle], elevation=elevation)
-    views = turntable_views(grid, [angle], elevation=elevation, picture_shape=(min(3, full.picture_shape[0]), 2))
+    full = turntable_views(grid, [angle_deg], elevation_deg=elevation_deg)
+    views = turntable_views(
+        grid, [angle_deg], elevation_deg=elevation_deg, picture_shape=(min(3, full.picture_shape[0]), 2)
+    )
     volume = np.random.default_rng(5).random((1, *shape))
     fast = project(Projector(grid, views), volume)
     assert np.allclose(fast, plain.absorbance_pictures(grid, views, volume), rtol=1e-6, atol=1e-6 * side)
@@ -209,18 +214,22 @@ def test_the_tie_rule_starts_at_a_billionth_of_a_voxel() -> None:
     volume[:, :, 0] = 1
     for offset, expected in ((0.0, 2.0), (0.5e-9, 2.0), (-0.5e-9, 2.0), (1e-6, 0.0), (-1e-6, 4.0)):
         moved = Views(
-            views.lamps, views.origins + np.array([0, offset, 0]), views.column_steps, views.row_steps, (1, 1)
+            views.lamps, views.origins_mm + np.array([0, offset, 0]), views.column_steps_mm, views.row_steps_mm, (1, 1)
         )
         assert project(Projector(grid, moved), volume)[0, 0, 0, 0] == pytest.approx(expected, abs=1e-6)
         assert plain.absorbance_pictures(grid, moved, volume)[0, 0, 0, 0] == pytest.approx(expected, abs=1e-6)
 
 
-@pytest.mark.parametrize("elevation", [0.0, 0.3, -0.3])
+@pytest.mark.parametrize("elevation_deg", [0.0, 0.3, -0.3])
 @pytest.mark.parametrize("up", [0.0, 0.5, 1.0, -0.3])
-def test_screens_moved_up_and_lamps_just_above_the_horizon_agree_with_plain_boxes(up: float, elevation: float) -> None:
+def test_screens_moved_up_and_lamps_just_above_the_horizon_agree_with_plain_boxes(
+    up: float, elevation_deg: float
+) -> None:
     grid = Grid((3, 4, 5))
-    views = turntable_views(grid, [20.0, 110.0], elevation=elevation, picture_shape=(3, 4))
-    moved = Views(views.lamps, views.origins + np.array([0, 0, up]), views.column_steps, views.row_steps, (3, 4))
+    views = turntable_views(grid, [20.0, 110.0], elevation_deg=elevation_deg, picture_shape=(3, 4))
+    moved = Views(
+        views.lamps, views.origins_mm + np.array([0, 0, up]), views.column_steps_mm, views.row_steps_mm, (3, 4)
+    )
     volume = np.random.default_rng(11).random((2, 3, 4, 5))
     fast = project(Projector(grid, moved), volume)
     assert np.allclose(fast, plain.absorbance_pictures(grid, moved, volume), rtol=1e-9, atol=1e-9)
@@ -240,10 +249,10 @@ def test_agrees_with_astra() -> None:
     astra = pytest.importorskip("astra", reason="ASTRA is an optional oracle: lightcube[oracle]")
     n, count = 9, 7
     grid = Grid((1, n, n))
-    angles = (np.arange(count) + 0.5) * 180 / count
-    views = turntable_views(grid, angles)
+    angles_deg = (np.arange(count) + 0.5) * 180 / count
+    views = turntable_views(grid, angles_deg)
     width = views.picture_shape[1]
-    geometry = astra.create_proj_geom("parallel", 1.0, width, np.radians(90 - angles))
+    geometry = astra.create_proj_geom("parallel", 1.0, width, np.radians(90 - angles_deg))
     projector = astra.create_projector("line", geometry, astra.create_vol_geom(n, n))
     image = np.random.default_rng(9).random((n, n)).astype(np.float32)
     identifier, sinogram = astra.create_sino(image[::-1], projector)

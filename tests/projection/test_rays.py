@@ -146,8 +146,8 @@ def grids_and_views(draw: st.DrawFn) -> tuple[Grid, Views]:
     degrees = draw(st.sampled_from([0.0, 90.0, 120.0]) | st.integers(-999, 999).map(lambda number: number / 7))
     turn = rotations(draw(way), np.array([degrees]))[0].T
     turned = np.column_stack([views.lamps[:, :3] @ turn, views.lamps[:, 3]])
-    steps = views.column_steps @ turn, views.row_steps @ turn
-    return grid, Views(turned, views.origins @ turn, *steps, views.picture_shape)
+    steps = views.column_steps_mm @ turn, views.row_steps_mm @ turn
+    return grid, Views(turned, views.origins_mm @ turn, *steps, views.picture_shape)
 
 
 @settings(max_examples=60, deadline=None)
@@ -159,17 +159,19 @@ def test_any_rays_agree_with_plain_boxes(case: tuple[Grid, Views]) -> None:
 
 
 @pytest.mark.parametrize(("dtype", "bound"), [(np.float64, 1e-12), (np.float32, 1e-5)])
-@pytest.mark.parametrize("elevation", [0.0, 35.0, -35.0])
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0, -35.0])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_on_a_turntable_both_engines_are_one_matrix(
-    shape: tuple[int, int, int], elevation: float, dtype: type[np.floating], bound: float
+    shape: tuple[int, int, int], elevation_deg: float, dtype: type[np.floating], bound: float
 ) -> None:
     """Windows one narrower or lower put the beams of 0 and 90 degrees on faces and edges."""
     grid = Grid(shape, 0.7)
-    rows, columns = raster_shape(grid, elevation)
+    rows, columns = raster_shape(grid, elevation_deg)
     random = np.random.default_rng(2)
     for picture_shape in {(rows, columns), (rows, columns - 1), (max(rows - 1, 1), columns - 2)}:
-        views = turntable_views(grid, [0.0, 13.0, 90.0, 133.7, 180.0], elevation=elevation, picture_shape=picture_shape)
+        views = turntable_views(
+            grid, [0.0, 13.0, 90.0, 133.7, 180.0], elevation_deg=elevation_deg, picture_shape=picture_shape
+        )
         any_rays, stacked = Rays(grid, views), StackedBeams(grid, views)
         x = random.random((any_rays.shape[1], 3)).astype(dtype)
         b = random.random((any_rays.shape[0], 3)).astype(dtype)
@@ -182,10 +184,10 @@ def test_on_a_turntable_both_engines_are_one_matrix(
 def test_the_engine_follows_from_where_lamps_and_screens_stand() -> None:
     """Stacked beams are many times quicker and cast a turntable's geometry alone: they must not take another."""
     grid = Grid((3, 5, 7), 2.0)
-    table = turntable_views(grid, [0.0, 30.0, 200.0], elevation=20.0)
+    table = turntable_views(grid, [0.0, 30.0, 200.0], elevation_deg=20.0)
 
     def changed(**vectors: np.ndarray) -> Views:
-        kept = {name: getattr(table, name) for name in ("lamps", "origins", "column_steps", "row_steps")}
+        kept = {name: getattr(table, name) for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm")}
         return Views(**{**kept, **vectors}, picture_shape=(3, 9))
 
     up, lamps = np.array([0, 0, 1.0]), table.lamps
@@ -193,16 +195,16 @@ def test_the_engine_follows_from_where_lamps_and_screens_stand() -> None:
     stacked = {
         "a turntable": table,
         "one whose lamp is level": turntable_views(grid, [0.0, 30.0]),
-        "another window": changed(origins=table.origins + 0.3),
-        "light aslant on the screen": changed(column_steps=table.column_steps + np.array([0.3, -0.2, 0])),
+        "another window": changed(origins_mm=table.origins_mm + 0.3),
+        "light aslant on the screen": changed(column_steps_mm=table.column_steps_mm + np.array([0.3, -0.2, 0])),
         "another length of the direction": changed(lamps=3 * lamps),
     }
     others = {
         "a point among parallel lamps": changed(lamps=point),
-        "rows not a voxel apart": changed(row_steps=1.01 * table.row_steps),
-        "a picture upside down": changed(row_steps=-table.row_steps),
-        "columns that rise": changed(column_steps=table.column_steps + 0.1 * up),
-        "a screen that leans": changed(row_steps=table.row_steps + np.array([0.1, 0, 0])),
+        "rows not a voxel apart": changed(row_steps_mm=1.01 * table.row_steps_mm),
+        "a picture upside down": changed(row_steps_mm=-table.row_steps_mm),
+        "columns that rise": changed(column_steps_mm=table.column_steps_mm + 0.1 * up),
+        "a screen that leans": changed(row_steps_mm=table.row_steps_mm + np.array([0.1, 0, 0])),
         "light from above": changed(lamps=np.tile([*-up, 0], (3, 1))),
     }
     for name, views in stacked.items():
@@ -245,7 +247,7 @@ def test_shadows_hold_the_whole_mass(light: tuple[float, float, float]) -> None:
     pictures = matrix.forward(extinction).reshape(41, 51, 2)
     assert not np.any(pictures[[0, -1]])
     assert not np.any(pictures[:, [0, -1]])
-    area = abs(np.cross(views.column_steps[0], views.row_steps[0]) @ unit)
+    area = abs(np.cross(views.column_steps_mm[0], views.row_steps_mm[0]) @ unit)
     mass = grid.voxel_mm**3 * np.sum(extinction, axis=0)
     assert np.sum(pictures, axis=(0, 1)) * area == pytest.approx(mass, rel=0.01)
 

@@ -26,7 +26,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.fitting import frames_from_targets
+from lightcube.pictures.fitting import targets_of
 from lightcube.report.html import image
 from lightcube.report.measuring import EXACT, MOST, chosen
 from lightcube.report.page import digest
@@ -50,20 +50,20 @@ name = "top"
 direction = [0, 0, -1]
 [[screen]]
 name = "wall"
-centre = [20, 0, 0]
+centre_mm = [20, 0, 0]
 normal = [-1, 0, 0]
 size_mm = [6, 5]
 [[screen]]
 name = "floor"
-centre = [0, 0, -20]
+centre_mm = [0, 0, -20]
 normal = [0, 0, 1]
 size_mm = [4, 7]
 [[picture]]
-file = "frames/1.png"
+file = "pictures/1.png"
 screen = "wall"
 lamps = ["sun & <moon>"]
 [[picture]]
-file = "frames/2.png"
+file = "pictures/2.png"
 screen = "floor"
 lamps = ["top"]
 """
@@ -125,10 +125,10 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
 
 
 @pytest.fixture
-def frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with four pictures of 9 x 7 pixels, the third upright, and the place where the commands run."""
     monkeypatch.chdir(tmp_path)
-    folder = tmp_path / "frames"
+    folder = tmp_path / "pictures"
     folder.mkdir()
     random = np.random.default_rng(3)
     for index in range(4):
@@ -145,7 +145,7 @@ def made(names: tuple[str, ...] = (), **changed: Any) -> Cube:
     extinction = random.uniform(0, 0.1, (3, 3, 5, 7)).astype(np.float32)
     targets = random.integers(1, 255, (3, 3, 5, 4), dtype=np.uint8)
     targets[..., 3] = 255
-    rig = turntable(grid, spread_angles(3, 360), elevation=20, picture_shape=(3, 5))
+    rig = turntable(grid, spread_angles(3, 360), elevation_deg=20, picture_shape=(3, 5))
     provenance = {"lightcube": "0.1.0", "method": "display", "powers": "per-picture", "lamp_max": 4.0}
     return replace(Cube(extinction, grid, rig, None, targets, names, provenance=provenance), **changed)
 
@@ -170,39 +170,39 @@ def _between_tags(line: str) -> Iterator[str]:
 
 SOLVES = {
     "planned": "--n 6 --iterations 3",
-    "draft": "--n 6 --frame-width 0.5 --hold 0 --quality draft",
-    "angles": "--shape 5,7,6 --frame-width 0.7 --elevation 20 --angles 3,100.52,181,-85 --iterations 3 --lamp-max 4.5 "
-    "--black 0.02 --hold 1.25",
-    "span": "--n 7 --span 200 --size-mm 33.3 --frame-width 0.6 --hold 0 --fit pad --powers shared --transfer linear "
-    "--max-extinction 0.5 --iterations 2",
-    "order": "--n 6 --frame-width 0.5 --hold 0 --order best --shift 1 --powers coarse --iterations 2",
+    "draft": "--n 6 --picture-width 0.5 --hold-deg 0 --quality draft",
+    "angles": "--shape 5,7,6 --picture-width 0.7 --elevation-deg 20 --angles-deg 3,100.52,181,-85 "
+    "--iterations 3 --lamp-max 4.5 --black 0.02 --hold-deg 1.25",
+    "span": "--n 7 --span-deg 200 --size-mm 33.3 --picture-width 0.6 --hold-deg 0 --fit pad --powers shared "
+    "--transfer linear --max-extinction 0.5 --iterations 2",
+    "order": "--n 6 --picture-width 0.5 --hold-deg 0 --order best --shift 1 --powers coarse --iterations 2",
     "paper": "--n 6 --paper --iterations 3",
     "gauss-seidel": "--n 5 --paper --method gauss-seidel",
-    "sirt": "--n 5 --frame-width 0.8 --method sirt --lamp-power 2.5 --iterations 4",
-    "units": "--n 6 --frame-width 0.5 --hold 0 --iterations 3 --unit 1/3",
+    "sirt": "--n 5 --picture-width 0.8 --method sirt --lamp-power 2.5 --iterations 4",
+    "units": "--n 6 --picture-width 0.5 --hold-deg 0 --iterations 3 --unit 1/3",
 }
 
 
 @pytest.mark.parametrize("options", SOLVES.values(), ids=SOLVES)
-def test_the_command_makes_the_cube_bit_for_bit(run: Run, frames: Path, options: str) -> None:
-    solve = ["solve", "frames", "-o", "a cube.npz", *options.split()]
+def test_the_command_makes_the_cube_bit_for_bit(run: Run, pictures: Path, options: str) -> None:
+    solve = ["solve", "pictures", "-o", "a cube.npz", *options.split()]
     if "--unit" in options:
         for unit in (1, 2, 3):
             assert run(*solve[:-1], f"{unit}/3")[0] == 0
         run("publish", "a cube.npz.partial")
     else:
         assert run(*solve)[0] == 0
-    _makes_it_again(run, "a cube.npz", "frames")
+    _makes_it_again(run, "a cube.npz", "pictures")
 
 
-def test_the_command_makes_the_cube_of_a_stage(run: Run, frames: Path) -> None:
-    options = ["--lamp-samples", 2, "--pixel-samples", 2, "--iterations", 3, "--hold", 1]
+def test_the_command_makes_the_cube_of_a_stage(run: Run, pictures: Path) -> None:
+    options = ["--lamp-samples", 2, "--pixel-samples", 2, "--iterations", 3, "--hold-deg", 1]
     assert run("solve", "stage.toml", "-o", "a.npz", *options)[0] == 0
     _makes_it_again(run, "a.npz", "stage.toml")
 
 
-def _makes_it_again(run: Run, cube: str, frames: str) -> None:
-    page = reported(run, cube, frames)
+def _makes_it_again(run: Run, cube: str, targets: str) -> None:
+    page = reported(run, cube, targets)
     text = Path("report.html").read_text(encoding="utf-8")
     assert "bit for bit:" in text
     old = load(cube)
@@ -215,7 +215,7 @@ def _makes_it_again(run: Run, cube: str, frames: str) -> None:
     assert digest(new) == digest(old)
     for name in ("extinction", "powers", "targets"):
         np.testing.assert_array_equal(getattr(new, name), getattr(old, name))
-    for name in ("lamps", "origins", "column_steps", "row_steps"):
+    for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
         np.testing.assert_array_equal(getattr(new.rig.views, name), getattr(old.rig.views, name))
     assert (new.names, new.hold_deg, new.transfer) == (old.names, old.hold_deg, old.transfer)
     assert new.provenance == old.provenance
@@ -225,7 +225,7 @@ def test_passes_that_are_recorded_become_options() -> None:
     def words(**recorded: Any) -> tuple[str, list[str]]:
         cube = made()
         cube = replace(cube, provenance={**cube.provenance, "fit": "crop", **recorded})
-        command = reproducing(cube, frames_from_targets(cube), "frames", "cube.zarr")
+        command = reproducing(cube, targets_of(cube), "pictures", "cube.zarr")
         return " ".join(command.lines[0]), command.doubts
 
     assert "quality" not in words(passes=200, enough_db=42.0)[0]
@@ -239,10 +239,13 @@ def test_passes_that_are_recorded_become_options() -> None:
     assert "another version" in words(passes=17, lightcube="0.0.1")[1][0]
 
 
-def test_every_figure_is_that_of_score(run: Run, frames: Path) -> None:
-    assert run("solve", "frames", "-o", "a.npz", "--n", 6, "--frame-width", 0.5, "--hold", 0, "--iterations", 3)[0] == 0
-    scores = json.loads(run("score", "a.npz", "frames", "--between", "--robust", "--json")[1])
-    page = reported(run, "a.npz", "frames")
+def test_every_figure_is_that_of_score(run: Run, pictures: Path) -> None:
+    assert (
+        run("solve", "pictures", "-o", "a.npz", "--n", 6, "--picture-width", 0.5, "--hold-deg", 0, "--iterations", 3)[0]
+        == 0
+    )
+    scores = json.loads(run("score", "a.npz", "pictures", "--between", "--robust", "--json")[1])
+    page = reported(run, "a.npz", "pictures")
     head, *rows = page.rows("Every picture")
     assert head == ["no.", "picture", "angle", "PSNR, dB", "SSIM", "CIEDE2000", "predicted, dB", "30 dB over"]
     predicted, lobes = load("a.npz").provenance["predicted"]["views"], scores["between"]["lobe_deg"]
@@ -253,7 +256,7 @@ def test_every_figure_is_that_of_score(run: Run, frames: Path) -> None:
             f"{predicted[number]:.1f}",
             f"{lobes[number]:.2f}°",
         ]
-        assert row == [str(number + 1), view["name"], f"{view['angle']:.3f}°", *figures]
+        assert row == [str(number + 1), view["name"], f"{view['angle_deg']:.3f}°", *figures]
     robust = [row[1:3] for row in page.rows("What is left of the pictures")[1:]]
     assert robust == [[f"{each['psnr_mean']:.2f}", f"{each['psnr_min']:.2f}"] for each in scores["robust"].values()]
     assert f"{scores['psnr_mean']:.2f} dB" in page.texts("dd")
@@ -261,7 +264,7 @@ def test_every_figure_is_that_of_score(run: Run, frames: Path) -> None:
     assert "which are those that the cube was made from" in Path("report.html").read_text()
 
 
-def test_a_report_is_the_same_twice_and_says_its_figures_for_machines(run: Run, frames: Path) -> None:
+def test_a_report_is_the_same_twice_and_says_its_figures_for_machines(run: Run, pictures: Path) -> None:
     save(made(), "a.npz")
     reported(run, "a.npz")
     first = Path("report.html").read_bytes()
@@ -273,14 +276,17 @@ def test_a_report_is_the_same_twice_and_says_its_figures_for_machines(run: Run, 
     assert result["psnr_mean"] == score(load("a.npz"))["psnr_mean"]
 
 
-def test_other_pictures_than_its_own_are_told(run: Run, frames: Path) -> None:
-    assert run("solve", "frames", "-o", "a.npz", "--n", 6, "--frame-width", 0.5, "--hold", 0, "--iterations", 1)[0] == 0
-    Image.new("RGB", (9, 7), "#102030").save(frames / "2.png")
-    reported(run, "a.npz", "frames")
+def test_other_pictures_than_its_own_are_told(run: Run, pictures: Path) -> None:
+    assert (
+        run("solve", "pictures", "-o", "a.npz", "--n", 6, "--picture-width", 0.5, "--hold-deg", 0, "--iterations", 1)[0]
+        == 0
+    )
+    Image.new("RGB", (9, 7), "#102030").save(pictures / "2.png")
+    reported(run, "a.npz", "pictures")
     assert "not known to be those that it was made from" in Path("report.html").read_text()
 
 
-def test_names_stay_names(run: Run, frames: Path) -> None:
+def test_names_stay_names(run: Run, pictures: Path) -> None:
     evil = ("<b>\"&amp;'</b>", "</title><script>alert(1)</script>")
     name = "a<i>'\"&.npz"
     save(made((*evil, "c")), name)
@@ -295,7 +301,7 @@ def test_names_stay_names(run: Run, frames: Path) -> None:
     assert {f"wanted: {each}" for each in (*evil, "c")} <= set(alts)
 
 
-def test_nothing_is_loaded_and_the_page_is_well_formed(run: Run, frames: Path) -> None:
+def test_nothing_is_loaded_and_the_page_is_well_formed(run: Run, pictures: Path) -> None:
     save(made(), "a.npz")
     page = reported(run, "a.npz")
     for tag, attributes in page.elements:
@@ -315,7 +321,7 @@ def test_nothing_is_loaded_and_the_page_is_well_formed(run: Run, frames: Path) -
     assert {str(attributes["href"])[1:] for tag, attributes in page.elements if tag == "a"} <= anchors
 
 
-def test_pictures_are_those_wanted_and_shown(run: Run, frames: Path) -> None:
+def test_pictures_are_those_wanted_and_shown(run: Run, pictures: Path) -> None:
     save(made(), "a.npz")
     page = reported(run, "a.npz")
     found = {}
@@ -333,7 +339,7 @@ def test_pictures_are_those_wanted_and_shown(run: Run, frames: Path) -> None:
         assert np.all(np.abs(seen - off)[inside] <= 2)
 
 
-def test_an_unfinished_cube_says_so_first(run: Run, frames: Path) -> None:
+def test_an_unfinished_cube_says_so_first(run: Run, pictures: Path) -> None:
     save(made(status="interrupted"), "a.npz")
     code, _, err = run("report", "a.npz", "-o", "report.html")
     assert code == 0
@@ -344,14 +350,14 @@ def test_an_unfinished_cube_says_so_first(run: Run, frames: Path) -> None:
     assert "stopped early" in text
 
 
-def test_a_stage_has_its_room(run: Run, frames: Path) -> None:
+def test_a_stage_has_its_room(run: Run, pictures: Path) -> None:
     assert run("solve", "stage.toml", "-o", "a.npz", "--iterations", 2)[0] == 0
     page = reported(run, "a.npz", "stage.toml")
     assert [row[-1] for row in page.rows("Every picture")[1:]] == ["wall", "floor"]
     assert [row[2] for row in page.rows("Where the pictures stand")[1:]] == ["sun & <moon>", "top"]
     assert "30 dB over" in page.rows("Every picture")[0]
     read = [(row[0], row[1], row[-1]) for row in page.rows("What was read")[1:]]
-    inside = [Path("stage.toml"), Path("frames/1.png"), Path("frames/2.png")]
+    inside = [Path("stage.toml"), Path("pictures/1.png"), Path("pictures/2.png")]
     roles = ("stage", "pictures", "pictures")
     hashed = [hashlib.sha256(path.read_bytes()).hexdigest() for path in inside]
     assert read[1:] == [(role, path.name, each) for role, path, each in zip(roles, inside, hashed, strict=True)]
@@ -361,9 +367,9 @@ def test_a_stage_has_its_room(run: Run, frames: Path) -> None:
     assert sizes == [("6", "5"), ("4", "7")]
 
 
-def test_lamps_at_several_elevations_cannot_be_said_on_the_command_line(run: Run, frames: Path) -> None:
+def test_lamps_at_several_elevations_cannot_be_said_on_the_command_line(run: Run, pictures: Path) -> None:
     cube = made()
-    other = turntable(cube.grid, [33.0], elevation=10, picture_shape=(3, 5)).views
+    other = turntable(cube.grid, [33.0], elevation_deg=10, picture_shape=(3, 5)).views
     save(replace(cube, rig=Rig.of(cube.rig.views.take([0, 1]).joined(other))), "a.npz")
     page = reported(run, "a.npz")
     assert any("exactly this cube's lamps and screens" in words for words in page.texts("li"))
@@ -372,16 +378,16 @@ def test_lamps_at_several_elevations_cannot_be_said_on_the_command_line(run: Run
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["frames", "-o", "r.html"], "cube"),
+        (["pictures", "-o", "r.html"], "cube"),
         (["a.npz", "-o", "there.html"], "exists already"),
         (["a.npz", "-o", "r.pdf"], ".html"),
-        (["a.npz", "frames", "-o", "r.html"], "3"),
+        (["a.npz", "pictures", "-o", "r.html"], "3"),
         (["a.npz", "stage.toml", "-o", "r.html"], "stage"),
         (["none.npz", "-o", "r.html"], "none.npz"),
         (["bare.npz", "-o", "r.html"], "targets"),
     ],
 )
-def test_what_cannot_be_is_one_sentence(run: Run, frames: Path, arguments: list[str], said: str) -> None:
+def test_what_cannot_be_is_one_sentence(run: Run, pictures: Path, arguments: list[str], said: str) -> None:
     save(made(), "a.npz")
     save(made(targets=None), "bare.npz")
     Path("there.html").write_text("old")
@@ -396,10 +402,10 @@ def test_what_cannot_be_is_one_sentence(run: Run, frames: Path, arguments: list[
 
 def test_a_page_of_many_pictures_stays_small() -> None:
     cube = made()
-    frames = frames_from_targets(cube)
-    assert chosen(frames) == [0, 1, 2]
-    assert chosen(frames, 2 * 3 * 5) == [0, 2]
-    assert chosen(frames, 1) == [0]
+    targets = targets_of(cube)
+    assert chosen(targets) == [0, 1, 2]
+    assert chosen(targets, 2 * 3 * 5) == [0, 2]
+    assert chosen(targets, 1) == [0]
     random = np.random.default_rng(0)
     noise = random.integers(0, 255, (96, 96, 3), dtype=np.uint8)
     smooth = np.kron(random.integers(0, 255, (12, 12, 3)), np.ones((16, 16, 1))).astype(np.uint8)
@@ -408,7 +414,7 @@ def test_a_page_of_many_pictures_stays_small() -> None:
 
 
 @pytest.mark.skipif(INTERPRETED, reason="the same page as with compiled kernels")
-def test_a_browser_finds_nothing_to_mend(run: Run, frames: Path, browser: Any) -> None:
+def test_a_browser_finds_nothing_to_mend(run: Run, pictures: Path, browser: Any) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not installed").Axe()
     save(made(), "a.npz")
     reported(run, "a.npz")
@@ -421,7 +427,7 @@ def test_a_browser_finds_nothing_to_mend(run: Run, frames: Path, browser: Any) -
 
 
 @pytest.mark.parametrize("darkest", [1000.0, 5.0])
-def test_single_dark_voxels_are_told(run: Run, frames: Path, darkest: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_single_dark_voxels_are_told(run: Run, pictures: Path, darkest: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lightcube.report.sections._COARSE_DB", -100)
     cube = made()
     cube.extinction[:, 1, 2, 3] = darkest / cube.grid.voxel_mm

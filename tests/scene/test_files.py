@@ -47,7 +47,7 @@ tube = 0.2
 colour = "#ff8800"
 [shapes.motion]
 loop = true
-keys = [{ time = 0, rotation = [0, 0, 0] }, { time = 1, rotation = [0, 0, 360] }]
+keys = [{ time = 0, rotation_deg = [0, 0, 0] }, { time = 1, rotation_deg = [0, 0, 360] }]
 """
 
 MESH = """
@@ -136,7 +136,7 @@ CHANGES = [
     ("tube = 0.2", "tube = 2", "shapes.2: tube must be < radius"),
     ("time = 1", "time = 0", "shapes.2.motion: keys must be in order of time"),
     ("time = 1", "time = 1.5", "shapes.2.motion.keys.1.time: must be <= 1"),
-    ("360]", "350]", "shapes.2.motion: in a loop, rotation at time 1 must be as at time 0"),
+    ("360]", "350]", "shapes.2.motion: in a loop, rotation_deg at time 1 must be as at time 0"),
     ("loop = true", "phase = 0.5", "shapes.2.motion: phase shifts a loop only"),
     ("loop = true", 'loop = "yes"', "shapes.2.motion.loop: must be"),
     ("loop = true", 'easing = "bouncy"', "shapes.2.motion.easing: must be 'linear', 'ease-in'"),
@@ -148,9 +148,9 @@ CHANGES = [
     ('"point"\nposition = [0, 0, 9]', '"directional"\ndirection = [0, 0, 0]', "lights.0.direction: must not be zero"),
     ('title = "one ball"', "title = 3", "title: must be a text"),
     ('title = "one ball"', "sky = 3", "sky: no such key"),
-    ('title = "one ball"', "frames = { size = [0, 3] }", "frames.size.0: must be >= 1"),
-    ('title = "one ball"', "frames = { elevation = 90 }", "frames.elevation: must be < 89.999"),
-    ('title = "one ball"', "frames = 3", "frames: must be a table"),
+    ('title = "one ball"', "pictures = { size = [0, 3] }", "pictures.size.0: must be >= 1"),
+    ('title = "one ball"', "pictures = { elevation_deg = 90 }", "pictures.elevation_deg: must be < 89.999"),
+    ('title = "one ball"', "pictures = 3", "pictures: must be a table"),
     ('"parallel"\nposition = [-5, 0, 0]\nheight = 4', '"shadow"\ncube_width = 2', "shapes.0.glass: is missing"),
 ]
 
@@ -200,7 +200,7 @@ anything = st.recursive(
         [
             "title",
             "camera",
-            "frames",
+            "pictures",
             "background",
             "ambient",
             "lights",
@@ -213,7 +213,7 @@ anything = st.recursive(
             "checker",
             "highlight",
             "position",
-            "rotation",
+            "rotation_deg",
             "scale",
             "parent",
             "motion",
@@ -226,7 +226,7 @@ anything = st.recursive(
 def test_any_rubbish_gives_a_scene_or_one_sentence(where: str, value: Any) -> None:
     shape: dict[str, Any] = {"type": "sphere", "radius": 1, "colour": "#fff"}
     data: dict[str, Any] = {"camera": {"type": "parallel", "position": [1, 2, 3], "height": 1}, "shapes": [shape]}
-    (data if where in (*data, "title", "frames", "background", "ambient", "lights", "groups", "extra") else shape)[
+    (data if where in (*data, "title", "pictures", "background", "ambient", "lights", "groups", "extra") else shape)[
         where
     ] = value
     said = ""

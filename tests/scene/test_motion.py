@@ -30,14 +30,14 @@ def test_keyframes_are_hit_exactly(
 ) -> None:
     times = [0.1 + 0.8 * i / len(places) for i in range(len(places))]
     keys = [
-        {"time": t, "position": p, "rotation": turns, "scale": [abs(x) for x in p]}
+        {"time": t, "position": p, "rotation_deg": turns, "scale": [abs(x) for x in p]}
         for t, p in zip(times, places, strict=True)
     ]
     thing = group(keys, easing=easing, loop=loop)
     for t, p in zip(times, places, strict=True):
-        position, rotation, scale = pose(thing, t)
+        position, rotation_deg, scale = pose(thing, t)
         np.testing.assert_allclose(position, p, atol=1e-12)
-        np.testing.assert_allclose(rotation, turns, atol=1e-12)
+        np.testing.assert_allclose(rotation_deg, turns, atol=1e-12)
         np.testing.assert_allclose(scale, np.abs(p), atol=1e-12)
 
 
@@ -118,7 +118,7 @@ def test_a_smooth_scale_never_swings_below_zero() -> None:
 
 def test_a_loop_turns_on_or_back_by_the_shorter_way() -> None:
     def end(last: float) -> float:
-        thing = group([{"time": 0, "rotation": [0, 0, 0]}, {"time": 0.5, "rotation": [0, 0, last]}], loop=True)
+        thing = group([{"time": 0, "rotation_deg": [0, 0, 0]}, {"time": 0.5, "rotation_deg": [0, 0, last]}], loop=True)
         return pose(thing, 0.999999999)[1][2]
 
     assert end(120) == pytest.approx(0, abs=1e-5)
@@ -129,7 +129,7 @@ def test_a_loop_turns_on_or_back_by_the_shorter_way() -> None:
 
 
 def test_a_whole_turn_is_a_loop() -> None:
-    thing = group([{"time": 0, "rotation": [0, 0, 0]}, {"time": 1, "rotation": [0, 0, 360]}], loop=True)
+    thing = group([{"time": 0, "rotation_deg": [0, 0, 0]}, {"time": 1, "rotation_deg": [0, 0, 360]}], loop=True)
     for t in (0.0, 0.25, 0.9):
         assert pose(thing, t)[1] == pytest.approx((0, 0, 360 * t))
 
@@ -146,15 +146,15 @@ def test_phase_shifts_time_and_channels_go_their_own_way() -> None:
         np.testing.assert_allclose(pose(early, (t + 0.3) % 1), pose(late, t))
     assert pose(early, 0.25)[0][0] == pytest.approx(2)
     assert pose(early, 0.5)[2][0] == pytest.approx(1.5)
-    assert pose(Group(rotation=(1, 2, 3), motion=early.motion), 0.1)[1] == (1, 2, 3)
+    assert pose(Group(rotation_deg=(1, 2, 3), motion=early.motion), 0.1)[1] == (1, 2, 3)
 
 
-@given(angles=degrees, point=triple)
+@given(angles_deg=degrees, point=triple)
 @settings(max_examples=60, deadline=None)
 def test_rotations_keep_lengths_and_handedness(
-    angles: tuple[float, float, float], point: tuple[float, float, float]
+    angles_deg: tuple[float, float, float], point: tuple[float, float, float]
 ) -> None:
-    matrix = rotation_matrix(angles)
+    matrix = rotation_matrix(angles_deg)
     assert np.linalg.norm(matrix @ point) == pytest.approx(np.linalg.norm(point))
     assert np.linalg.det(matrix) == pytest.approx(1)
 
@@ -174,8 +174,8 @@ def test_parents_are_applied_after_the_child(
     outer: tuple[tuple[float, float, float], tuple[float, float, float]],
     point: tuple[float, float, float],
 ) -> None:
-    groups = {"out": Group(position=outer[0], rotation=outer[1], scale=(2.0, 0.5, 3.0))}
-    child = Group(position=inner[0], rotation=inner[1], scale=(1.5, 1.0, 0.7), parent="out")
+    groups = {"out": Group(position=outer[0], rotation_deg=outer[1], scale=(2.0, 0.5, 3.0))}
+    child = Group(position=inner[0], rotation_deg=inner[1], scale=(1.5, 1.0, 0.7), parent="out")
     place = placement(child, groups, 0.0)
     middle = rotation_matrix(inner[1]) @ (np.array([1.5, 1.0, 0.7]) * point) + inner[0]
     wanted = rotation_matrix(outer[1]) @ (np.array([2.0, 0.5, 3.0]) * middle) + outer[0]

@@ -14,7 +14,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views, turntable_views
 from lightcube.scene.motion import rotation_matrix
 from lightcube.scene.scene import Scene, scene_from_tables
-from lightcube.scene.tracer import scene_frames, scene_rig, shadows, trace
+from lightcube.scene.tracer import scene_rig, scene_targets, shadows, trace
 
 Floats = NDArray[Any]
 JIT_OFF = bool(getattr(config, "DISABLE_JIT", 0))
@@ -42,8 +42,8 @@ def solid(kind: str, **keys: Any) -> dict[str, Any]:
 
 SOLIDS = [
     solid("sphere", radius=0.4, position=[0.3, -0.5, 0.1]),
-    solid("box", size=[0.3, 0.5, 0.7], rotation=[10, 20, 30], colour="#4080c0"),
-    solid("torus", radius=0.6, tube=0.2, rotation=[40, 0, 10], colour="#80c040"),
+    solid("box", size=[0.3, 0.5, 0.7], rotation_deg=[10, 20, 30], colour="#4080c0"),
+    solid("torus", radius=0.6, tube=0.2, rotation_deg=[40, 0, 10], colour="#80c040"),
     solid("cone", radius=0.4, height=0.8, position=[-0.4, 0.4, -0.5]),
     solid("text", text="B", height=0.6, depth=0.3, position=[0.5, 0.4, 0.6]),
 ]
@@ -77,7 +77,7 @@ def test_perspective_has_its_field_of_view() -> None:
     distance = 5.0
     inner = math.degrees(2 * math.asin(1 / distance))
     field = math.degrees(2 * math.atan(2 * math.tan(math.radians(inner) / 2)))
-    camera = {"type": "perspective", "position": [0, -distance, 0], "field_of_view": field, "samples": 1}
+    camera = {"type": "perspective", "position": [0, -distance, 0], "field_of_view_deg": field, "samples": 1}
     column = seen(scene({**BALL, "colour": "#000"}, camera=camera), 2 * SIZE)[:, SIZE, 0]
     assert abs(np.count_nonzero(column == 0) - SIZE) <= 1
 
@@ -190,8 +190,8 @@ def test_a_checker_alternates() -> None:
 
 
 def test_a_stretched_and_turned_body_is_lit_along_its_own_normals() -> None:
-    body = {**BALL, "scale": [1, 0.5, 1.5], "rotation": [25, 0, 40], "parent": "g"}
-    groups = {"g": {"scale": [0.8, 1.1, 1.0], "rotation": [0, 30, 0]}}
+    body = {**BALL, "scale": [1, 0.5, 1.5], "rotation_deg": [25, 0, 40], "parent": "g"}
+    groups = {"g": {"scale": [0.8, 1.1, 1.0], "rotation_deg": [0, 30, 0]}}
     sun = np.array([0.48, -0.6, -0.64])
     light = {"type": "directional", "direction": sun.tolist()}
     picture = seen(scene(body, lights=[light], ambient=0.0, groups=groups, background={"top": 0, "bottom": 0}))
@@ -236,7 +236,7 @@ def test_glass_does_not_shine_where_the_light_is_behind_its_surface() -> None:
 
 def test_a_checker_on_a_flat_face_is_clean() -> None:
     """A face that lies on a plane between cells must not flicker between their colours."""
-    board = {"type": "plane", "colour": "#f00", "checker": {"colour": "#00f", "size": 0.7}, "rotation": [0, 0, 30]}
+    board = {"type": "plane", "colour": "#f00", "checker": {"colour": "#00f", "size": 0.7}, "rotation_deg": [0, 0, 30]}
     camera = {**ABOVE, "position": [-6, 0.1, 6], "target": [0, 0.1, 0]}
     picture = seen(scene(board, camera=camera))
     x, y, _ = np.moveaxis(on_ground(SIZE, 6.0) + np.array([0, 0.1, 0]), -1, 0)
@@ -264,7 +264,7 @@ def test_the_background_runs_from_top_to_bottom() -> None:
     np.testing.assert_allclose(picture[:, 2, 0], [0.1, 0.3, 0.5, 0.7, 0.9], rtol=1e-6)
 
 
-def test_frame_i_of_n_is_seen_at_time_i_over_n_and_gone_is_gone() -> None:
+def test_picture_i_of_n_is_seen_at_time_i_over_n_and_gone_is_gone() -> None:
     keys = [{"time": t, "scale": s, "easing": "step"} for t, s in ((0.0, 1), (0.25, 0), (0.5, [1, 0, 1]), (0.75, 1))]
     pictures = trace(scene({**BALL, "colour": "#000", "motion": {"keys": keys}}), 4, (3, 3))
     assert pictures[:, 1, 1, 0].tolist() == [0, 1, 1, 0]
@@ -272,8 +272,8 @@ def test_frame_i_of_n_is_seen_at_time_i_over_n_and_gone_is_gone() -> None:
 
 def test_a_moved_shape_is_a_moved_picture() -> None:
     """Stretching, turning and parents against the same body written down otherwise."""
-    stretched = {**BALL, "scale": [0.3, 0.5, 0.7], "rotation": [90, 0, 0], "parent": "g", "colour": "#000"}
-    made = scene(stretched, groups={"g": {"position": [0, 0.4, 0], "rotation": [0, 0, 90], "scale": 1.5}})
+    stretched = {**BALL, "scale": [0.3, 0.5, 0.7], "rotation_deg": [90, 0, 0], "parent": "g", "colour": "#000"}
+    made = scene(stretched, groups={"g": {"position": [0, 0.4, 0], "rotation_deg": [0, 0, 90], "scale": 1.5}})
     # The x axis goes to y, the z axis to -y and on to x.
     same = scene({**BALL, "scale": [1.05, 0.45, 0.75], "position": [0, 0.4, 0], "colour": "#000"})
     np.testing.assert_array_equal(seen(made), seen(same))
@@ -293,17 +293,17 @@ def test_a_shadow_is_beer_and_lambert_along_the_beam() -> None:
 
 def test_half_a_turn_on_is_the_mirror_image_at_elevation_zero_only() -> None:
     grid = Grid((7, SIZE, SIZE))
-    for elevation in (0.0, 30.0):
-        views = turntable_views(grid, [20.0, 200.0], elevation=elevation)
+    for elevation_deg in (0.0, 30.0):
+        views = turntable_views(grid, [20.0, 200.0], elevation_deg=elevation_deg)
         first, second = shadows(shadow_scene(*SOLIDS), views, grid)
         close = np.abs(first - second[:, ::-1]).max()
-        assert (close < 1e-6) == (elevation == 0)
+        assert (close < 1e-6) == (elevation_deg == 0)
         assert first.min() < 0.5
 
 
 def test_shadows_add_as_absorbances_when_solids_add() -> None:
     grid = Grid((7, SIZE, SIZE))
-    views = turntable_views(grid, [33.0], elevation=20.0)
+    views = turntable_views(grid, [33.0], elevation_deg=20.0)
     together = shadows(shadow_scene(*SOLIDS), views, grid)
     apart = np.prod([shadows(shadow_scene(one), views, grid) for one in SOLIDS], axis=0)
     np.testing.assert_allclose(together, apart, rtol=1e-5)
@@ -313,10 +313,10 @@ def test_turning_the_lamp_is_turning_the_solid_back() -> None:
     grid = Grid((7, SIZE, SIZE))
     turned = [{**one, "parent": "table"} for one in SOLIDS]
     camera = {"type": "shadow", "cube_width": 3.0}
-    made = scene(*turned, camera=camera, groups={"table": {"rotation": [0, 0, 37]}})
+    made = scene(*turned, camera=camera, groups={"table": {"rotation_deg": [0, 0, 37]}})
     np.testing.assert_allclose(
-        shadows(made, turntable_views(grid, [0.0], elevation=25.0), grid),
-        shadows(shadow_scene(*SOLIDS), turntable_views(grid, [37.0], elevation=25.0), grid),
+        shadows(made, turntable_views(grid, [0.0], elevation_deg=25.0), grid),
+        shadows(shadow_scene(*SOLIDS), turntable_views(grid, [37.0], elevation_deg=25.0), grid),
         atol=1e-5,
     )
 
@@ -359,10 +359,10 @@ def test_shipped_scenes_are_pictures_and_loops(name: str) -> None:
     made = read_scene(name)
     grid, views = scene_rig(made, 3, (7, 5))
     said: list[tuple[int, int]] = []
-    frames = scene_frames(made, views, grid, callback=lambda done, of: said.append((done, of)))
-    assert frames.pictures.shape == (3, 5, 7, 3)
-    assert 0 <= frames.pictures.min() < 0.9
-    assert frames.pictures.max() <= 1
+    targets = scene_targets(made, views, grid, callback=lambda done, of: said.append((done, of)))
+    assert targets.pictures.shape == (3, 5, 7, 3)
+    assert 0 <= targets.pictures.min() < 0.9
+    assert targets.pictures.max() <= 1
     assert said[-1] == (3, 3)
     description = made.description
     moving = [*description.shapes, *description.groups.values()]
@@ -370,11 +370,11 @@ def test_shipped_scenes_are_pictures_and_loops(name: str) -> None:
 
 
 def test_a_scene_brings_its_own_views() -> None:
-    made = scene(BALL, frames={"count": 5, "size": [7, 3], "span": 90, "elevation": 20})
+    made = scene(BALL, pictures={"count": 5, "size": [7, 3], "span_deg": 90, "elevation_deg": 20})
     grid, rig = scene_rig(made)
     assert grid.shape == (3, 7, 7)
     assert rig.picture_shape == (3, 7)
-    np.testing.assert_allclose(rig.stops.angle, [9, 27, 45, 63, 81])
+    np.testing.assert_allclose(rig.stops.angle_deg, [9, 27, 45, 63, 81])
     assert rig.elevation_deg == 20
 
 
@@ -384,6 +384,6 @@ def test_the_wrong_camera_and_empty_pictures_are_refused() -> None:
         trace(shadow_scene(*SOLIDS), 2, (3, 3))
     with pytest.raises(InputError, match=r"camera\.type"):
         shadows(scene(BALL), turntable_views(grid, [0.0]), grid)
-    for frames, shape in ((0, (3, 3)), (1, (0, 3)), (1, (3, 0))):
+    for targets, shape in ((0, (3, 3)), (1, (0, 3)), (1, (3, 0))):
         with pytest.raises(InputError, match="at least 1"):
-            trace(scene(BALL), frames, shape)
+            trace(scene(BALL), targets, shape)

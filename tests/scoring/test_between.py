@@ -1,4 +1,4 @@
-"""Between the frames and around them: the curve, its lobes, and what a set-up that is off costs."""
+"""Between the pictures and around them: the curve, its lobes, and what a set-up that is off costs."""
 
 import builtins
 import json
@@ -23,8 +23,8 @@ from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import encode
-from lightcube.pictures.fitting import targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import as_levels
+from lightcube.pictures.targets import Targets
 from lightcube.report.measuring import measure
 from lightcube.scoring.between import curve
 from lightcube.scoring.metrics import psnr, score, ssim
@@ -35,129 +35,129 @@ SHAPE = (3, 5, 7)
 __all__ = ["run"]
 
 
-def make_cube(angles: list[float], elevation: float = 0.0, strength: float = 1.0) -> Cube:
+def make_cube(angles_deg: list[float], elevation_deg: float = 0.0, strength: float = 1.0) -> Cube:
     random = np.random.default_rng(0)
     extinction = (strength * random.random((3, *SHAPE))).astype(np.float32)
     grid = Grid(SHAPE, 0.5)
-    rig = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
+    rig = turntable(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=(3, 5))
     return Cube(extinction, grid, rig, lamp_powers=random.uniform(0.5, 4.0, (len(rig), 3)))
 
 
-def cast_frames(cube: Cube, noise: float = 0.0) -> Frames:
+def cast_targets(cube: Cube, noise: float = 0.0) -> Targets:
     """What the cube casts, a little off, with weights."""
     random = np.random.default_rng(1)
     shown = play(cube)
     shown = (shown * random.uniform(1 - noise, 1 + noise, shown.shape)).astype(np.float32)
-    return Frames(shown, cube.rig, random.integers(1, 4, shown.shape[:3]).astype(np.float32))
+    return Targets(shown, cube.rig, random.integers(1, 4, shown.shape[:3]).astype(np.float32))
 
 
-def white(cube: Cube) -> Frames:
-    return Frames(np.ones((len(cube.rig), *cube.rig.picture_shape, 3), np.float32), cube.rig)
+def white(cube: Cube) -> Targets:
+    return Targets(np.ones((len(cube.rig), *cube.rig.picture_shape, 3), np.float32), cube.rig)
 
 
-def empty(angles: list[float], elevation: float = 0.0) -> Cube:
-    return replace(make_cube(angles, elevation, 0.0), lamp_powers=None)
+def empty(angles_deg: list[float], elevation_deg: float = 0.0) -> Cube:
+    return replace(make_cube(angles_deg, elevation_deg, 0.0), lamp_powers=None)
 
 
-def decibels(shown: np.ndarray, frames: Frames, view: int) -> float:
-    return psnr(encode(shown), encode(frames.pictures[view]), frames.weight[view])
+def decibels(shown: np.ndarray, targets: Targets, view: int) -> float:
+    return psnr(encode(shown), encode(targets.pictures[view]), targets.weight[view])
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_at_the_stops_the_curve_is_the_score(elevation: float) -> None:
-    cube = make_cube([200.0, 10.0, 100.0], elevation)
-    frames = cast_frames(cube, 0.1)
-    found, scores = curve(cube, frames), score(cube, frames)
-    at_stops = found.offsets == 0
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_at_the_stops_the_curve_is_the_score(elevation_deg: float) -> None:
+    cube = make_cube([200.0, 10.0, 100.0], elevation_deg)
+    targets = cast_targets(cube, 0.1)
+    found, scores = curve(cube, targets), score(cube, targets)
+    at_stops = found.offsets_deg == 0
     assert sorted(found.nearest[at_stops]) == [0, 1, 2]
     for view, quality, likeness in zip(
         found.nearest[at_stops], found.psnr[at_stops], found.ssim[at_stops], strict=True
     ):
         assert quality == pytest.approx(scores["views"][view]["psnr"], rel=1e-5)
         assert likeness == pytest.approx(scores["views"][view]["ssim"], rel=1e-5)
-    assert np.allclose(found.angles[at_stops] % 180, cube.angles[found.nearest[at_stops]] % 180)
+    assert np.allclose(found.angles_deg[at_stops] % 180, cube.angles_deg[found.nearest[at_stops]] % 180)
 
 
-def test_between_the_stops_it_is_what_is_played_against_the_nearer_frame() -> None:
-    angles = [20.0, 75.0, 250.0]
-    cube = make_cube(angles, 35.0)
-    frames = cast_frames(cube, 0.1)
-    found = curve(cube, frames)
-    for index in range(0, len(found.angles), 5):
-        shown = play(cube, [found.angles[index]])[0]
+def test_between_the_stops_it_is_what_is_played_against_the_nearer_picture() -> None:
+    angles_deg = [20.0, 75.0, 250.0]
+    cube = make_cube(angles_deg, 35.0)
+    targets = cast_targets(cube, 0.1)
+    found = curve(cube, targets)
+    for index in range(0, len(found.angles_deg), 5):
+        shown = play(cube, [found.angles_deg[index]])[0]
         view = found.nearest[index]
-        pair = encode(shown), encode(frames.pictures[view]), frames.weight[view]
+        pair = encode(shown), encode(targets.pictures[view]), targets.weight[view]
         assert found.psnr[index] == pytest.approx(psnr(*pair), rel=1e-4)
         assert found.ssim[index] == pytest.approx(ssim(*pair), rel=1e-3)
-    apart = np.abs((np.array(angles)[:, None] - found.angles + 180) % 360 - 180)
-    assert np.allclose(apart[found.nearest, np.arange(len(found.angles))], apart.min(axis=0))
-    assert np.allclose(apart.min(axis=0), np.abs(found.offsets))
+    apart = np.abs((np.array(angles_deg)[:, None] - found.angles_deg + 180) % 360 - 180)
+    assert np.allclose(apart[found.nearest, np.arange(len(found.angles_deg))], apart.min(axis=0))
+    assert np.allclose(apart.min(axis=0), np.abs(found.offsets_deg))
 
 
 @pytest.mark.parametrize("steps", [1, 2, 7, 8])
 def test_it_has_so_many_even_steps_from_stop_to_stop(steps: int) -> None:
     stops = np.array([20.0, 75.0, 250.0])
     cube = empty(list(stops), 35.0)
-    angles = curve(cube, white(cube), steps).angles
-    assert np.all(np.diff(angles) >= 0)
-    assert angles[-1] - angles[0] == pytest.approx(360)
+    angles_deg = curve(cube, white(cube), steps).angles_deg
+    assert np.all(np.diff(angles_deg) >= 0)
+    assert angles_deg[-1] - angles_deg[0] == pytest.approx(360)
     for start, gap in zip(stops, np.diff(stops, append=380.0), strict=True):
         for wanted in start + gap * np.arange(steps) / steps:
-            assert np.min(np.abs((angles - wanted + 180) % 360 - 180)) < 1e-9
+            assert np.min(np.abs((angles_deg - wanted + 180) % 360 - 180)) < 1e-9
 
 
 def test_lobes_of_an_empty_cube_and_white_pictures_are_the_whole_spacing() -> None:
     raised, level = empty([20.0, 75.0, 250.0], 35.0), empty([160.0, 10.0, 50.0])
-    assert curve(raised, white(raised)).lobes == pytest.approx([92.5, 115.0, 152.5])
-    assert curve(level, white(level)).lobes == pytest.approx([70.0, 35.0, 75.0])
+    assert curve(raised, white(raised)).lobes_deg == pytest.approx([92.5, 115.0, 152.5])
+    assert curve(level, white(level)).lobes_deg == pytest.approx([70.0, 35.0, 75.0])
     alone = empty([20.0])
     found = curve(alone, white(alone))
-    assert (found.lobes.tolist(), found.period) == ([180.0], 180.0)
+    assert (found.lobes_deg.tolist(), found.period_deg) == ([180.0], 180.0)
     assert np.all(found.psnr == 100)
     black = replace(white(level), pictures=np.zeros((3, 3, 5, 3), np.float32))
-    assert curve(level, black).lobes.tolist() == [0, 0, 0]
+    assert curve(level, black).lobes_deg.tolist() == [0, 0, 0]
 
 
 def test_a_lobe_ends_where_the_picture_falls_below_30_db() -> None:
     cube = make_cube([20.0, 75.0, 250.0], 35.0, strength=3.0)
-    frames = cast_frames(cube)
-    found = curve(cube, frames)
-    assert np.all((found.lobes > 0.2) & (found.lobes < 50))
-    for view, stop in enumerate(cube.rig.views.angles):
+    targets = cast_targets(cube)
+    found = curve(cube, targets)
+    assert np.all((found.lobes_deg > 0.2) & (found.lobes_deg < 50))
+    for view, stop in enumerate(cube.rig.views.angles_deg):
         plain = 0.0
         for side in (-1, 1):
             distance = 0.0
-            while decibels(play(cube, [stop + side * distance])[0], frames, view) >= 30:
+            while decibels(play(cube, [stop + side * distance])[0], targets, view) >= 30:
                 distance += 0.02
             plain += distance - 0.01
-        assert found.lobes[view] == pytest.approx(plain, abs=0.05)
+        assert found.lobes_deg[view] == pytest.approx(plain, abs=0.05)
 
 
 def test_with_a_level_lamp_half_a_turn_is_the_mirror_image() -> None:
     cube = make_cube([10.0, 70.0, 140.0])
-    frames = cast_frames(cube, 0.1)
-    found = curve(cube, frames)
-    assert found.period == 180
-    pictures, weights = frames.pictures.copy(), frames.weight.copy()
+    targets = cast_targets(cube, 0.1)
+    found = curve(cube, targets)
+    assert found.period_deg == 180
+    pictures, weights = targets.pictures.copy(), targets.weight.copy()
     pictures[0], weights[0] = pictures[0, :, ::-1], weights[0, :, ::-1]
     rig = turntable(cube.grid, [190.0, 70.0, 140.0], picture_shape=(3, 5))
-    mirrored = curve(replace(cube, rig=rig), Frames(pictures, rig, weights))
+    mirrored = curve(replace(cube, rig=rig), Targets(pictures, rig, weights))
     assert np.array_equal(mirrored.nearest, found.nearest)
     assert mirrored.psnr == pytest.approx(found.psnr, rel=1e-4)
-    assert mirrored.lobes == pytest.approx(found.lobes, abs=1e-3)
+    assert mirrored.lobes_deg == pytest.approx(found.lobes_deg, abs=1e-3)
     # The wrap: past the last stop the first one comes again, mirrored, and so does its lamp.
-    last = int(np.flatnonzero(found.offsets == 0)[-1])
-    sample = last + int(np.argmin(np.abs(found.angles[last:] - 150)))
-    shown = play(cube, [found.angles[sample]])[0]
-    assert found.psnr[sample] == pytest.approx(decibels(shown, frames, 2), rel=1e-4)
-    before = int(np.flatnonzero(found.offsets < 0)[0])
-    shown = play(cube, [found.angles[before] + 180])[0][:, ::-1]
-    assert found.psnr[before] == pytest.approx(decibels(shown, frames, 0), rel=1e-4)
+    last = int(np.flatnonzero(found.offsets_deg == 0)[-1])
+    sample = last + int(np.argmin(np.abs(found.angles_deg[last:] - 150)))
+    shown = play(cube, [found.angles_deg[sample]])[0]
+    assert found.psnr[sample] == pytest.approx(decibels(shown, targets, 2), rel=1e-4)
+    before = int(np.flatnonzero(found.offsets_deg < 0)[0])
+    shown = play(cube, [found.angles_deg[before] + 180])[0][:, ::-1]
+    assert found.psnr[before] == pytest.approx(decibels(shown, targets, 0), rel=1e-4)
 
 
 def test_stops_half_a_turn_apart_take_the_whole_turn() -> None:
     cube = make_cube([10.0, 100.0, 190.0])
-    assert curve(cube, cast_frames(cube, 0.1)).period == 360
+    assert curve(cube, cast_targets(cube, 0.1)).period_deg == 360
 
 
 @settings(deadline=None, max_examples=15)
@@ -166,19 +166,19 @@ def test_stops_half_a_turn_apart_take_the_whole_turn() -> None:
     st.sampled_from([0.0, -20.0]),
     st.integers(1, 5),
 )
-def test_any_stops_make_a_curve_of_one_period(hundredths: list[int], elevation: float, steps: int) -> None:
-    cube = make_cube([a / 100 for a in hundredths], elevation)
-    found = curve(cube, cast_frames(cube), steps)
-    assert np.all(np.diff(found.angles) > -1e-9)
-    assert found.angles[-1] - found.angles[0] == pytest.approx(found.period)
-    assert np.all(found.lobes > 0)
+def test_any_stops_make_a_curve_of_one_period(hundredths: list[int], elevation_deg: float, steps: int) -> None:
+    cube = make_cube([a / 100 for a in hundredths], elevation_deg)
+    found = curve(cube, cast_targets(cube), steps)
+    assert np.all(np.diff(found.angles_deg) > -1e-9)
+    assert found.angles_deg[-1] - found.angles_deg[0] == pytest.approx(found.period_deg)
+    assert np.all(found.lobes_deg > 0)
     assert np.all(np.isfinite(found.psnr))
-    assert found.lobes.sum() <= found.period + 1e-9
+    assert found.lobes_deg.sum() <= found.period_deg + 1e-9
 
 
-@pytest.mark.parametrize("elevation", [0.0, 35.0])
-def test_each_disturbance_is_what_it_says(elevation: float) -> None:
-    cube = make_cube([20.0, 75.0, 250.0], elevation)
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_each_disturbance_is_what_it_says(elevation_deg: float) -> None:
+    cube = make_cube([20.0, 75.0, 250.0], elevation_deg)
     shown = play(cube)
 
     def off(**how: Any) -> np.ndarray:
@@ -190,7 +190,7 @@ def test_each_disturbance_is_what_it_says(elevation: float) -> None:
     # By a whole voxel the picture moves by a whole pixel: to the right, and up.
     assert np.allclose(off(right_voxels=1.0)[:, :, 1:], shown[:, :, :-1], rtol=1e-5)
     assert np.allclose(off(up_voxels=1.0)[:, :-1], shown[:, 1:], rtol=1e-5)
-    now, powers = moment(cube, cube.angles + 0.2)
+    now, powers = moment(cube, cube.angles_deg + 0.2)
     further = np.stack(list(cast(cube, now, powers))) / powers[:, None, None]
     assert np.allclose(off(turn_deg=0.2), further * cube.powers[:, None, None], rtol=1e-4)
 
@@ -214,16 +214,16 @@ def test_extinction_is_rounded_to_so_many_levels_of_each_colour() -> None:
 
 def test_robust_scores_every_disturbance() -> None:
     cube = make_cube([20.0, 75.0, 250.0], 35.0)
-    frames = cast_frames(cube, 0.02)
-    figures = robust(cube, frames)
+    targets = cast_targets(cube, 0.02)
+    figures = robust(cube, targets)
     assert list(figures) == list(DISTURBANCES)
-    scores = score(cube, frames)
+    scores = score(cube, targets)
     assert figures["undisturbed"]["psnr_mean"] == pytest.approx(scores["psnr_mean"], rel=1e-5)
     assert figures["undisturbed"]["psnr_min"] == pytest.approx(scores["psnr_min"], rel=1e-5)
-    stronger = score(replace(cube, lamp_powers=cube.powers * 1.02), frames)
+    stronger = score(replace(cube, lamp_powers=cube.powers * 1.02), targets)
     assert figures["lamp"]["psnr_mean"] == pytest.approx(stronger["psnr_mean"], rel=1e-5)
     assert figures["lamp"]["psnr_min"] == pytest.approx(stronger["psnr_min"], rel=1e-5)
-    lighter = [decibels(picture + 0.01, frames, view) for view, picture in enumerate(play(cube))]
+    lighter = [decibels(picture + 0.01, targets, view) for view, picture in enumerate(play(cube))]
     assert figures["black"] == pytest.approx({"psnr_mean": np.mean(lighter), "psnr_min": min(lighter)}, rel=1e-4)
     assert figures["all"]["psnr_mean"] < min(each["psnr_mean"] for name, each in figures.items() if name != "all")
 
@@ -237,13 +237,13 @@ def marks(work: Callable[[Callable[[int, int], None]], object]) -> list[tuple[in
 
 def test_progress_counts_every_picture_to_the_end() -> None:
     cube = make_cube([20.0, 75.0, 250.0], 35.0)
-    frames = cast_frames(cube, 0.02)
-    samples = len(curve(cube, frames).angles)
+    targets = cast_targets(cube, 0.02)
+    samples = len(curve(cube, targets).angles_deg)
     pictures = 3 * len(DISTURBANCES)
     for said, last in (
-        (marks(lambda tell: curve(cube, frames, callback=tell)), samples),
-        (marks(lambda tell: robust(cube, frames, callback=tell)), pictures),
-        (marks(lambda tell: measure(cube, frames, callback=tell)), samples + pictures + 3),
+        (marks(lambda tell: curve(cube, targets, callback=tell)), samples),
+        (marks(lambda tell: robust(cube, targets, callback=tell)), pictures),
+        (marks(lambda tell: measure(cube, targets, callback=tell)), samples + pictures + 3),
     ):
         assert said[-1] == (last, last)
         done, of = np.array(said).T
@@ -266,12 +266,12 @@ def test_progress_counts_every_picture_to_the_end() -> None:
 )
 def test_more_disturbance_costs_more(field: str, sizes: list[float]) -> None:
     cube = make_cube([20.0, 75.0], 35.0)
-    frames = cast_frames(cube)
+    targets = cast_targets(cube)
     means = []
     for size in sizes:
         how: dict[str, Any] = {field: size}
         shown = disturbed(cube, Disturbance(**how))
-        means.append(np.mean([decibels(picture, frames, view) for view, picture in enumerate(shown)]))
+        means.append(np.mean([decibels(picture, targets, view) for view, picture in enumerate(shown)]))
     assert np.all(np.diff(means) < -0.5), means
 
 
@@ -284,13 +284,13 @@ def test_a_disturbance_says_what_it_is() -> None:
 
 def test_bad_input_is_a_sentence() -> None:
     cube = make_cube([20.0, 75.0], 35.0)
-    frames = cast_frames(cube)
+    targets = cast_targets(cube)
     with pytest.raises(InputError, match="at least 1 step"):
-        curve(cube, frames, 0)
+        curve(cube, targets, 0)
     with pytest.raises(InputError, match="do not fit the cube"):
-        curve(cube, frames.take([0]))
+        curve(cube, targets.take([0]))
     with pytest.raises(InputError, match="do not fit the cube"):
-        robust(cube, frames.take([0]))
+        robust(cube, targets.take([0]))
     off: list[dict[str, Any]] = [{"lamp": -1.0}, {"black": -0.1}, {"levels": -1}, {"turn_deg": np.nan}]
     for bad in (*off, {"up_voxels": np.inf}):
         with pytest.raises(InputError, match="finite numbers"):
@@ -299,19 +299,19 @@ def test_bad_input_is_a_sentence() -> None:
 
 def test_the_plot_shows_every_sample_and_marks_the_stops() -> None:
     cube = make_cube([20.0, 75.0, 250.0], 35.0)
-    found = curve(cube, cast_frames(cube))
+    found = curve(cube, cast_targets(cube))
     figure = plots.between_plot({"one": found, "another": found})
     assert [axes.get_title() for axes in figure.axes] == ["one", "another"]
     lines = figure.axes[0].get_lines()
     stops = next(line for line in lines if line.get_marker() == "o")
     assert np.asarray(stops.get_xdata()).tolist() == [20.0, 75.0, 250.0]
     drawn = np.concatenate([np.asarray(line.get_xdata()) for line in lines if line.get_marker() == "None"])
-    assert set(found.angles) <= set(drawn)
+    assert set(found.angles_deg) <= set(drawn)
 
 
 def test_the_same_plot_is_the_same_file(tmp_path: Path) -> None:
     cube = make_cube([20.0, 75.0], 35.0)
-    found = {"": curve(cube, cast_frames(cube))}
+    found = {"": curve(cube, cast_targets(cube))}
     for suffix in (".svg", ".png"):
         first, second = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
         for path in (first, second):
@@ -329,15 +329,15 @@ def solved(tmp_path: Path) -> Path:
     extinction = np.random.default_rng(0).uniform(0, 0.1, (3, 4, 5, 6)).astype(np.float32)
     cube = Cube(extinction, grid, turntable(grid, [10.0, 100.0], picture_shape=(4, 5)))
     path = tmp_path / "solved.npz"
-    io.save(replace(cube, targets=targets(Frames(play(cube), cube.rig))), path)
+    io.save(replace(cube, targets=as_levels(Targets(play(cube), cube.rig))), path)
     return path
 
 
 def test_score_adds_what_is_asked_for(run, solved: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     scores = json.loads(run("score", solved, "--json", "--between", "--robust").out)
     found = scores["between"]
-    assert list(found) == ["angles", "nearest", "psnr", "ssim", "lobe_deg"]
-    assert len(found["angles"]) == len(found["nearest"]) == len(found["psnr"]) == len(found["ssim"]) >= 16
+    assert list(found) == ["angles_deg", "nearest", "psnr", "ssim", "lobe_deg"]
+    assert len(found["angles_deg"]) == len(found["nearest"]) == len(found["psnr"]) == len(found["ssim"]) >= 16
     assert len(found["lobe_deg"]) == 2
     assert set(scores["robust"]) == set(DISTURBANCES)
     assert scores["robust"]["undisturbed"]["psnr_mean"] == pytest.approx(scores["psnr_mean"], rel=1e-6)

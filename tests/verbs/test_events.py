@@ -13,8 +13,8 @@ from lightcube.io import read_scene, save
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
-from lightcube.pictures.fitting import frames_from_targets, targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import as_levels, targets_of
+from lightcube.pictures.targets import Targets
 from lightcube.scoring import metrics
 from lightcube.verbs import reporting, scoring, tracing, viewing
 from lightcube.viewer import smaller
@@ -26,13 +26,13 @@ def cube() -> Cube:
     grid = Grid((3, 5, 7), 2.0)
     extinction = np.random.default_rng(0).uniform(0, 0.1, (3, 3, 5, 7)).astype(np.float32)
     made = Cube(extinction, grid, turntable(grid, [10.0, 100.0], picture_shape=(3, 5)))
-    return replace(made, targets=targets(Frames(play(made), made.rig)))
+    return replace(made, targets=as_levels(Targets(play(made), made.rig)))
 
 
 def works(cube: Cube, folder: Path) -> dict[str, Callable[[Tell], object]]:
     """Work by name, as a function of what is told of it."""
     file = save(cube, folder / "a.npz", overwrite=True)
-    wanted = frames_from_targets(cube)
+    wanted = targets_of(cube)
     return {
         "between": lambda tell: scoring.score(cube, wanted, tell, between=True),
         "off": lambda tell: scoring.score(cube, wanted, tell, off=True),
@@ -68,7 +68,7 @@ def test_verbs_tell_how_far_they_are_and_stop_where_they_are_told_to(
 
 
 def test_scores_hold_what_was_asked_for(cube: Cube) -> None:
-    wanted = frames_from_targets(cube)
+    wanted = targets_of(cube)
     plain = scoring.score(cube, wanted, lambda _: None)
     assert plain.scores == metrics.score(cube, wanted)
     assert plain.curve is None

@@ -14,7 +14,7 @@ from tests.helpers.visiting import (
     ROWS,
     STOPS,
     Open,
-    angle,
+    angle_deg,
     marked,
     pages,
     rested,
@@ -59,16 +59,16 @@ def test_the_film_strip_finds_a_picture_on_its_screen(visit: Open) -> None:
     tab, cube = visit("stage"), CUBES["stage"]()
     for number in (4, 1, 3):  # wall and floor at each of three stops
         tab.get_by_role("button", name=re.compile(f"^{number + 1}, ")).click()
-        stands(tab, float(cube.angles[number]))
+        stands(tab, float(cube.angles_deg[number]))
         assert marked(tab) == [str(number + 1)]
         screen = int(cube.rig.stops.screen[number])
         assert tab.locator(".tabs [aria-pressed=true]").inner_text() == ("wall", "floor")[screen]
         rows, columns = shown(tab).shape[:2]
-        pictures = right(cube, float(cube.angles[number]))
+        pictures = right(cube, float(cube.angles_deg[number]))
         assert np.abs(shown(tab) - pictures[screen, :rows, :columns]).max() <= 0.55
 
 
-def test_the_whole_shadow_has_a_frame_where_the_picture_is(visit: Open) -> None:
+def test_the_whole_shadow_has_a_line_around_the_picture(visit: Open) -> None:
     tab, cube = visit(), turning()
     tab.keyboard.press("w")
     whole = shown(tab)
@@ -107,7 +107,7 @@ def test_the_keys_choose_a_row(visit: Open) -> None:
         tab.keyboard.press(key)
         rested(tab)
         assert chooser.get_attribute("aria-valuetext") == said
-    assert angle(tab) == STOPS[0]
+    assert angle_deg(tab) == STOPS[0]
     assert "Pixel 7 passes" in tab.locator(".scanline > .facts").inner_text()
 
 

@@ -16,14 +16,14 @@ CUBES = {"turntable": lambda: on_turntable("raised"), "stage": lambda: on_stage(
 def ask(evaluate: Run, cube: str, expression: str, **more: Any) -> Any:
     """The value of an expression that may use `scene`, `orbit` and `room`."""
     text = f"""(() => {{
-      const {{ scene, angle, aspect }} = argument;
-      const room = standing(scene, angle);
+      const {{ scene, angle_deg, aspect }} = argument;
+      const room = standing(scene, angle_deg);
       const orbit = fitted(orbitFrom(scene.camera), scene, [room], aspect);
       orbit.azimuth += argument.round ?? 0;
       const camera = cameraOf(orbit, aspect);
       return {expression};
     }})()"""
-    return evaluate(MODULES, text, {"scene": given(CUBES[cube]())["scene"], "angle": 51.0, "aspect": 1.6, **more})
+    return evaluate(MODULES, text, {"scene": given(CUBES[cube]())["scene"], "angle_deg": 51.0, "aspect": 1.6, **more})
 
 
 @pytest.mark.parametrize(("cube", "behind"), [("turntable", False), ("turntable", True), ("stage", False)])

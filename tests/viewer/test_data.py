@@ -37,7 +37,7 @@ def test_voxels_come_through(
         table = np.array(found["tables"][channel])
         assert len(table) == 2**bits
         np.testing.assert_allclose(table[packed.codes[own]], packed.cube.extinction[own], rtol=1e-6)
-    assert (tuple(found["shape"]), found["mm"]) == (GRID.shape, GRID.voxel_mm)
+    assert (tuple(found["shape"]), found["voxel_mm"]) == (GRID.shape, GRID.voxel_mm)
 
 
 @pytest.mark.parametrize("native", [True, False])
@@ -67,10 +67,10 @@ def test_damaged_gzip_is_told(evaluate: Evaluate, part: str, damage: str) -> Non
     [
         (b'{"format": 1', "the page's scene is not readable JSON: write or send the page again"),
         (b'{"format": "\xff"}', "the page's scene is not readable JSON: write or send the page again"),
-        (b'{"format": 2}', "the page's data has format 2, newer than 1: update the viewer that opens it"),
-        (b'{"format": 0}', "the page's data has format 0, not 1: write the page again with this version"),
-        (b'{"title": "x"}', "the page's data has format undefined, not 1: write the page again with this version"),
-        (b"null", "the page's data has format undefined, not 1: write the page again with this version"),
+        (b'{"format": 3}', "the page's data has format 3, newer than 2: update the viewer that opens it"),
+        (b'{"format": 0}', "the page's data has format 0, not 2: write the page again with this version"),
+        (b'{"title": "x"}', "the page's data has format undefined, not 2: write the page again with this version"),
+        (b"null", "the page's data has format undefined, not 2: write the page again with this version"),
     ],
 )
 def test_a_scene_that_cannot_be_read_is_told(evaluate: Evaluate, scene: bytes, said: str) -> None:

@@ -10,7 +10,7 @@ from tests.helpers.visiting import (
     PHONE,
     STOPS,
     Open,
-    angle,
+    angle_deg,
     drag,
     marked,
     middle,
@@ -30,9 +30,9 @@ def test_a_drag_turns_the_cube_and_ends_the_hint(visit: Open) -> None:
     tab = visit()
     unsnapped(tab)
     drag(tab, 120)
-    assert angle(tab) == pytest.approx(STOPS[0] + 0.35 * 120)
+    assert angle_deg(tab) == pytest.approx(STOPS[0] + 0.35 * 120)
     drag(tab, -200)
-    assert angle(tab) == pytest.approx(360 + STOPS[0] - 0.35 * 80)
+    assert angle_deg(tab) == pytest.approx(360 + STOPS[0] - 0.35 * 80)
     without_hint(tab)
 
 
@@ -47,7 +47,7 @@ def test_where_nothing_turns_a_drag_moves_the_eye(visit: Open) -> None:
     for key in ("ArrowRight", " ", "PageDown", "n"):
         tab.keyboard.press(key)
     rested(tab)
-    assert angle(tab) == 0
+    assert angle_deg(tab) == 0
     tab.keyboard.press("?")
     assert "turn" not in " ".join(tab.get_by_role("dialog").locator("dl").all_inner_texts())
     tab.keyboard.press("Escape")
@@ -112,10 +112,10 @@ def test_what_is_let_go_runs_out_where_it_would_or_on_a_stop(evaluate: Open) -> 
 def test_without_motion_a_throw_stands_at_once(visit: Open) -> None:
     tab = visit(reduced_motion="reduce")
     unsnapped(tab)
-    drag(tab, 120, hold=False)
-    assert angle(tab) == pytest.approx(STOPS[0] + 42)
+    drag(tab, 120, hold_deg=False)
+    assert angle_deg(tab) == pytest.approx(STOPS[0] + 42)
     tab.locator(".thumbnail").nth(3).click()
-    assert angle(tab) == STOPS[3]
+    assert angle_deg(tab) == STOPS[3]
 
 
 @pytest.mark.parametrize("how", ["right", "shift", "wheel", "keys"])
@@ -146,7 +146,7 @@ def test_the_eye_moves_and_comes_back(visit: Open, how: str) -> None:
     tab.mouse.move(x, 2)
     rested(tab)
     assert room.screenshot() == before
-    assert angle(tab) == STOPS[0]
+    assert angle_deg(tab) == STOPS[0]
 
 
 def test_keys_turn(visit: Open) -> None:
@@ -175,7 +175,7 @@ def test_keys_leave_alone_what_is_typed_in(visit: Open) -> None:
     for key in ("t", "Home", "ArrowRight"):
         tab.keyboard.press(key)
     assert tab.locator("#lightcube").get_attribute("data-theme") == before
-    assert angle(tab) == STOPS[0]
+    assert angle_deg(tab) == STOPS[0]
 
 
 def test_space_plays_and_pauses(visit: Open) -> None:
@@ -184,10 +184,10 @@ def test_space_plays_and_pauses(visit: Open) -> None:
     tab.locator("canvas.room").focus()
     tab.keyboard.press("Space")
     until(tab, f"{CUBE}.angle > 61")
-    assert tab.get_by_role("button", name="Pause").is_visible()
+    tab.get_by_role("button", name="Pause").wait_for()
     tab.keyboard.press("Space")
     until(tab, f"{STOPS}.includes({CUBE}.angle)")
-    assert tab.get_by_role("button", name="Play").is_visible()
+    tab.get_by_role("button", name="Play").wait_for()
 
 
 def test_after_a_click_the_keys_are_the_cubes(visit: Open) -> None:
@@ -305,13 +305,13 @@ def test_fingers_turn_and_pinch(visit: Open) -> None:
     for step in range(-40, 41, 10):
         touch(fingers, "touchMove", (x + step, y))
     touch(fingers, "touchEnd")
-    assert angle(tab) == pytest.approx(STOPS[0] + 0.35 * 80)
+    assert angle_deg(tab) == pytest.approx(STOPS[0] + 0.35 * 80)
     without_hint(tab)
-    before, where = tab.locator("canvas.room").screenshot(), angle(tab)
+    before, where = tab.locator("canvas.room").screenshot(), angle_deg(tab)
     touch(fingers, "touchStart", (x - 30, y), (x + 30, y))
     for step in range(30, 81, 10):
         touch(fingers, "touchMove", (x - step, y), (x + step, y))
     touch(fingers, "touchEnd")
     rested(tab)
-    assert angle(tab) == where
+    assert angle_deg(tab) == where
     assert tab.locator("canvas.room").screenshot() != before

@@ -203,10 +203,10 @@ def test_a_wheel_holds_all_of_the_page(tmp_path: Path) -> None:
 
 def test_rotations_are_those_of_python(evaluate: Evaluate) -> None:
     axes = RANDOM.normal(size=(4, 3)).tolist() + np.eye(3).tolist()
-    angles = [*RANDOM.uniform(-800, 800, 5), *range(-450, 451, 90), 45.0, -1e-20]
-    expression = "argument.axes.map((axis) => argument.angles.map((angle) => rotation(axis, angle)))"
-    found = evaluate(("tools/vectors.js",), expression, {"axes": axes, "angles": angles})
-    wanted = np.stack([rotations(axis, np.array(angles)) for axis in axes])
+    angles_deg = [*RANDOM.uniform(-800, 800, 5), *range(-450, 451, 90), 45.0, -1e-20]
+    expression = "argument.axes.map((axis) => argument.angles_deg.map((angle) => rotation(axis, angle)))"
+    found = evaluate(("tools/vectors.js",), expression, {"axes": axes, "angles_deg": angles_deg})
+    wanted = np.stack([rotations(axis, np.array(angles_deg)) for axis in axes])
     nearly(np.reshape(found, wanted.shape), wanted, 1e-14)
     right = np.array(found[-1]).reshape(-1, 3, 3)[5:16]
     np.testing.assert_array_equal(right, np.rint(right))
@@ -239,23 +239,23 @@ def test_display_values_are_those_of_python(evaluate: Evaluate, transfer: Any) -
 def test_exposures_are_those_of_python(evaluate: Evaluate, name: str) -> None:
     cube, _, data = held_in_a_page(name)
     staged = drawn(cube)
-    found = asked(evaluate, data, "argument.angles.map((angle) => exposures(scene, angle))", angles=ANGLES)
+    found = asked(evaluate, data, "argument.angles_deg.map((angle) => exposures(scene, angle))", angles_deg=ANGLES)
     rig, powers = moment(staged, ANGLES)
     shown = [exposure for at_angle in found for exposure in at_angle]
     assert [exposure["screen"] for exposure in shown] == rig.stops.screen.tolist()
-    assert [exposure["angle"] for exposure in shown] == rig.stops.angle.tolist()
+    assert [exposure["angle"] for exposure in shown] == rig.stops.angle_deg.tolist()
     nearly([exposure["window"] for exposure in shown], rig.stops.window, 0)
     assert all(tuple(exposure["raster"]) == rig.picture_shape for exposure in shown)
     each = [view for exposure in shown for view in exposure["views"]]
     for field, wanted in (
         ("light", rig.views.lamps),
-        ("origin", rig.views.origins),
-        ("right", rig.views.column_steps),
-        ("down", rig.views.row_steps),
+        ("origin", rig.views.origins_mm),
+        ("right", rig.views.column_steps_mm),
+        ("down", rig.views.row_steps_mm),
         ("power", np.broadcast_to(powers[rig.pair] * rig.sums.share, (len(rig.views), 3))),
-        ("reach", rig.fading.reach_mm),
-        ("falloff", rig.fading.falloff_mm),
-        ("full_at", rig.fading.full_at_mm),
+        ("reach_mm", rig.fading.reach_mm),
+        ("falloff_mm", rig.fading.falloff_mm),
+        ("full_at_mm", rig.fading.full_at_mm),
         ("cosine", rig.fading.cosine),
         ("lamp", rig.sums.lamp),
     ):
@@ -268,13 +268,13 @@ def test_exposures_are_those_of_python(evaluate: Evaluate, name: str) -> None:
 def test_a_whole_shadow_has_its_middle_in_the_middle(evaluate: Evaluate, name: str) -> None:
     """And shows what Python does, on the screen's plane."""
     cube, packed, data = held_in_a_page(name)
-    expression = """argument.angles.map((angle) => {
+    expression = """argument.angles_deg.map((angle) => {
       const [exposure] = exposures(scene, angle, true);
       return { exposure, room: standing(scene, angle, true), picture: castPicture(cube, exposure) };
     })"""
-    found = asked(evaluate, data, expression, angles=ANGLES)
-    rig = moment(cube, ANGLES, whole_screen=True)[0]
-    wanted = play(packed.cube, ANGLES, whole_screen=True)
+    found = asked(evaluate, data, expression, angles_deg=ANGLES)
+    rig = moment(cube, ANGLES, whole_shadow=True)[0]
+    wanted = play(packed.cube, ANGLES, whole_shadow=True)
     for i, each in enumerate(found):
         exposure, room = each["exposure"], each["room"]
         assert tuple(exposure["raster"]) == tuple(exposure["window"]) == rig.picture_shape
@@ -290,23 +290,23 @@ def test_a_whole_shadow_has_its_middle_in_the_middle(evaluate: Evaluate, name: s
 @pytest.mark.parametrize("name", CUBES)
 def test_stops_are_each_named_once_and_shown_at_their_angle(evaluate: Evaluate, name: str) -> None:
     cube, _, data = held_in_a_page(name)
-    angles = drawn(cube).angles
+    angles_deg = drawn(cube).angles_deg
     expression = """[stops(scene), stops(scene).map((angle) => exposures(scene, angle).filter((e) => e.lit)
-      .map((e) => scene.pictures[e.picture].angle)), nearestPicture(scene, 7, 0)]"""
+      .map((e) => scene.pictures[e.picture].angle_deg)), nearestPicture(scene, 7, 0)]"""
     found, own, none = asked(evaluate, data, expression)
-    nearly(found, np.unique(angles % 360), 1e-9)
-    for angle, shown in zip(found, own, strict=True):
-        nearly(np.array(shown) % 360, np.full(len(shown), angle), 1e-9)
-    assert sum(map(len, own)) == len(angles)
+    nearly(found, np.unique(angles_deg % 360), 1e-9)
+    for angle_deg, shown in zip(found, own, strict=True):
+        nearly(np.array(shown) % 360, np.full(len(shown), angle_deg), 1e-9)
+    assert sum(map(len, own)) == len(angles_deg)
     assert none == -1
 
 
 @pytest.mark.parametrize("name", CUBES)
 def test_all_stand_where_python_puts_them(evaluate: Evaluate, name: str) -> None:
     cube, _, data = held_in_a_page(name)
-    found = asked(evaluate, data, "argument.angles.map((angle) => standing(scene, angle))", angles=ANGLES)
-    for angle, room in zip(ANGLES, found, strict=True):
-        wanted = standing(cube, angle)
+    found = asked(evaluate, data, "argument.angles_deg.map((angle) => standing(scene, angle))", angles_deg=ANGLES)
+    for angle_deg, room in zip(ANGLES, found, strict=True):
+        wanted = standing(cube, angle_deg)
         nearly(np.reshape(room["turn"], (3, 3)), wanted.turn, 1e-12)
         nearly(room["axis"], wanted.axis, 1e-12)
         assert len(room["screens"]) == len(wanted.screens)
@@ -326,10 +326,10 @@ def test_all_stand_where_python_puts_them(evaluate: Evaluate, name: str) -> None
 @pytest.mark.parametrize("name", CUBES)
 def test_pictures_are_those_of_play(evaluate: Evaluate, name: str) -> None:
     _, packed, data = held_in_a_page(name)
-    expression = """argument.angles.flatMap((angle) => exposures(scene, angle)).map((exposure) => {
+    expression = """argument.angles_deg.flatMap((angle) => exposures(scene, angle)).map((exposure) => {
       return { light: castPicture(cube, exposure), row: castRow(cube, exposure, 1) };
     })"""
-    found = asked(evaluate, data, expression, angles=ANGLES)
+    found = asked(evaluate, data, expression, angles_deg=ANGLES)
     wanted = np.broadcast_to(play(packed.cube, ANGLES), (*play(packed.cube, ANGLES).shape[:3], 3))
     assert len(found) == len(wanted)
     assert np.ptp(wanted) > 0.5

@@ -43,7 +43,7 @@ WIDGET = "application/vnd.jupyter.widget-view+json"
 
 def turning(count: int = 3, channels: int = 3) -> Cube:
     grid = Grid(SHAPE, 2.0)
-    rig = turntable(grid, np.arange(count) * 360 / count + 20.0, elevation=35.0, picture_shape=(3, 5))
+    rig = turntable(grid, np.arange(count) * 360 / count + 20.0, elevation_deg=35.0, picture_shape=(3, 5))
     extinction = np.random.default_rng(3).uniform(0, 0.2, (channels, *SHAPE)).astype(np.float32)
     powers = np.random.default_rng(4).uniform(0.5, 2, (count, channels))
     return Cube(extinction, grid, rig, powers, scores={"psnr_mean": 41.26})
@@ -53,13 +53,16 @@ def staged() -> Cube:
     """Two lamps together on one screen, each alone on it, and another screen: pictures of two sizes, four pairs."""
     stage = Stage(
         Grid(SHAPE, 2.0),
-        (Lamp("bulb", position=(-40.0, 6.0, 9.0), power_max=4), Lamp("sun", direction=(0.2, 1.0, -0.1), power_max=4)),
+        (
+            Lamp("bulb", position_mm=(-40.0, 6.0, 9.0), power_max=4),
+            Lamp("sun", direction=(0.2, 1.0, -0.1), power_max=4),
+        ),
         (
             Screen("wall", (50.0, 0.0, -4.0), (12.0, 8.0), 2.0, (-1.0, 0.0, 0.0)),
             Screen("end", (3.0, 40.0, -4.0), (8.0, 10.0), 2.0, (0.0, -1.0, 0.0)),
         ),
         (Shot("a", "wall", ("bulb", "sun")), Shot("b", "end", ("sun",)), Shot("c", "wall", ("bulb",), 1)),
-        stops=(10.0, 130.0),
+        stops_deg=(10.0, 130.0),
     )
     rig = stage.rig()
     extinction = np.random.default_rng(3).uniform(0, 0.1, (3, *SHAPE)).astype(np.float32)
@@ -181,17 +184,17 @@ def widget() -> Any:
 
 
 @settings(deadline=None)
-@given(angle=st.floats(-1e9, 1e9))
-def test_the_widgets_angle_is_within_a_turn(widget: Any, angle: float) -> None:
-    widget.angle = angle
-    assert 0 <= widget.angle < 360
-    assert math.isclose(math.remainder(widget.angle - angle, 360), 0, abs_tol=1e-6)
+@given(angle_deg=st.floats(-1e9, 1e9))
+def test_the_widgets_angle_is_within_a_turn(widget: Any, angle_deg: float) -> None:
+    widget.angle_deg = angle_deg
+    assert 0 <= widget.angle_deg < 360
+    assert math.isclose(math.remainder(widget.angle_deg - angle_deg, 360), 0, abs_tol=1e-6)
 
 
-@pytest.mark.parametrize("angle", [math.nan, math.inf])
-def test_an_angle_that_is_none_is_refused(widget: Any, angle: float) -> None:
+@pytest.mark.parametrize("angle_deg", [math.nan, math.inf])
+def test_an_angle_that_is_none_is_refused(widget: Any, angle_deg: float) -> None:
     with pytest.raises(InputError, match="finite angle"):
-        widget.angle = angle
+        widget.angle_deg = angle_deg
 
 
 def test_the_widget_has_what_a_page_has_and_starts_at_the_first_stop() -> None:
@@ -200,16 +203,16 @@ def test_the_widget_has_what_a_page_has_and_starts_at_the_first_stop() -> None:
     fresh, packed = notebook.show(cube), pack(cube)
     assert fresh.voxels == packed.data()
     assert fresh.scene == zipped(describe(cube, packed, "light cube"))
-    assert fresh.angle == cube.angles[0]
+    assert fresh.angle_deg == cube.angles_deg[0]
     heard: list[float] = []
-    fresh.observe(lambda change: heard.append(change["new"]), "angle")
-    fresh.angle = 400.0
+    fresh.observe(lambda change: heard.append(change["new"]), "angle_deg")
+    fresh.angle_deg = 400.0
     assert heard == [40.0]
 
 
 #: A model as anywidget hands it in, and a place for the widget; `save_changes` is counted.
 HOST = """
-const heard = [], state = { angle: argument.angle };
+const heard = [], state = { angle_deg: argument.angle_deg };
 for (const name of ["scene", "voxels"]) {
   const bytes = Uint8Array.from(atob(argument[name]), (letter) => letter.charCodeAt(0));
   state[name] = new DataView(bytes.buffer);
@@ -243,11 +246,11 @@ def hosted(tab: Any, cube: Cube) -> None:
     parts = {"scene": zipped(describe(cube, packed, "light cube")), "voxels": packed.data()}
     argument = {name: base64.b64encode(part).decode() for name, part in parts.items()}
     code = f"async (argument) => {{\n{joined('widget.js')}\n{HOST}\n}}"
-    tab.evaluate(code, {**argument, "angle": float(cube.angles[1]), "style": source("style.css")})
+    tab.evaluate(code, {**argument, "angle_deg": float(cube.angles_deg[1]), "style": source("style.css")})
 
 
 def angle_of(tab: Any) -> float:
-    return float(tab.evaluate("model.get('angle')"))
+    return float(tab.evaluate("model.get('angle_deg')"))
 
 
 @pytest.fixture
@@ -261,8 +264,8 @@ def test_the_models_angle_turns_the_cube(tab: Any) -> None:
     cube = turning()
     hosted(tab, cube)
     shown = "document.querySelector('.lightcube').lightcube.angle"
-    assert tab.evaluate(shown) == pytest.approx(cube.angles[1])
-    tab.evaluate("model.set('angle', 77.5)")
+    assert tab.evaluate(shown) == pytest.approx(cube.angles_deg[1])
+    tab.evaluate("model.set('angle_deg', 77.5)")
     tab.wait_for_function(f"Math.abs({shown} - 77.5) < 1e-9")
     assert angle_of(tab) == 77.5
 
@@ -276,13 +279,13 @@ def test_a_drag_and_a_key_set_the_models_angle(tab: Any) -> None:
     tab.mouse.move(x, y)
     tab.mouse.down()
     tab.mouse.move(x + 60, y, steps=4)
-    tab.wait_for_function(f"model.get('angle') !== {before} && model.saved > 0")
+    tab.wait_for_function(f"model.get('angle_deg') !== {before} && model.saved > 0")
     tab.mouse.up()
     assert 0 <= angle_of(tab) < 360
-    tab.evaluate(f"model.set('angle', {cube.angles[1]})")
+    tab.evaluate(f"model.set('angle_deg', {cube.angles_deg[1]})")
     tab.locator(".lightcube canvas").first.focus()
     tab.keyboard.press("PageDown")
-    tab.wait_for_function(f"Math.abs(model.get('angle') - {cube.angles[2]}) < 1e-6")
+    tab.wait_for_function(f"Math.abs(model.get('angle_deg') - {cube.angles_deg[2]}) < 1e-6")
 
 
 def test_a_widget_that_is_taken_away_leaves_nothing(tab: Any) -> None:
@@ -297,7 +300,7 @@ def test_damage_is_told_in_the_widgets_place(tab: Any) -> None:
     parts = {"scene": zipped(describe(cube, packed, "")), "voxels": packed.data()[:-20]}
     argument = {name: base64.b64encode(part).decode() for name, part in parts.items()}
     code = f"async (argument) => {{\n{joined('widget.js')}\n{HOST}\n}}"
-    tab.evaluate(code, {**argument, "angle": 0.0, "style": ""})
+    tab.evaluate(code, {**argument, "angle_deg": 0.0, "style": ""})
     assert len(tab.locator("body").inner_text().split()) > 3
 
 

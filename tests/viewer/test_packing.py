@@ -39,16 +39,16 @@ TURNTABLES = [([10.0, 100.0, 215.0], 35.0), ([20.0, 75.0, 140.0], 0.0), ([20.0, 
 
 
 def random_cube(
-    angles: list[float], elevation: float, *, channels: int = 3, seed: int = 3, grid: Grid = GRID, **more: Any
+    angles_deg: list[float], elevation_deg: float, *, channels: int = 3, seed: int = 3, grid: Grid = GRID, **more: Any
 ) -> Cube:
     """A cube that casts pictures of 3 x 5 pixels, off the middle by whole pixels."""
     rng = np.random.default_rng(seed)
-    rig = turntable(grid, angles, elevation=elevation, picture_shape=(3, 5))
-    aside = rng.integers(-1, 2, (2, len(angles), 1))
+    rig = turntable(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=(3, 5))
+    aside = rng.integers(-1, 2, (2, len(angles_deg), 1))
     rig = rig.shifted(aside[..., 0].T)
     extinction = rng.exponential(0.1, (channels, *grid.shape)).astype(np.float32)
-    powers = rng.uniform(0.5, 4, (len(angles), channels))
-    targets = rng.integers(0, 256, (len(angles), 3, 5, channels + 1), np.uint8)
+    powers = rng.uniform(0.5, 4, (len(angles_deg), channels))
+    targets = rng.integers(0, 256, (len(angles_deg), 3, 5, channels + 1), np.uint8)
     return Cube(extinction, grid, rig, powers, targets=targets, **more)
 
 
@@ -108,15 +108,15 @@ def test_what_is_clear_stays_clear() -> None:
     assert np.all((pack(holes).cube.extinction == 0) | (holes.extinction > 0))
 
 
-@pytest.mark.parametrize(("angles", "elevation"), TURNTABLES)
-def test_what_is_lost_is_what_one_sees(angles: list[float], elevation: float) -> None:
-    cube = random_cube(angles, elevation)
+@pytest.mark.parametrize(("angles_deg", "elevation_deg"), TURNTABLES)
+def test_what_is_lost_is_what_one_sees(angles_deg: list[float], elevation_deg: float) -> None:
+    cube = random_cube(angles_deg, elevation_deg)
     packed = pack(cube)
-    middles = [(a + b) / 2 for a, b in zip(angles, [*angles[1:], angles[0] + 360], strict=True)]
+    middles = [(a + b) / 2 for a, b in zip(angles_deg, [*angles_deg[1:], angles_deg[0] + 360], strict=True)]
     shown = [
         255 * encode(np.minimum(np.stack(list(cast(each, *moment(each, at)))), 1))
         for each in (cube, packed.cube)
-        for at in [[*angles, *middles]]
+        for at in [[*angles_deg, *middles]]
     ]
     off = np.abs(shown[0] - shown[1])
     np.testing.assert_allclose(packed.lost, (off.max(), np.sqrt(np.mean(off**2))), rtol=1e-3)
@@ -145,17 +145,17 @@ def test_many_wanted_pictures_lose_a_little(monkeypatch: pytest.MonkeyPatch) -> 
     assert all(uri.startswith("data:image/webp") for uri in describe(cube, pack(cube), "three")["wanted"])
 
 
-@pytest.mark.parametrize(("angles", "elevation"), TURNTABLES)
-def test_the_description_is_plain_json(angles: list[float], elevation: float) -> None:
-    cube = random_cube(angles, elevation, names=("é", "<b>", "c"))
+@pytest.mark.parametrize(("angles_deg", "elevation_deg"), TURNTABLES)
+def test_the_description_is_plain_json(angles_deg: list[float], elevation_deg: float) -> None:
+    cube = random_cube(angles_deg, elevation_deg, names=("é", "<b>", "c"))
     told = json.loads(gzip.decompress(zipped(describe(cube, pack(cube), "title"))))
-    mirrored = elevation == 0 and 200.0 not in angles
+    mirrored = elevation_deg == 0 and 200.0 not in angles_deg
     assert [each["mirrored"] for each in told["pictures"]] == [False] * 3 + [True] * 3 * mirrored
     assert [each["name"] for each in told["pictures"][:3]] == ["é", "<b>", "c"]
     assert all(each["psnr"] is not None for each in told["pictures"])
     assert len(told["views"]) == len(told["pairs"]) == len(told["pictures"])
-    assert told["views"][0]["reach"] == [None, None]
-    assert told["whole"] is not None
+    assert told["views"][0]["reach_mm"] == [None, None]
+    assert told["whole_shadow"] is not None
 
 
 def test_a_cube_without_targets_has_none() -> None:

@@ -20,7 +20,7 @@ from tests.helpers.visiting import (
     PHONE,
     STOPS,
     Open,
-    angle,
+    angle_deg,
     drag,
     marked,
     pages,
@@ -41,7 +41,7 @@ __all__ = ["pages", "visit"]
 
 def test_it_opens_at_the_first_picture(visit: Open) -> None:
     tab = visit()
-    assert angle(tab) == STOPS[0]
+    assert angle_deg(tab) == STOPS[0]
     assert marked(tab) == ["astronaut"]
     assert tab.title() == tab.locator("h1").inner_text() == "a turntable & <more>"
     assert tab.locator(".hint").is_visible()
@@ -74,7 +74,7 @@ def test_help_opens_and_closes(visit: Open) -> None:
         tab.keyboard.press("?")
         assert tab.get_by_role("dialog").is_visible()
         tab.keyboard.press("ArrowRight")  # what is behind it does not hear
-        assert angle(tab) == pytest.approx(STOPS[0])
+        assert angle_deg(tab) == pytest.approx(STOPS[0])
         tab.keyboard.press(end)
         assert not tab.get_by_role("dialog").is_visible()
 
@@ -168,7 +168,7 @@ def test_without_webgl_the_same_can_be_done(bare_browser: Any, pages: dict[str, 
     assert np.abs(shown(tab) - right(turning(), 130.0)[0]).max() <= 0.55
     unsnapped(tab)
     drag(tab, 100)
-    assert angle(tab) == pytest.approx(165.0)
+    assert angle_deg(tab) == pytest.approx(165.0)
     tab.keyboard.press("w")
     tab.keyboard.press("t")
     rested(tab)
@@ -177,7 +177,7 @@ def test_without_webgl_the_same_can_be_done(bare_browser: Any, pages: dict[str, 
 
 
 MODEL = """(async () => {
-  const values = { angle: argument.angle };
+  const values = { angle_deg: argument.angle_deg };
   for (const part of ["scene", "voxels"]) values[part] = new DataView(fromBase64(argument[part]).buffer);
   const heard = [];
   let saved = 0;
@@ -198,12 +198,12 @@ MODEL = """(async () => {
   const shown = el.firstChild.lightcube;
   await still();
   const told = [shown.angle, saved];
-  model.set("angle", 222.5);
+  model.set("angle_deg", 222.5);
   await still();
   told.push(shown.angle, saved);
   shown.turnTo(33);
   await still();
-  told.push(values.angle, saved);
+  told.push(values.angle_deg, saved);
   const parts = el.querySelectorAll(".slider, .filmstrip, canvas.room, .side").length;
   const outside = [...document.querySelectorAll("body, body > div")].every((each) => each.className === "");
   end();
@@ -215,7 +215,9 @@ def test_a_widget_follows_its_model_and_leads_it(evaluate: Open) -> None:
     """Each is told once of what the other did, and not of what it did itself."""
     parts = given(turning())
     scene = base64.b64encode(zipped(parts["scene"])).decode()
-    found = evaluate(("model/data.js", "widget.js"), MODEL, {"angle": 60.0, "scene": scene, "voxels": parts["voxels"]})
+    found = evaluate(
+        ("model/data.js", "widget.js"), MODEL, {"angle_deg": 60.0, "scene": scene, "voxels": parts["voxels"]}
+    )
     assert found == {"told": [60.0, 0, 222.5, 0, 33, 1], "parts": 3, "outside": True, "left": 0}
 
 

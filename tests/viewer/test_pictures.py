@@ -26,9 +26,9 @@ __all__ = ["run"]
 @pytest.fixture(scope="module")
 def cube() -> Cube:
     """Eight photographs in 48 x 48 x 48 voxels."""
-    planned = plan(photographs(8), 48, frame_width=0.6)
-    found = solving.solve(planned.frames, planned.grid, Recipe(passes=150)).cube
-    return replace(found, scores=metrics.score(found, planned.frames))
+    planned = plan(photographs(8), 48, picture_width=0.6)
+    found = solving.solve(planned.targets, planned.grid, Recipe(passes=150)).cube
+    return replace(found, scores=metrics.score(found, planned.targets))
 
 
 def kept(picture: bytes, name: str, tmp_path: Path) -> np.ndarray[Any, np.dtype[np.uint8]]:

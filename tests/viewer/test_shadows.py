@@ -27,12 +27,12 @@ OFF = 0.5 + 0.05
 
 MODULES = ("model/data.js", "model/stage.js", "room/camera.js", "model/cast.js", "room/gpu.js", "room/flat.js")
 START = """(async () => {
-  const { scene, voxels, angles, whole, kind } = argument;
+  const { scene, voxels, angles_deg, whole, kind } = argument;
   const cube = await readVoxels(fromBase64(voxels), scene);
   const renderer = (kind === "flat" ? createFlat : createRenderer)(document.createElement("canvas"), scene, cube);
 """
 SHADOWS = f"""{START}
-  const shown = angles.map((angle) => {{
+  const shown = angles_deg.map((angle) => {{
     const all = exposures(scene, angle, whole);
     renderer.cast(all);
     return all.map((_, i) => renderer.shadow(i)).map((each) => ({{ ...each, pixels: [...each.pixels] }}));
@@ -49,18 +49,18 @@ def given(cube: Cube) -> dict[str, Any]:
     return {"scene": scene, "voxels": base64.b64encode(packed.data()).decode()}
 
 
-def shadows(evaluate: Run, cube: Cube, angles: list[float], **more: Any) -> list[list[NDArray[np.uint8]]]:
+def shadows(evaluate: Run, cube: Cube, angles_deg: list[float], **more: Any) -> list[list[NDArray[np.uint8]]]:
     """Levels of red, green and blue, for each angle and screen."""
-    found = evaluate(MODULES, SHADOWS, {**given(cube), "angles": angles, "whole": False, **more})
+    found = evaluate(MODULES, SHADOWS, {**given(cube), "angles_deg": angles_deg, "whole": False, **more})
     return [
         [np.array(each["pixels"], np.uint8).reshape(each["rows"], each["columns"], 4)[..., :3] for each in at_angle]
         for at_angle in found
     ]
 
 
-def worst(shown: list[list[NDArray[np.uint8]]], cube: Cube, angles: list[float], *, whole: bool = False) -> float:
+def worst(shown: list[list[NDArray[np.uint8]]], cube: Cube, angles_deg: list[float], *, whole: bool = False) -> float:
     """The largest difference from what `play` says of the packed cube, levels of 255."""
-    right = play(pack(cube).cube, angles, whole_screen=whole)
+    right = play(pack(cube).cube, angles_deg, whole_shadow=whole)
     pictures = [picture for at_angle in shown for picture in at_angle]
     assert len(pictures) == len(right)
     levels = 255 * encode(np.clip(right, 0, 1).astype(np.float64), cube.transfer)
@@ -87,9 +87,9 @@ ANGLES = [0.0, 20.0, 33.3, 45.0, 89.9999, 90.0, 90.00001, 123.456, 180.0, 270.0,
 
 def on_turntable(name: str, **more: Any) -> Cube:
     """A random cube with three stops and powers of their own."""
-    shape, elevation, window, channels, transfer = TURNTABLES[name]
+    shape, elevation_deg, window, channels, transfer = TURNTABLES[name]
     grid = Grid(shape, 0.8)
-    rig = turntable(grid, [20.0, 90.0, 130.0], elevation=elevation, picture_shape=window)
+    rig = turntable(grid, [20.0, 90.0, 130.0], elevation_deg=elevation_deg, picture_shape=window)
     powers = np.random.default_rng(1).uniform(0.5, 3, (3, channels))
     return Cube(glass(shape, channels), grid, rig, powers, transfer=transfer, hold_deg=1.0, **more)
 
@@ -117,10 +117,10 @@ def test_beams_along_faces(evaluate: Run, shape: tuple[int, int, int], shift: fl
     """Whole voxels from the middle, or half a voxel beside: in one of them the beams of 0° and 90° run along faces."""
     grid = Grid(shape)
     rig = turntable(grid, [0.0, 90.0, 200.0], picture_shape=(shape[0] - 2, shape[1] - 2))
-    beside = shift * (rig.views.column_steps + rig.views.row_steps)
-    cube = Cube(glass(shape), grid, replace(rig, views=replace(rig.views, origins=rig.views.origins + beside)))
-    angles = [0.0, 90.0, 180.0, 270.0, 1e-3, 90 - 1e-4, 180 + 1e-5]
-    assert worst(shadows(evaluate, cube, angles), cube, angles) <= OFF
+    beside = shift * (rig.views.column_steps_mm + rig.views.row_steps_mm)
+    cube = Cube(glass(shape), grid, replace(rig, views=replace(rig.views, origins_mm=rig.views.origins_mm + beside)))
+    angles_deg = [0.0, 90.0, 180.0, 270.0, 1e-3, 90 - 1e-4, 180 + 1e-5]
+    assert worst(shadows(evaluate, cube, angles_deg), cube, angles_deg) <= OFF
 
 
 GRID = Grid((7, 6, 8), 0.7)
@@ -129,7 +129,7 @@ RED, BLUE = (
     Lamp(name, (1.0, y, z), colour=colour)
     for name, y, z, colour in (("red", 0.3, -0.6, (1.0, 0.1, 0.0)), ("blue", -0.3, -0.4, (0.1, 0.3, 1.0)))
 )
-BULB = Lamp("bulb", position=(-12.0, 0.0, 6.0))
+BULB = Lamp("bulb", position_mm=(-12.0, 0.0, 6.0))
 FLOOR = Screen("floor", (0.0, 0.0, -6.0), (3.5, 5.6), 0.7)
 SUN = Lamp("sun", (0.0, 0.0, -1.0))
 ROOMS: dict[str, tuple[tuple[Lamp, ...], tuple[Screen, ...], int]] = {
@@ -138,8 +138,8 @@ ROOMS: dict[str, tuple[tuple[Lamp, ...], tuple[Screen, ...], int]] = {
     "a shadow that ends": ((replace(RED, reach_mm=5.4, falloff_mm=0.0),), (WALL,), 1),
     "penumbra": ((replace(RED, colour=(1, 1, 1), size_deg=5.0),), (WALL,), 7),
     "aslant and by the inverse square": ((replace(BULB, full_at_mm=18.0),), (replace(WALL, cosine=True),), 1),
-    "a bulb far away": ((replace(BULB, position=(-4000.0, 0.0, 0.0)),), (WALL,), 1),
-    "a bulb level with a face": ((replace(BULB, position=(-9.0, 0.7, 0.7)),), (WALL,), 1),
+    "a bulb far away": ((replace(BULB, position_mm=(-4000.0, 0.0, 0.0)),), (WALL,), 1),
+    "a bulb level with a face": ((replace(BULB, position_mm=(-9.0, 0.7, 0.7)),), (WALL,), 1),
     "two screens of different sizes": ((RED, SUN, BULB), (WALL, FLOOR), 1),
 }
 
@@ -159,16 +159,16 @@ def on_stage(name: str) -> Cube:
 
 @pytest.mark.parametrize("name", ROOMS)
 def test_stages(evaluate: Run, name: str) -> None:
-    cube, angles = on_stage(name), [0.0, 51.0, 90.0, 110.0, 230.0, 359.0]
-    assert worst(shadows(evaluate, cube, angles), cube, angles) <= OFF
+    cube, angles_deg = on_stage(name), [0.0, 51.0, 90.0, 110.0, 230.0, 359.0]
+    assert worst(shadows(evaluate, cube, angles_deg), cube, angles_deg) <= OFF
 
 
 def test_flat_casts_the_same(evaluate: Run) -> None:
-    cube, angles = on_stage("two screens of different sizes"), [0.0, 51.0, 230.0]
-    shown = shadows(evaluate, cube, angles, kind="flat")
-    assert worst(shown, cube, angles) <= 0.5 + 1e-3
+    cube, angles_deg = on_stage("two screens of different sizes"), [0.0, 51.0, 230.0]
+    shown = shadows(evaluate, cube, angles_deg, kind="flat")
+    assert worst(shown, cube, angles_deg) <= 0.5 + 1e-3
     cube = on_turntable("level")
-    assert worst(shadows(evaluate, cube, angles, kind="flat"), cube, angles) <= 0.5 + 1e-3
+    assert worst(shadows(evaluate, cube, angles_deg, kind="flat"), cube, angles_deg) <= 0.5 + 1e-3
 
 
 def test_lost_contexts_come_back(evaluate: Run) -> None:
@@ -196,10 +196,10 @@ def test_lost_contexts_come_back(evaluate: Run) -> None:
 SEEN = f"""{START}
   const canvas = document.createElement("canvas");
   Object.assign(canvas, {{ width: 300, height: 200 }});
-  const room = standing(scene, angles[0]);
+  const room = standing(scene, angles_deg[0]);
   const camera = cameraOf(fitted(orbitFrom(scene.camera), scene, [room], 1.5), 1.5);
   const painter = createRenderer(canvas, scene, cube);
-  painter.cast(exposures(scene, angles[0]));
+  painter.cast(exposures(scene, angles_deg[0]));
   painter.draw(room, camera, {{ dark: argument.dark, mark: argument.mark ?? null, scale: argument.scale ?? 1 }});
   const gl = canvas.getContext("webgl2");
   const pixels = new Uint8Array(4 * 300 * 200);
@@ -214,7 +214,7 @@ SEEN = f"""{START}
 
 def seen(evaluate: Run, cube: Cube, **more: Any) -> dict[str, Any]:
     """What the room shows, `levels` (200, 300, 3), and the `ways` of its pixels' rays, in the room."""
-    found = evaluate(MODULES, SEEN, {**given(cube), "angles": [0.0], "dark": False, **more})
+    found = evaluate(MODULES, SEEN, {**given(cube), "angles_deg": [0.0], "dark": False, **more})
     found["levels"] = np.array(found["pixels"], np.float64).reshape(200, 300, 4)[::-1, :, :3]
     corners = np.array(found["corners"])
     corners /= (corners @ corners.sum(axis=(0, 1)))[..., None]  # all as far ahead
@@ -236,7 +236,7 @@ def test_glass_is_seen_by_the_eye(evaluate: Run) -> None:
     """Light from behind an even cube is dimmed by the law of Beer and Lambert over each ray's chord."""
     shape, extinction = (6, 8, 10), np.array([0.02, 0.06, 0.15])
     grid = Grid(shape, 1.3)
-    rig = turntable(grid, [0.0, 70.0], elevation=20.0, picture_shape=(6, 8))
+    rig = turntable(grid, [0.0, 70.0], elevation_deg=20.0, picture_shape=(6, 8))
     cube, clear = (
         Cube(np.broadcast_to(each[:, None, None, None], (3, *shape)).astype(np.float32), grid, rig)
         for each in (extinction, 0 * extinction)

@@ -21,22 +21,27 @@ from tests.projection.test_rays import lamps_for, lit, screens_for
 
 def plain_views(views: Views) -> list[dict[str, Any]]:
     """Views as far as a beam needs them."""
-    fields = {"light": views.lamps, "origin": views.origins, "right": views.column_steps, "down": views.row_steps}
+    fields = {
+        "light": views.lamps,
+        "origin": views.origins_mm,
+        "right": views.column_steps_mm,
+        "down": views.row_steps_mm,
+    }
     return [{name: array[view].tolist() for name, array in fields.items()} for view in range(len(views))]
 
 
 BEAMS = """argument.views.map((view) => argument.pixels.map(([row, column]) => {
   const beam = beamOf(view, row, column, argument.raster);
   const { start, way, first, last } = beam;
-  return { ...beam, ...walk(argument.shape, argument.mm, start, way, first, last),
-    inside: stretchInside(argument.shape, argument.mm, beam) };
+  return { ...beam, ...walk(argument.shape, argument.voxel_mm, start, way, first, last),
+    inside: stretchInside(argument.shape, argument.voxel_mm, beam) };
 }))"""
 
 
 def walked(evaluate: Evaluate, grid: Grid, views: Views) -> list[Any]:
     pixels = list(np.ndindex(*views.picture_shape))
     argument = {"views": plain_views(views), "pixels": pixels, "raster": views.picture_shape}
-    argument |= {"shape": grid.shape, "mm": grid.voxel_mm}
+    argument |= {"shape": grid.shape, "voxel_mm": grid.voxel_mm}
     found = evaluate(("model/beam.js",), PLAIN % BEAMS, argument)
     return [(view, *pixel, found[view][i]) for view in range(len(views)) for i, pixel in enumerate(pixels)]
 
@@ -78,23 +83,23 @@ def test_a_beam_to_the_lamp_itself_meets_nothing(evaluate: Evaluate) -> None:
 # model/sheet.js
 
 
-SHEETS = """argument.angles.flatMap((angle) => exposures(scene, angle)).flatMap((exposure) =>
+SHEETS = """argument.angles_deg.flatMap((angle) => exposures(scene, angle)).flatMap((exposure) =>
   exposure.views.flatMap((view, number) => [0, 1, 2].map((row) => ({
     row, number, exposure, sheet: sheetOf(cube, exposure, number, row),
     facts: Array.from({ length: exposure.window[1] }, (_, c) => beamFacts(cube, exposure, number, row, c)),
   }))))"""
 
 
-def sheets(evaluate: Evaluate, name: str, angles: tuple[float, ...]) -> tuple[Cube, list[Any], list[Views]]:
+def sheets(evaluate: Evaluate, name: str, angles_deg: tuple[float, ...]) -> tuple[Cube, list[Any], list[Views]]:
     """The packed cube, its sheets, and for each of them its view by itself."""
-    return sheets_of(evaluate, *held_in_a_page(name)[1:], angles)
+    return sheets_of(evaluate, *held_in_a_page(name)[1:], angles_deg)
 
 
 def sheets_of(
-    evaluate: Evaluate, packed: Packed, data: dict[str, str], angles: tuple[float, ...]
+    evaluate: Evaluate, packed: Packed, data: dict[str, str], angles_deg: tuple[float, ...]
 ) -> tuple[Cube, list[Any], list[Views]]:
-    found = asked(evaluate, data, SHEETS, angles=angles)
-    views = moment(drawn(packed.cube), angles)[0].views
+    found = asked(evaluate, data, SHEETS, angles_deg=angles_deg)
+    views = moment(drawn(packed.cube), angles_deg)[0].views
     return packed.cube, found, [views.take([i // 3]) for i in range(len(found))]
 
 
@@ -131,7 +136,7 @@ def test_level_light_runs_in_one_slice(evaluate: Evaluate, name: str) -> None:
     _, found, alone = sheets(evaluate, name, ANGLES)
     for each, view in zip(found, alone, strict=True):
         sheet = each["sheet"]
-        height = (view.origins[0] + (each["row"] - 1) * view.row_steps[0])[2] / GRID.voxel_mm + 1.5
+        height = (view.origins_mm[0] + (each["row"] - 1) * view.row_steps_mm[0])[2] / GRID.voxel_mm + 1.5
         assert (sheet["axis"], sheet["shape"]) == (2, [5, 7])
         inside = 0 < height < 3
         wanted = int(height) * 35 + np.arange(35) if inside else np.full(35, -1)
@@ -174,7 +179,9 @@ def test_cells_are_the_voxels_at_the_height_of_the_plane(evaluate: Evaluate, nam
 def test_a_plane_along_faces_shows_a_slice_beside_it(evaluate: Evaluate, off: float) -> None:
     """Level beams half a voxel down, or up: the lowest, or highest, run on the outside of the cube."""
     rig = table(0, 70)
-    cube = on_table(replace(rig, views=replace(rig.views, origins=rig.views.origins + off * rig.views.row_steps)))
+    cube = on_table(
+        replace(rig, views=replace(rig.views, origins_mm=rig.views.origins_mm + off * rig.views.row_steps_mm))
+    )
     _, found, _ = sheets_of(evaluate, *paged(cube)[1:], (0.0, 30.0))
     assert len(found) == 6
     for each in found:

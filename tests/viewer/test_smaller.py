@@ -16,9 +16,9 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
 from lightcube.optics.rig import turntable
-from lightcube.pictures.fitting import frames_from_targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import targets_of
 from lightcube.pictures.resampling import coarser
+from lightcube.pictures.targets import Targets
 from lightcube.scoring.metrics import mean_psnr
 from lightcube.viewer import smaller as page_cube
 from lightcube.viewer.description import describe
@@ -35,11 +35,11 @@ __all__ = ["run"]
 def solved() -> Cube:
     """A cube of 10 x 12 x 12 voxels and two smooth pictures of 6 x 8."""
     grid = Grid((10, 12, 12), 2.0)
-    rig = turntable(grid, [20.0, 130.0], elevation=35.0, picture_shape=(6, 8))
+    rig = turntable(grid, [20.0, 130.0], elevation_deg=35.0, picture_shape=(6, 8))
     down, across = np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 8), indexing="ij")
     waves = [0.5 + 0.4 * np.sin(3 * down + 4 * across + phase) for phase in range(6)]
     pictures = np.stack([np.stack(waves[:3], -1), np.stack(waves[3:], -1)]).astype(np.float32)
-    return solving.solve(Frames(pictures, rig), grid, Recipe(passes=60)).cube
+    return solving.solve(Targets(pictures, rig), grid, Recipe(passes=60)).cube
 
 
 def test_a_cube_that_fits_is_kept(solved: Cube) -> None:
@@ -51,8 +51,8 @@ def test_the_smaller_cube_shows_the_same_pictures(solved: Cube, monkeypatch: pyt
     small = smaller(solved)
     assert small.grid == Grid((7, 8, 8), 3.0)
     assert small.rig.picture_shape == (4, 6)
-    np.testing.assert_allclose(small.angles, solved.angles)
-    wanted, _ = coarser(frames_from_targets(solved), solved.grid, 1.5)
+    np.testing.assert_allclose(small.angles_deg, solved.angles_deg)
+    wanted, _ = coarser(targets_of(solved), solved.grid, 1.5)
     assert small.scores["psnr_mean"] == pytest.approx(mean_psnr(play(small), wanted))
     assert small.scores["psnr_mean"] > 35
     told = describe(solved, pack(small), "two")
@@ -78,7 +78,7 @@ BOUNDS: dict[str, dict[str, Any]] = {
 def test_what_bounded_the_cube_bounds_the_smaller_one(
     solved: Cube, bounds: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    cube = solving.solve(**asked(frames_from_targets(solved), solved.grid, passes=20, **bounds)).cube
+    cube = solving.solve(**asked(targets_of(solved), solved.grid, passes=20, **bounds)).cube
     monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
     small = smaller(cube)
     assert small.extinction.max() <= bounds.get("max_extinction", 0.02 if "material" in bounds else np.inf) * (1 + 1e-6)

@@ -14,7 +14,7 @@ from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import Part, halvings, split
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 
 #: Passes at each of the coarser sizes at most; no more than of the cube itself.
 COARSE_PASSES = 100
@@ -29,7 +29,7 @@ class Job:
 
     Parameters
     ----------
-    frames, grid
+    targets, grid
         The pictures and the cube.
     recipe
         How the cube is solved.
@@ -40,7 +40,7 @@ class Job:
         What the cube shall remember of how it was made, beside all this; it decides no bit of the extinction.
     """
 
-    frames: Frames
+    targets: Targets
     grid: Grid
     recipe: Recipe = field(default_factory=Recipe)
     units: int = 1
@@ -49,12 +49,12 @@ class Job:
     @property
     def channels(self) -> int:
         """Colours of the pictures."""
-        return self.frames.pictures.shape[-1]
+        return self.targets.pictures.shape[-1]
 
     @property
     def frozen(self) -> bool:
         """Whether lamp powers that are free are found at half the size and then kept."""
-        return self.recipe.powers == "coarse" or (self.units > 1 and not self.frames.rig.lamps.are_fixed)
+        return self.recipe.powers == "coarse" or (self.units > 1 and not self.targets.rig.lamps.are_fixed)
 
     @property
     def levels(self) -> int:
@@ -69,7 +69,7 @@ class Job:
     @property
     def lamp_bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Lower and upper bound of the lamp powers, each ``(lamps, channels)``."""
-        rig = self.frames.rig
+        rig = self.targets.rig
         lamps = np.arange(len(rig.lamps.names)) if self.recipe.powers == "shared" else rig.pairs[:, 1]
         low, high = (
             np.repeat(bound[lamps, None], self.channels, axis=1) for bound in (rig.lamps.least, rig.lamps.most)
@@ -84,7 +84,7 @@ class Job:
     @property
     def level(self) -> bool:
         """Whether each slice of the cube casts one row of the pictures by itself, at all angles that are asked for."""
-        return is_level(self.grid, held(self.frames.rig, self.recipe, self.grid).views)
+        return is_level(self.grid, held(self.targets.rig, self.recipe, self.grid).views)
 
     @property
     def parts(self) -> list[Part]:
@@ -127,19 +127,19 @@ def shares(job: Job) -> dict[str, float]:
 
 def fingerprint(job: Job) -> Fingerprint:
     """What a job is known by: two jobs with the same one come to the same cube, bit for bit."""
-    frames = job.frames
+    targets = job.targets
     nz, ny, nx = job.grid.shape
     return {
         "lightcube": version("lightcube"),
-        "pictures": _checksum(frames.pictures),
-        "weights": _checksum(frames.weight),
-        "names": hashlib.sha256("\0".join(frames.names).encode()).hexdigest(),
-        "lamps and screens": _checksum(*_arrays(frames.rig)),
-        "largest lamp power": float(frames.rig.lamps.most.max()),
-        "black": float(frames.rig.screens.black.max()),
+        "pictures": _checksum(targets.pictures),
+        "weights": _checksum(targets.weight),
+        "names": hashlib.sha256("\0".join(targets.names).encode()).hexdigest(),
+        "lamps and screens": _checksum(*_arrays(targets.rig)),
+        "largest lamp power": float(targets.rig.lamps.most.max()),
+        "black": float(targets.rig.screens.black.max()),
         "voxels": f"{nz} x {ny} x {nx}",
         "voxel side": job.grid.voxel_mm,
-        "transfer": frames.transfer,
+        "transfer": targets.transfer,
         **{_WORDS.get(name, name): value for name, value in job.recipe.plain().items()},
         "units": job.units,
     }

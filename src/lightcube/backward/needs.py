@@ -11,7 +11,7 @@ from lightcube.backward.problem import Problem, held, pose
 from lightcube.backward.units import coarse_shape, coarser, most_units, split
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.solvers.method import Method
 
 #: Bytes that a job may need unless it is said: a fixed number, so that cubes do not depend on machines.
@@ -35,9 +35,9 @@ def memory_needed(
     grid: Grid,
     picture_shape: tuple[int, int],
     views: int,
-    elevation: float = 0.0,
+    elevation_deg: float = 0.0,
     *,
-    angles: int = 1,
+    per_stop: int = 1,
     levels: int = 0,
     units: int = 1,
     channels: int = 3,
@@ -51,24 +51,24 @@ def memory_needed(
         As in `lightcube.backward.job.Job`.
     picture_shape, views, channels
         ``(rows, columns)`` of the pictures, how many they are, and their colours.
-    elevation
+    elevation_deg
         Of the lamp, degrees.
-    angles
+    per_stop
         At how many each picture is held.
     levels
         How often the cube is halved for its start.
     """
     rows, columns = picture_shape
     size = np.dtype(dtype).itemsize
-    raised = elevation if elevation != 0 or rows != grid.shape[0] else None
+    raised = elevation_deg if elevation_deg != 0 or rows != grid.shape[0] else None
     pictures = 4 * views * rows * columns * (channels + 1)
     cube = 4 * channels * math.prod(grid.shape)
     parts = split(grid.shape, channels, units, level=raised is None)
     share = max(part.columns for part in parts) / sum(part.columns for part in parts)
-    needed = _solver(method, grid.shape, picture_shape, views * angles, channels * size * share, raised)
+    needed = _solver(method, grid.shape, picture_shape, views * per_stop, channels * size * share, raised)
     if levels:
         half, small = coarse_shape(grid.shape, 1), (-(-rows // 2), -(-columns // 2))
-        level = pictures / 4 + _solver(method, half, small, views * angles, channels * size, raised)
+        level = pictures / 4 + _solver(method, half, small, views * per_stop, channels * size, raised)
         needed = max(needed + size * channels * (math.prod(half) + math.prod(grid.shape) * share), level)
     merging = cube * (1 + max(0.25, size / 2 * share)) + pictures / 4
     return int(PROGRAM + pictures + max(needed, merging))
@@ -80,38 +80,38 @@ def _solver(
     picture_shape: tuple[int, int],
     views: int,
     depth: float,
-    elevation: float | None,
+    elevation_deg: float | None,
 ) -> float:
     """Bytes that a solver holds, `depth` of them for each voxel and each pixel; elevation None = slice by slice."""
     unknowns, beams = method.arrays
     rows, columns = picture_shape
     nz, ny, nx = shape
-    equations = views * columns * (1 if elevation is None else rows)
-    if elevation is None and not method.holds_matrix and is_worth_lines(nz * depth):
+    equations = views * columns * (1 if elevation_deg is None else rows)
+    if elevation_deg is None and not method.holds_matrix and is_worth_lines(nz * depth):
         beams += 1  # a product's copy with whole lines
     arrays = depth * (unknowns * nz * ny * nx + beams * views * rows * columns) + _EQUATION * equations
     if not method.holds_matrix:
         return arrays
     pieces = 1.3 * max(ny, nx)
-    if elevation is not None:
-        pieces += min(nz, pieces * math.tan(math.radians(abs(elevation))))
+    if elevation_deg is not None:
+        pieces += min(nz, pieces * math.tan(math.radians(abs(elevation_deg))))
     return arrays + _ENTRY * pieces * equations
 
 
 def job_memory(job: Job) -> int:
     """`memory_needed` of a job."""
-    rig = job.frames.rig
+    rig = job.targets.rig
     views = rig.views
-    steepest = float(np.max(np.abs(views.elevations)))
-    angles = len(held(rig, job.recipe, job.grid)) // len(rig)
-    mixed = 0 if rig.is_thin else _MIXED * angles * len(views) * math.prod(views.picture_shape)
+    steepest = float(np.max(np.abs(views.elevations_deg)))
+    per_stop = len(held(rig, job.recipe, job.grid)) // len(rig)
+    mixed = 0 if rig.is_thin else _MIXED * per_stop * len(views) * math.prod(views.picture_shape)
     return mixed + memory_needed(
         job.recipe.solver,
         job.grid,
         views.picture_shape,
         len(views),
         0.0 if job.level else steepest or _ANY,
-        angles=angles,
+        per_stop=per_stop,
         levels=job.levels,
         units=job.units,
         channels=job.channels,
@@ -142,10 +142,10 @@ def seconds_a_pass(job: Job) -> float:
     Products grow with their multiply-adds, all else with the numbers of unknowns and pixels. The measurement takes a
     second or two, besides what numba compiles.
     """
-    frames, grid = job.frames, job.grid
-    while _work(job, frames, grid)[0] > _REHEARSED:
-        frames, grid = coarser(frames, grid, 1)
-    problem = pose(frames, grid, job.recipe)
+    targets, grid = job.targets, job.grid
+    while _work(job, targets, grid)[0] > _REHEARSED:
+        targets, grid = coarser(targets, grid, 1)
+    problem = pose(targets, grid, job.recipe)
     low, high = job.lamp_bounds
     marks: list[float] = []
     job.recipe.solver.solve(
@@ -160,7 +160,7 @@ def seconds_a_pass(job: Job) -> float:
     products = _seconds_of_products(problem)
     rest = max(0.0, float(np.median(np.diff(marks))) - products)
     more = [
-        whole / small for whole, small in zip(_work(job, job.frames, job.grid), _work(job, frames, grid), strict=True)
+        whole / small for whole, small in zip(_work(job, job.targets, job.grid), _work(job, targets, grid), strict=True)
     ]
     return products * more[0] + rest * more[1]
 
@@ -176,8 +176,8 @@ def _seconds_of_products(problem: Problem) -> float:
     return min(times)
 
 
-def _work(job: Job, frames: Frames, grid: Grid) -> tuple[float, float]:
+def _work(job: Job, targets: Targets, grid: Grid) -> tuple[float, float]:
     """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
-    rows, columns = frames.rig.picture_shape
-    pixels = len(held(frames.rig, job.recipe, grid).views) * rows * columns * job.channels
+    rows, columns = targets.rig.picture_shape
+    pixels = len(held(targets.rig, job.recipe, grid).views) * rows * columns * job.channels
     return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)

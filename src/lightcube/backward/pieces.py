@@ -105,10 +105,10 @@ def _posed(
     """Problem of a piece, the function that makes its start, bounds of its lamps and number of iterations."""
     kind, number = name.split("-")
     if kind == "level":
-        level, (frames, grid), part = int(number), coarser(job.frames, job.grid, int(number)), None
+        level, (targets, grid), part = int(number), coarser(job.targets, job.grid, int(number)), None
     else:
-        level, (frames, grid), part = 0, (job.frames, job.grid), job.parts[int(number)]
-    problem = pose(frames, grid, job.recipe, part)
+        level, (targets, grid), part = 0, (job.targets, job.grid), job.parts[int(number)]
+    problem = pose(targets, grid, job.recipe, part)
     bounds = job.lamp_bounds
     if kind == "unit" and job.frozen:
         powers = _finished(store, level_name(1))[POWERS]

@@ -1,4 +1,4 @@
-"""Frames and a grid as a solver sees them."""
+"""Targets and a grid as a solver sees them."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,12 +14,12 @@ from lightcube.kernels.layout import (
     pictures_from_columns,
     volume_from_columns,
 )
-from lightcube.optics.grid import Grid, dense_step
+from lightcube.optics.grid import Grid, dense_step_deg
 from lightcube.optics.law import falling_light
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer, decode
 from lightcube.optics.views import Views
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
 from lightcube.solvers.contract import Lighting, Mixture, Wanted
 
@@ -45,7 +45,7 @@ class Problem:
         Colours and slices of the cube; their columns are all that is here.
     rows
         Rows of the pictures that the part is seen in.
-    stops, angles
+    stops, per_stop
         Pictures, and at how many angles each of them is asked for.
     transfer
         How display values follow from light.
@@ -58,7 +58,7 @@ class Problem:
     part: Part
     rows: slice
     stops: int
-    angles: int
+    per_stop: int
     transfer: Transfer
 
     @property
@@ -93,12 +93,12 @@ class Problem:
         shape = self.rows.stop - self.rows.start, self.matrix.views.picture_shape[1]
 
         def at_stops(values: Floats) -> Floats:
-            return values.reshape(self.stops, self.angles, shape[1], -1)[:, self.angles // 2]
+            return values.reshape(self.stops, self.per_stop, shape[1], -1)[:, self.per_stop // 2]
 
         of_views = powers[self.lighting.lamp]
         if self.lighting.mixture is None:
             light = np.exp(-at_stops(absorbance))
-            light *= np.tile(of_views[self.angles // 2 :: self.angles], shape[0])[:, None, :]
+            light *= np.tile(of_views[self.per_stop // 2 :: self.per_stop], shape[0])[:, None, :]
         else:
             light = at_stops(mixed_light(self.lighting.mixture, of_views, absorbance))
         pictures = pictures_from_columns(light.reshape(self.stops * shape[1], -1), shape, self.channels)
@@ -108,9 +108,9 @@ class Problem:
         """(stop, row, column, channel) of rejected (equation, column) pairs, each once."""
         flat = rejected[:, 0] * self.light.shape[1] + rejected[:, 1]
         rows, colours = self.rows, self.part.colours
-        shape = (self.stops * self.angles, self.matrix.views.picture_shape[1], rows.stop - rows.start, self.channels)
+        shape = (self.stops * self.per_stop, self.matrix.views.picture_shape[1], rows.stop - rows.start, self.channels)
         view, column, lifted, channel = np.unravel_index(flat, shape)
-        pixels = [view // self.angles, rows.stop - 1 - lifted, column, colours.start + channel]
+        pixels = [view // self.per_stop, rows.stop - 1 - lifted, column, colours.start + channel]
         return np.unique(np.stack(pixels, axis=1).astype(np.int64), axis=0)
 
 
@@ -126,61 +126,61 @@ def is_level(grid: Grid, views: Views) -> bool:
     return is_stacked(grid, views) and StackedBeams(grid, views).level
 
 
-def pose(frames: Frames, grid: Grid, recipe: Recipe, part: Part | None = None) -> Problem:
-    """Pose the problem of the cube `grid` whose shadows are `frames`, by a recipe.
+def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None) -> Problem:
+    """Pose the problem of the cube `grid` whose shadows are `targets`, by a recipe.
 
     Only the columns of `part` are made: None = all colours and slices; some slices only where `is_level`.
 
     Pixels darker than the screen's black are wanted at it. The ends of a hold, with nothing to hold on to beyond,
     count twice: else they are what falls apart first (measured).
     """
-    rig = held(frames.rig, recipe, grid)
-    views, angles = rig.views, len(rig) // len(frames)
-    heard = np.repeat(frames.weight > 0, angles, axis=0)
+    rig = held(targets.rig, recipe, grid)
+    views, per_stop = rig.views, len(rig) // len(targets)
+    heard = np.repeat(targets.weight > 0, per_stop, axis=0)
     matrix = Projector(grid, views, heard[rig.sums.picture])
-    darkest = decode(frames.rig.screens.black[frames.rig.stops.screen].astype(np.float32), frames.transfer)
-    high, channels = views.picture_shape[0], frames.pictures.shape[-1]
+    darkest = decode(targets.rig.screens.black[targets.rig.stops.screen].astype(np.float32), targets.transfer)
+    high, channels = views.picture_shape[0], targets.pictures.shape[-1]
     part = part or Part(slice(0, channels), slice(0, grid.shape[0]))
     rows = slice(0, high)
     if part.slices != slice(0, grid.shape[0]):
         rows = slice(high - part.slices.stop, high - part.slices.start)
 
     def block(pictures: Floats) -> Floats:
-        columns = columns_from_pictures(np.repeat(pictures.astype(recipe.dtype), angles, axis=0))
+        columns = columns_from_pictures(np.repeat(pictures.astype(recipe.dtype), per_stop, axis=0))
         return columns.reshape(columns.shape[0] * (1 if matrix.level else high), -1)
 
-    importance = np.ones(angles, recipe.dtype)
-    if angles > 1:
+    importance = np.ones(per_stop, recipe.dtype)
+    if per_stop > 1:
         importance[[0, -1]] = 2
-    weights = block(np.repeat(frames.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
-    weights *= np.repeat(np.tile(importance, len(frames)), len(weights) // (len(frames) * angles))[:, None]
+    weights = block(np.repeat(targets.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
+    weights *= np.repeat(np.tile(importance, len(targets)), len(weights) // (len(targets) * per_stop))[:, None]
     mixture = None if rig.is_thin else mixture_of(rig, channels, part.colours, rows)
     return Problem(
         matrix=matrix,
-        light=block(np.maximum(frames.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
+        light=block(np.maximum(targets.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
         weights=weights,
-        lighting=Lighting(lamp_numbers(frames.rig, rig, recipe.powers), mixture),
+        lighting=Lighting(lamp_numbers(targets.rig, rig, recipe.powers), mixture),
         part=part,
         rows=rows,
-        stops=len(frames),
-        angles=angles,
-        transfer=frames.transfer,
+        stops=len(targets),
+        per_stop=per_stop,
+        transfer=targets.transfer,
     )
 
 
 def held(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
     """Every picture at the angles that a hold asks for, those of a picture in a row."""
-    return rig.held(recipe.hold_deg, dense_step(grid))
+    return rig.held(recipe.hold_deg, dense_step_deg(grid))
 
 
 def lamp_numbers(rig: Rig, held_rig: Rig, powers: Powers) -> NDArray[np.intp]:
     """``(views,)``: which power each view of a held rig has: every lamp one for each picture, or one (``"shared"``)."""
     if powers == "shared":
         return held_rig.sums.lamp
-    angles = len(held_rig) // len(rig)
+    per_stop = len(held_rig) // len(rig)
     lamps = len(rig.lamps.names)
     keys = rig.pairs[:, 0] * lamps + rig.pairs[:, 1]
-    return np.searchsorted(keys, held_rig.sums.picture // angles * lamps + held_rig.sums.lamp)
+    return np.searchsorted(keys, held_rig.sums.picture // per_stop * lamps + held_rig.sums.lamp)
 
 
 def mixture_of(

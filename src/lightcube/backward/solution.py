@@ -15,7 +15,7 @@ from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
 from lightcube.kernels.layout import clear_volume
 from lightcube.optics.cube import Cube
-from lightcube.pictures.fitting import targets
+from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.resampling import enlarged
 
 Floats = NDArray[np.floating[Any]]
@@ -80,11 +80,11 @@ def merged(job: Job, store: Store) -> Solution:
     cube = Cube(
         extinction=extinction,
         grid=job.grid,
-        rig=job.frames.rig,
+        rig=job.targets.rig,
         lamp_powers=_of_pictures(job, powers),
-        targets=targets(job.frames),
-        names=job.frames.names,
-        transfer=job.frames.transfer,
+        targets=as_levels(job.targets),
+        names=job.targets.names,
+        transfer=job.targets.transfer,
         status="complete" if complete else "interrupted",
         hold_deg=job.recipe.hold_deg,
         provenance=_made_with(job) | made,
@@ -98,7 +98,7 @@ def _of_pictures(job: Job, powers: NDArray[np.float64]) -> NDArray[np.float64]:
     """The powers of each picture's lamps, as a cube keeps them, from those that the job solves for."""
     if job.recipe.powers != "shared":
         return powers
-    return powers[job.frames.rig.pairs[:, 1]]
+    return powers[job.targets.rig.pairs[:, 1]]
 
 
 def _place(
@@ -165,7 +165,7 @@ def _made_with(job: Job) -> dict[str, Any]:
     return {
         "lightcube": version("lightcube"),
         **recipe,
-        "angles_per_picture": len(held(job.frames.rig, job.recipe, job.grid)) // len(job.frames),
+        "angles_per_picture": len(held(job.targets.rig, job.recipe, job.grid)) // len(job.targets),
         "units": job.units,
         **job.provenance,
     }

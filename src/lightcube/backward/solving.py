@@ -16,11 +16,11 @@ from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import Rig
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 
 
 def solve(
-    frames: Frames,
+    targets: Targets,
     grid: Grid,
     recipe: Recipe | None = None,
     *,
@@ -30,7 +30,7 @@ def solve(
     store: Store | None = None,
     provenance: Mapping[str, Any] | None = None,
 ) -> Solution:
-    """Find the cube whose shadows are the frames.
+    """Find the cube whose shadows are the pictures.
 
     Method ``display``, and others unless they say that it does not help them, solve a cube more than 48 voxels long at
     half the size first (and that one at a quarter, and so on) and start from there: the lamps and the coarse structure
@@ -38,7 +38,7 @@ def solve(
 
     Parameters
     ----------
-    frames
+    targets
         The wanted pictures, their views and weights.
     grid
         The block of voxels.
@@ -63,9 +63,9 @@ def solve(
     Raises
     ------
     InputError
-        For frames that do not belong to the grid, or a recipe that cannot be followed there.
+        For targets that do not belong to the grid, or a recipe that cannot be followed there.
     """
-    return run(make_job(frames, grid, recipe, units=units, memory=memory, provenance=provenance), store, callback)
+    return run(make_job(targets, grid, recipe, units=units, memory=memory, provenance=provenance), store, callback)
 
 
 def run(job: Job, store: Store | None = None, callback: Watching | None = None) -> Solution:
@@ -76,7 +76,7 @@ def run(job: Job, store: Store | None = None, callback: Watching | None = None) 
 
 
 def make_job(
-    frames: Frames,
+    targets: Targets,
     grid: Grid,
     recipe: Recipe | None = None,
     *,
@@ -86,11 +86,11 @@ def make_job(
 ) -> Job:
     """Check what `solve` is asked for, and leave nothing open; parameters and errors as there."""
     recipe = recipe or Recipe()
-    check_frames(frames, grid)
-    _check_method(recipe, frames.rig)
+    check_targets(targets, grid)
+    _check_method(recipe, targets.rig)
     if recipe.passes is None and recipe.solver.residual == "display":
         recipe = replace(recipe, passes=QUALITIES["normal"][0])
-    job = Job(frames, grid, recipe, provenance=dict(provenance or {}))
+    job = Job(targets, grid, recipe, provenance=dict(provenance or {}))
     most = most_units(grid.shape, job.channels, level=job.level)
     if units is not None and not 1 <= units <= most:
         raise InputError(f"this cube can be solved in 1 to {most} units, not in {units}: ask for a number between")
@@ -109,15 +109,15 @@ def _check_method(recipe: Recipe, rig: Rig) -> None:
         raise InputError(f"method {method.name} cannot do with light that adds up: use method display")
 
 
-def check_frames(frames: Frames, grid: Grid) -> None:
+def check_targets(targets: Targets, grid: Grid) -> None:
     """Raise `InputError` where a picture is larger than the grid's screen; other screens are as large as they are."""
     from lightcube.projection.stacked import is_stacked  # here: the compiler comes with it
 
-    rig = frames.rig
+    rig = targets.rig
     if not np.all(rig.screens.endless) or not is_stacked(grid, rig.views):
         return
     rows, columns = rig.picture_shape
-    most = [raster_shape(grid, elevation) for elevation in set(rig.views.elevations.tolist())]
+    most = [raster_shape(grid, elevation_deg) for elevation_deg in set(rig.views.elevations_deg.tolist())]
     most_rows, most_columns = min(most)
     if rows > most_rows or columns > most_columns:
         raise InputError(

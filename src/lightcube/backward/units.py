@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from lightcube.optics.grid import Grid
-from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import halved
+from lightcube.pictures.targets import Targets
 
 #: Cubes longer than this start from the solution at half the size.
 COARSEST = 48
@@ -54,11 +54,11 @@ def halvings(grid: Grid) -> int:
     return times
 
 
-def coarser(frames: Frames, grid: Grid, times: int) -> tuple[Frames, Grid]:
+def coarser(targets: Targets, grid: Grid, times: int) -> tuple[Targets, Grid]:
     """Return the same pictures and cube, halved so many times."""
     for _ in range(times):
-        frames, grid = halved(frames, grid)
-    return frames, grid
+        targets, grid = halved(targets, grid)
+    return targets, grid
 
 
 def coarse_shape(shape: tuple[int, int, int], times: int) -> tuple[int, int, int]:

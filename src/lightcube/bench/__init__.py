@@ -45,16 +45,16 @@ def measure(n: int, views: int, say: Callable[[str], None], *, quick: bool = Fal
     for threads in counts:
         say(f"ceilings, threads: {threads}")
         limits[threads] = ceilings(threads, lasting, repeats)
-    for elevation in ELEVATIONS:
-        matrix = projector(n, views, elevation)
+    for elevation_deg in ELEVATIONS:
+        matrix = projector(n, views, elevation_deg)
         for threads in counts:
-            say(f"forward and adjoint at {elevation:g} degrees, threads: {threads}")
-            kernels.append({"elevation": elevation, **product(matrix, threads, limits[threads]["l2"], repeats)})
-    ours = next(each for each in kernels if each["elevation"] == 0 and each["threads"] == 1)
+            say(f"forward and adjoint at {elevation_deg:g} degrees, threads: {threads}")
+            kernels.append({"elevation_deg": elevation_deg, **product(matrix, threads, limits[threads]["l2"], repeats)})
+    ours = next(each for each in kernels if each["elevation_deg"] == 0 and each["threads"] == 1)
     compared = peers(projector(n, views, 0.0), ours["pass"]["seconds"], repeats, say)
-    for elevation in ELEVATIONS:
-        say(f"playback at {elevation:g} degrees")
-        played.append({"elevation": elevation, **playback(n, elevation, repeats)})
+    for elevation_deg in ELEVATIONS:
+        say(f"playback at {elevation_deg:g} degrees")
+        played.append({"elevation_deg": elevation_deg, **playback(n, elevation_deg, repeats)})
     say("start-up")
     return {
         "machine": machine(),

@@ -85,7 +85,7 @@ def _astra(matrix: Projector, repeats: int) -> Times:
     _, ny, nx = matrix.grid.shape
     volume = astra.create_vol_geom(ny, nx)
     screen = astra.create_proj_geom(
-        "parallel", 1.0, matrix.views.picture_shape[1], np.radians(np.sort(matrix.views.angles))
+        "parallel", 1.0, matrix.views.picture_shape[1], np.radians(np.sort(matrix.views.angles_deg))
     )
     try:
         line = astra.create_projector("line", screen, volume)

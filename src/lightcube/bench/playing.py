@@ -13,14 +13,14 @@ from lightcube.optics.rig import turntable
 _ANGLES = 5
 
 
-def playback(n: int, elevation: float, repeats: int) -> dict[str, float]:
+def playback(n: int, elevation_deg: float, repeats: int) -> dict[str, float]:
     """Seconds of one picture of an n-cube, the whole screen in colour, with all threads; the cube is laid out before.
 
     A picture is beams, light, lamp and layout, ready to be encoded for a screen.
     """
     grid = Grid((n, n, n))
     extinction = np.full((CHANNELS, *grid.shape), 1 / n, np.float32)
-    show = player(Cube(extinction, grid, turntable(grid, [10.0], elevation=elevation)))
+    show = player(Cube(extinction, grid, turntable(grid, [10.0], elevation_deg=elevation_deg)))
     rows, columns = show([10.0]).shape[1:3]
-    angles = iter(np.linspace(3, 177, repeats * _ANGLES))
-    return {"rows": rows, "columns": columns, **seconds(lambda: show([next(angles)]), repeats * _ANGLES)}
+    angles_deg = iter(np.linspace(3, 177, repeats * _ANGLES))
+    return {"rows": rows, "columns": columns, **seconds(lambda: show([next(angles_deg)]), repeats * _ANGLES)}

@@ -18,10 +18,12 @@ CHANNELS = 3
 _COUNTED = 8
 
 
-def projector(n: int, views: int, elevation: float) -> Projector:
+def projector(n: int, views: int, elevation_deg: float) -> Projector:
     """`views` pictures of an n-cube on a turntable, each the whole screen."""
     grid = Grid((n, n, n))
-    return Projector(grid, turntable_views(grid, spread_angles(views, elevation=elevation), elevation=elevation))
+    return Projector(
+        grid, turntable_views(grid, spread_angles(views, elevation_deg=elevation_deg), elevation_deg=elevation_deg)
+    )
 
 
 def columns_of(matrix: Projector) -> int:

@@ -39,7 +39,7 @@ def _kernels(found: dict[str, Any]) -> Iterator[str]:
     table = [
         [
             name,
-            f"{each['elevation']:g}°",
+            f"{each['elevation_deg']:g}°",
             _threads(each["threads"]),
             _seconds(each[name]),
             f"{each[name]['multiply_adds_per_second'] / 1e9:.1f}",
@@ -66,7 +66,7 @@ def _playback(found: dict[str, Any]) -> Iterator[str]:
     table = [
         [
             f"{each['columns']} x {each['rows']}",
-            f"{each['elevation']:g}°",
+            f"{each['elevation_deg']:g}°",
             f"{1e3 * each['seconds']:.1f} ({1e3 * each['median']:.1f})",
         ]
         for each in found["playback"]

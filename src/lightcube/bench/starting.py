@@ -25,7 +25,7 @@ def starts() -> list[dict[str, Any]]:
         commands = [
             ["--help"],
             ["info", str(kept)],
-            ["play", str(kept), "-o", str(shown), "--angles", "10", "--overwrite"],
+            ["play", str(kept), "-o", str(shown), "--angles-deg", "10", "--overwrite"],
         ]
         return [{"command": words[0], "seconds": _second(words)} for words in commands]
 

@@ -56,18 +56,18 @@ def unit(text: str) -> tuple[int, int]:
 
 
 def play_angles(
-    cube: Cube, angles: str | None, start: float | None, end: float | None, count: int | None, *, stops: bool
+    cube: Cube, angles_deg: str | None, start: float | None, end: float | None, count: int | None, *, stops: bool
 ) -> NDArray[np.float64]:
     """Stops, given angles, or a turn in which each stop is met exactly."""
     turn = [start, end, count] != [None] * 3
-    if stops + (angles is not None) + turn > 1:
-        raise InputError("--stops, --angles, and --from, --to and --count are three ways to say the same: use one")
+    if stops + (angles_deg is not None) + turn > 1:
+        raise InputError("--stops, --angles-deg, and --from, --to and --count are three ways to say the same: use one")
     if stops:
-        return cube.angles
-    if angles is not None:
-        return check_angles(numbers(angles, "--angles"))
+        return cube.angles_deg
+    if angles_deg is not None:
+        return check_angles(numbers(angles_deg, "--angles-deg"))
     if not turn and not np.any(cube.rig.turning.turns):
-        return cube.angles[:1]  # nothing turns: all angles look alike
+        return cube.angles_deg[:1]  # nothing turns: all angles look alike
     first, last, pictures = (
         start or 0.0,
         360.0 if end is None else end,

@@ -7,26 +7,26 @@ import typer
 from lightcube import io
 from lightcube.cli.console import compiling, err, json_document, out
 from lightcube.cli.fields import one_by_one
-from lightcube.cli.options import FRAMES, JSON, threaded
+from lightcube.cli.options import JSON, PICTURES, threaded
 from lightcube.verbs import checking, solving
 from lightcube.verbs.options import Options
 
 
 @threaded
 @one_by_one
-def check(frames: FRAMES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
+def check(pictures: PICTURES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
     """Say before solving what can be known: how good it will be, what contradicts itself, or on a stage cannot be.
 
     The exit code is 2 where anything on a stage is impossible.
     """
-    stage = io.is_stage(frames)
+    stage = io.is_stage(pictures)
     if stage:
-        found = checking.of_stage(frames, options.transfer)
+        found = checking.of_stage(pictures, options.transfer)
     else:
         options = solving.settled(options)
-        pictures = solving.read(frames, options)
+        read = solving.read(pictures, options)
         with err.status("rehearsing"), compiling(as_json=as_json):
-            found = checking.of_pictures(pictures, options)
+            found = checking.of_pictures(read, options)
     if as_json:
         json_document(found.facts)
     else:

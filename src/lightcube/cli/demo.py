@@ -22,11 +22,11 @@ from lightcube.optics.absorption import extinction, transmittance
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.frames import Frames
 from lightcube.pictures.samples import photographs
+from lightcube.pictures.targets import Targets
 from lightcube.planning.plan import plan
 from lightcube.projection.projector import Projector
-from lightcube.scene.tracer import scene_frames
+from lightcube.scene.tracer import scene_targets
 from lightcube.scoring import metrics
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Wanted
@@ -54,7 +54,7 @@ def run(folder: Path) -> None:
     out.print(f"Two cubes of {_SIDE} x {_SIDE} x {_SIDE} voxels, 100 mm wide.")
     planned = plan(photographs(), _SIDE, longest_hold=True)
     rows = [
-        _one("photographs", planned.frames, grid, folder, planned.recipe),
+        _one("photographs", planned.targets, grid, folder, planned.recipe),
         _one("juggler", _juggler(grid), grid, folder),
     ]
     io.save({row["name"]: row for row in rows}, folder / "metrics.json", overwrite=True)
@@ -64,7 +64,7 @@ def run(folder: Path) -> None:
     )
     for row in rows:
         out.print(
-            f"{row['name']:>14} {row['pictures']:>16} {row['elevation']:>5.0f}° {row['psnr_mean']:>5.1f} dB "
+            f"{row['name']:>14} {row['pictures']:>16} {row['elevation_deg']:>5.0f}° {row['psnr_mean']:>5.1f} dB "
             f"{row['psnr_min']:>4.1f} dB {row['ssim_mean']:>7.3f} {row['delta_e_mean']:>7.2f} {row['seconds']:>5.0f} s"
         )
     out.print(f"\nLook at the movies and contact sheets in {folder}/. Turn the cubes by hand: open, in a browser,")
@@ -72,38 +72,38 @@ def run(folder: Path) -> None:
         out.print(f"  {folder / row['name']}.html")
 
 
-def _juggler(grid: Grid) -> Frames:
+def _juggler(grid: Grid) -> Targets:
     """A traced scene, one picture for every step of a whole turn of the cube under a raised lamp."""
-    rig = turntable(grid, spread_angles(32, elevation=35.0), elevation=35.0, picture_shape=(48, 48))
+    rig = turntable(grid, spread_angles(32, elevation_deg=35.0), elevation_deg=35.0, picture_shape=(48, 48))
     with progress("tracing", as_json=False) as advance:
-        return scene_frames(io.read_scene("juggler"), rig, grid, callback=advance)
+        return scene_targets(io.read_scene("juggler"), rig, grid, callback=advance)
 
 
-def _one(name: str, frames: Frames, grid: Grid, folder: Path, recipe: Recipe | None = None) -> dict[str, Any]:
+def _one(name: str, targets: Targets, grid: Grid, folder: Path, recipe: Recipe | None = None) -> dict[str, Any]:
     """Solve, save, play and score one cube; returns a row of the table."""
     began = time.monotonic()
     with progress(f"solving {name}", as_json=False) as advance:
-        solution = solving.solve(frames, grid, recipe, callback=lambda step: advance(round(1000 * step.done), 1000))
+        solution = solving.solve(targets, grid, recipe, callback=lambda step: advance(round(1000 * step.done), 1000))
     seconds = time.monotonic() - began
-    scores = metrics.score(solution.cube, frames)
+    scores = metrics.score(solution.cube, targets)
     cube = replace(solution.cube, scores=scores)
     io.save(cube, folder / f"{name}.zarr", overwrite=True)
     shown = casting.play(cube)
-    sheet = contact_sheet(shown, frames, [view["psnr"] for view in scores["views"]])
+    sheet = contact_sheet(shown, targets, [view["psnr"] for view in scores["views"]])
     io.save(sheet, folder / f"{name}.png", overwrite=True)
     stops = _on_a_screen(casting.cast(cube))
     io.save(
-        stops, folder / f"{name}-stops.mp4", count=len(frames), fps=min(10, len(frames) / 4), scale=6, overwrite=True
+        stops, folder / f"{name}-stops.mp4", count=len(targets), fps=min(10, len(targets) / 4), scale=6, overwrite=True
     )
     turn = turning.turn(cube, 180)
-    shadows = _on_a_screen(casting.cast(cube, *turning.moment(cube, turn, whole_screen=True)))
+    shadows = _on_a_screen(casting.cast(cube, *turning.moment(cube, turn, whole_shadow=True)))
     io.save(shadows, folder / f"{name}-turn.mp4", count=len(turn), fps=20, scale=4, overwrite=True)
     io.save(page(cube, name), folder / f"{name}.html", overwrite=True)
-    rows, columns = frames.rig.picture_shape
+    rows, columns = targets.rig.picture_shape
     return {
         "name": name,
-        "pictures": f"{len(frames)} of {columns} x {rows}",
-        "elevation": frames.rig.elevation_deg,
+        "pictures": f"{len(targets)} of {columns} x {rows}",
+        "elevation_deg": targets.rig.elevation_deg,
         "seconds": seconds,
         **scores,
     }

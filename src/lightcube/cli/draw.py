@@ -18,7 +18,7 @@ def draw(
         str,
         typer.Option("-o", "--out", help="Where to write: an SVG of a stage, a PNG, WebP or JPEG of a cube's room."),
     ],
-    angle: Annotated[
+    angle_deg: Annotated[
         float | None, typer.Option(help="Turntable angle of a cube's room in degrees.  [default: its first stop]")
     ] = None,
     overwrite: Annotated[bool, OVERWRITE] = False,
@@ -26,13 +26,13 @@ def draw(
 ) -> None:
     """Draw a stage from above and from the side, with its beams, or the room of a cube in perspective."""
     if io.is_stage(thing):
-        if angle is not None:
-            raise InputError("--angle is for a cube: a stage is drawn at its first stop, leave it out")
+        if angle_deg is not None:
+            raise InputError("--angle-deg is for a cube: a stage is drawn at its first stop, leave it out")
         plan = io.Output(output, "drawing", overwrite)
         plan.check()
         plan.write(drawing.of_stage(thing))
     else:
         picture = io.Output(output, "picture", overwrite)
         picture.check()
-        picture.write(drawing.of_cube(load(thing), angle))
+        picture.write(drawing.of_cube(load(thing), angle_deg))
     done(as_json, output, out=output)

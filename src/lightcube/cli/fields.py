@@ -15,7 +15,7 @@ _FIELDS = {each.name: each for each in fields(Options)}
 #: Options that are written as a text of several numbers: what such a text means.
 _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "shape": lambda text: arguments.whole_numbers(text, ",", "--shape", 3),
-    "angles": lambda text: arguments.numbers(text, "--angles"),
+    "angles_deg": lambda text: arguments.numbers(text, "--angles-deg"),
 }
 
 

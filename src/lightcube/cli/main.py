@@ -15,7 +15,7 @@ COMMANDS: Mapping[str, str] = {
     "check": (
         "Say before solving what can be known: how good it will be, what contradicts itself, or on a stage cannot be."
     ),
-    "solve": "Compute the cube whose shadows are the frames; what was stopped or killed goes on where it was.",
+    "solve": "Compute the cube whose shadows are the pictures; what was stopped or killed goes on where it was.",
     "play": "Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.",
     "score": "Compare what a cube really casts with what was wanted.",
     "view": "Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail.",

@@ -10,7 +10,7 @@ import typer
 from lightcube import cores
 from lightcube.cli import arguments
 
-FRAMES = Annotated[str, typer.Argument(help="A folder of pictures, an animated image, a video, or a stage (TOML).")]
+PICTURES = Annotated[str, typer.Argument(help="A folder of pictures, an animated image, a video, or a stage (TOML).")]
 
 OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
 OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")

@@ -21,9 +21,11 @@ from lightcube.verbs import playing, staging
 def play(
     cube: Annotated[str, typer.Argument(help="A cube.")],
     output: Annotated[str, OUT],
-    angles: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
-    start: Annotated[float | None, typer.Option("--from", help="First angle in degrees.  [default: 0]")] = None,
-    end: Annotated[float | None, typer.Option("--to", help="Where the turn ends, in degrees.  [default: 360]")] = None,
+    angles_deg: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
+    start_deg: Annotated[float | None, typer.Option("--from-deg", help="First angle in degrees.  [default: 0]")] = None,
+    end_deg: Annotated[
+        float | None, typer.Option("--to-deg", help="Where the turn ends, in degrees.  [default: 360]")
+    ] = None,
     count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120 or more]")] = None,
     stops: Annotated[bool, typer.Option("--stops", help="Play just the views that the cube was made for.")] = False,
     scale: Annotated[
@@ -32,7 +34,9 @@ def play(
     target: Annotated[
         bool, typer.Option("--target", help="Put the wanted picture of the nearest stop to the right.")
     ] = False,
-    no_mask: Annotated[bool, typer.Option("--no-mask", help="Show the whole screen, not the picture window.")] = False,
+    whole_shadow: Annotated[
+        bool, typer.Option("--whole-shadow", help="Show the whole shadow, not the picture's window.")
+    ] = False,
     screens: Annotated[
         bool, typer.Option("--screens", help="Show all screens of a stage side by side; with --stops each stop once.")
     ] = False,
@@ -48,25 +52,25 @@ def play(
     """Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix."""
     movie = io.Output(output, "pictures", overwrite)
     movie.check()
-    if target and no_mask:
-        raise InputError("--target shows the picture window: leave out --no-mask")
-    if room and (target or no_mask or screens):
-        raise InputError("--room shows all there is: leave out --screens, --target and --no-mask")
+    if target and whole_shadow:
+        raise InputError("--target shows the picture's window: leave out --whole-shadow")
+    if room and (target or whole_shadow or screens):
+        raise InputError("--room shows all there is: leave out --screens, --target and --whole-shadow")
     loaded = playing.with_samples(load(cube), lamp_samples, pixel_samples)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
         raise InputError(f"{cube} has several screens: leave out --target, and see score --sheet")
-    if no_mask and not np.all(loaded.rig.screens.endless):
-        raise InputError(f"the screens of {cube} have edges and are shown whole: leave out --no-mask")
-    turned = arguments.play_angles(loaded, angles, start, end, count, stops=stops)
+    if whole_shadow and not np.all(loaded.rig.screens.endless):
+        raise InputError(f"the screens of {cube} have edges and are shown whole: leave out --whole-shadow")
+    turned = arguments.play_angles(loaded, angles_deg, start_deg, end_deg, count, stops=stops)
     if room:
         show = playing.of_room(loaded, np.unique(turned) if stops else turned)
     elif screens or (many and not stops):
         show = playing.of_screens(loaded, np.unique(turned) if stops else turned)
     elif stops:
-        show = playing.of_stops(loaded, target=target, whole_screen=no_mask)
+        show = playing.of_stops(loaded, target=target, whole_shadow=whole_shadow)
     else:
-        show = playing.of_turn(loaded, turned, target=target, whole_screen=no_mask)
+        show = playing.of_turn(loaded, turned, target=target, whole_shadow=whole_shadow)
     for sentence in staging.unsampled(loaded.rig):
         if not as_json:
             err.print(sentence)
@@ -80,7 +84,7 @@ def play(
             views=show.views,
             names=show.names,
         )
-    done(as_json, f"{show.count} pictures in {output}", out=str(output), frames=show.count)
+    done(as_json, f"{show.count} pictures in {output}", out=str(output), targets=show.count)
 
 
 def _counted(

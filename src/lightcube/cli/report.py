@@ -14,7 +14,7 @@ from lightcube.verbs import reporting
 @threaded
 def report(
     cube: Annotated[str, typer.Argument(help="A cube.")],
-    frames: Annotated[
+    pictures: Annotated[
         str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
     output: Annotated[
@@ -30,7 +30,7 @@ def report(
     page_file.check()
     loaded = load(cube)
     with telling("measuring", as_json=as_json) as tell:
-        made = reporting.report(loaded, cube, frames, tell)
+        made = reporting.report(loaded, cube, pictures, tell)
     page_file.write(made.text)
     size, scores = len(made.text.encode()), made.scores
     done(

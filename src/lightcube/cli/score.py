@@ -18,14 +18,14 @@ from lightcube.verbs.wanted import wanted_of
 @threaded
 def score(
     cube: Annotated[str, typer.Argument(help="A cube.")],
-    frames: Annotated[
+    pictures: Annotated[
         str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
     sheet: Annotated[
         str | None, typer.Option(help="Draw a contact sheet: wanted, shown, difference (PNG, WebP or JPEG).")
     ] = None,
-    between_frames: Annotated[
-        bool, typer.Option("--between", help="Add PSNR and SSIM between the frames, and how far each one stands.")
+    between_pictures: Annotated[
+        bool, typer.Option("--between", help="Add PSNR and SSIM between the pictures, and how far each one stands.")
     ] = False,
     robust: Annotated[bool, typer.Option("--robust", help="Add what a set-up that is a little off costs.")] = False,
     plot: Annotated[str | None, typer.Option(help="Draw PSNR against the angle (PNG or SVG); --between.")] = None,
@@ -41,9 +41,9 @@ def score(
         if file is not None:
             file.check()
     loaded = load(cube)
-    wanted = wanted_of(loaded, frames)
+    wanted = wanted_of(loaded, pictures)
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
-        found = scoring.score(loaded, wanted, tell, between=between_frames or plot is not None, off=robust)
+        found = scoring.score(loaded, wanted, tell, between=between_pictures or plot is not None, off=robust)
     if plot_file is not None and found.curve is not None:
         plot_file.write(scoring.plot(found.curve))
     if sheet_file is not None:

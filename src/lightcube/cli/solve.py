@@ -13,7 +13,7 @@ from lightcube.backward.solution import Solution
 from lightcube.cli import arguments, printing
 from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening
 from lightcube.cli.fields import one_by_one
-from lightcube.cli.options import FRAMES, JSON, OUT, OVERWRITE, threaded
+from lightcube.cli.options import JSON, OUT, OVERWRITE, PICTURES, threaded
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, cubes, running
 from lightcube.jobs.partial import check_partial, open_partial
@@ -24,7 +24,7 @@ from lightcube.verbs.options import Options
 @threaded
 @one_by_one
 def solve(
-    frames: FRAMES,
+    pictures: PICTURES,
     output: Annotated[str, OUT],
     options: Options,
     memory: Annotated[
@@ -43,7 +43,7 @@ def solve(
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Compute the cube whose shadows are the frames; what was stopped or killed goes on where it was."""
+    """Compute the cube whose shadows are the pictures; what was stopped or killed goes on where it was."""
     io.Output(output, "cube", overwrite).check()
     check_partial(output)
     if unit is not None and (memory is not None or scheduler is not None):
@@ -52,7 +52,7 @@ def solve(
     which, units = (None, None) if unit is None else arguments.unit(unit)
     budget = None if memory is None else arguments.memory(memory)
     workers = 1 if scheduler is None else cluster.count_workers(scheduler)
-    job, said = _asked(frames, options, budget, units, as_json=as_json)
+    job, said = _asked(pictures, options, budget, units, as_json=as_json)
     if units is None:
         job = solving.divided(job, output, workers, budget)
     if dry_run:
@@ -95,16 +95,16 @@ def _solved(solution: Solution, output: str, seconds: float, *, as_json: bool) -
 
 
 def _asked(
-    frames: str, options: Options, memory: int | None, units: int | None, *, as_json: bool
+    pictures: str, options: Options, memory: int | None, units: int | None, *, as_json: bool
 ) -> tuple[Job, Callable[[], list[str]]]:
     """The job that `solve` is asked for, and a function that makes what is to be said of it."""
-    if io.is_stage(frames):
-        stage, wanted = staging.read(frames, options)
+    if io.is_stage(pictures):
+        stage, wanted = staging.read(pictures, options)
         return staging.job(stage, wanted, options, memory=memory, units=units), lambda: staging.in_short(stage, wanted)
     options = solving.settled(options)
-    pictures = solving.read(frames, options)
+    read = solving.read(pictures, options)
     with err.status("rehearsing"), compiling(as_json=as_json):
-        planned = solving.prepare(pictures, options)
+        planned = solving.prepare(read, options)
         order = solving.another_order(planned)
     job = solving.job(planned, memory=memory, units=units)
     return job, lambda: [*words.in_short(planned, order), *([] if options.paper else words.what_to_change(planned))]

@@ -17,12 +17,12 @@ def trace(
         str, typer.Argument(help="A scene file (TOML), or the name of a scene that comes with lightcube.")
     ],
     output: Annotated[str, OUT],
-    frames: Annotated[int | None, typer.Option(help="Number of pictures; default the scene's own.")] = None,
+    count: Annotated[int | None, typer.Option(help="Number of pictures; default the scene's own.")] = None,
     size: Annotated[
         str | None, typer.Option(help="Size of the pictures, WIDTHxHEIGHT; default the scene's own.")
     ] = None,
-    span: Annotated[float | None, typer.Option(help="Degrees that the views are spread over.")] = None,
-    elevation: Annotated[float | None, typer.Option(help="Elevation of the lamp in degrees.")] = None,
+    span_deg: Annotated[float | None, typer.Option(help="Degrees that the views are spread over.")] = None,
+    elevation_deg: Annotated[float | None, typer.Option(help="Elevation of the lamp in degrees.")] = None,
     fps: Annotated[float, FPS] = 25.0,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
@@ -36,7 +36,7 @@ def trace(
         width, height = arguments.whole_numbers(size, "x", "--size", 2)
         shape = (width, height)
     with telling("tracing", as_json=as_json) as tell:
-        made = tracing.trace(described, tell, count=frames, size=shape, span=span, elevation=elevation)
+        made = tracing.trace(described, tell, count=count, size=shape, span_deg=span_deg, elevation_deg=elevation_deg)
     movie.write(made.pictures, fps=fps, views=made.rig.views)
     rows, columns = made.rig.picture_shape
-    done(as_json, f"{len(made)} pictures of {columns} x {rows} in {output}", out=str(output), frames=len(made))
+    done(as_json, f"{len(made)} pictures of {columns} x {rows} in {output}", out=str(output), count=len(made))

@@ -1,6 +1,6 @@
 """A camera, and a canvas that knows how far away everything on it is.
 
-Lengths are mm in the room's frame. Depth is measured along the camera's axis, and kept as its inverse: over a plane,
+Lengths are mm in the room's axes. Depth is measured along the camera's axis, and kept as its inverse: over a plane,
 and along a line, that is linear in the picture.
 """
 

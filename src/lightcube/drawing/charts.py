@@ -85,19 +85,19 @@ def picture_bars(names: Sequence[str], psnr: Reals, expected: Reals | None, labe
 
 def between_curve(curve: Curve, label: str) -> str:
     """PSNR against the angle; the parts that belong to neighbouring pictures differ in colour, the stops are dots."""
-    start = float(curve.angles[0])
-    chart = _Chart((start, start + curve.period), (min(0.0, float(curve.psnr.min())), 1.06 * float(curve.psnr.max())))
-    turn = np.arange(-360.0, 721.0, 45.0 if curve.period == 360 else 30.0)
+    start = float(curve.angles_deg[0])
+    chart = _Chart((start, start + curve.period_deg), (min(0.0, float(curve.psnr.min())), 1.06 * float(curve.psnr.max())))
+    turn = np.arange(-360.0, 721.0, 45.0 if curve.period_deg == 360 else 30.0)
     shown = [float(angle) for angle in turn if chart.across[0] <= angle <= chart.across[1]]
     chart.axes(shown, _ticks(*chart.up), ("turntable angle, degrees", "PSNR, dB"))
     if chart.up[1] > LOBE_DB:
         chart.line(LOBE_DB, "limit")
     starts = np.flatnonzero(np.diff(curve.nearest)) + 1
-    for number, part in enumerate(np.split(np.arange(len(curve.angles)), starts)):
-        line = chart.at(curve.angles[part], curve.psnr[part])
+    for number, part in enumerate(np.split(np.arange(len(curve.angles_deg)), starts)):
+        line = chart.at(curve.angles_deg[part], curve.psnr[part])
         chart.parts.append(path(list(line), f'class="curve-{number % 2}"'))
-    stops = np.flatnonzero(curve.offsets == 0)
-    for place in chart.at(curve.angles[stops], curve.psnr[stops]):
+    stops = np.flatnonzero(curve.offsets_deg == 0)
+    for place in chart.at(curve.angles_deg[stops], curve.psnr[stops]):
         chart.parts.append(disc(place, 2.6 if len(stops) < 60 else 1.4, 'class="stop"'))
     return chart.drawing(label)
 

@@ -19,8 +19,8 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import unit
-from lightcube.pictures.fitting import frames_from_targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import targets_of
+from lightcube.pictures.targets import Targets
 from lightcube.scoring.between import LOBE_DB, Curve
 from lightcube.scoring.metrics import GOOD_DB, check_same_views, score_pictures
 
@@ -60,35 +60,35 @@ def between_plot(curves: dict[str, Curve]) -> "Figure":
     figure = _figure(9.0, 1.2 + 2.0 * len(curves))
     panels = np.atleast_1d(figure.subplots(len(curves), 1, sharey=True))
     for axes, (title, curve) in zip(panels, curves.items(), strict=True):
-        low, high = float(curve.angles[0]), float(curve.angles[0]) + curve.period
+        low, high = float(curve.angles_deg[0]), float(curve.angles_deg[0]) + curve.period_deg
         starts = np.flatnonzero(np.diff(curve.nearest)) + 1
-        for number, part in enumerate(np.split(np.arange(len(curve.angles)), starts)):
-            axes.plot(curve.angles[part], curve.psnr[part], color=("#20639b", "#3caea3")[number % 2], linewidth=1.2)
-        stops = curve.offsets == 0
-        axes.plot(curve.angles[stops], curve.psnr[stops], "o", color="#173f5f", markersize=3.5)
+        for number, part in enumerate(np.split(np.arange(len(curve.angles_deg)), starts)):
+            axes.plot(curve.angles_deg[part], curve.psnr[part], color=("#20639b", "#3caea3")[number % 2], linewidth=1.2)
+        stops = curve.offsets_deg == 0
+        axes.plot(curve.angles_deg[stops], curve.psnr[stops], "o", color="#173f5f", markersize=3.5)
         axes.axhline(LOBE_DB, color="#999", linewidth=0.8, linestyle="--")
         axes.set(xlim=(low, high), ylabel="PSNR, dB", title=title)
         axes.spines[["top", "right"]].set_visible(False)
-        if curve.period == 360:
+        if curve.period_deg == 360:
             axes.set_xticks(np.arange(45 * np.ceil(low / 45), high + 1e-9, 45))
     panels[-1].set_xlabel("turntable angle, degrees")
     return figure
 
 
-def sheet_plot(cube: Cube, frames: Frames | None = None) -> "Figure":
+def sheet_plot(cube: Cube, targets: Targets | None = None) -> "Figure":
     """Contact sheet: wanted, shown and their difference (around grey) of each picture, with its angle and PSNR.
 
     Parameters
     ----------
-    frames
+    targets
         What was wanted; None = the 8-bit targets that the cube keeps. Of more than 32 pictures, 32 are shown.
 
     Raises
     ------
     InputError
-        Where the cube keeps no targets and no frames are given, or they do not fit its pictures.
+        Where the cube keeps no targets and none are given, or they do not fit its pictures.
     """
-    wanted = frames_from_targets(cube) if frames is None else frames
+    wanted = targets_of(cube) if targets is None else targets
     check_same_views(cube, wanted)
     shown = play(cube)
     scores = score_pictures(shown, wanted)["views"]
@@ -106,7 +106,9 @@ def sheet_plot(cube: Cube, frames: Frames | None = None) -> "Figure":
         above, middle, below = triple(shown[view], wanted, int(view))
         axes.imshow(np.concatenate([above, gap, middle, gap, below]), interpolation="nearest")
         score = scores[view]
-        axes.set_title(f"{score['name'][:16]}\n{score['angle']:.4g}°  {score['psnr']:.1f} dB", fontsize=7, color=_INK)
+        axes.set_title(
+            f"{score['name'][:16]}\n{score['angle_deg']:.4g}°  {score['psnr']:.1f} dB", fontsize=7, color=_INK
+        )
     for axes in panels:
         axes.set_axis_off()
     return figure
@@ -116,7 +118,7 @@ Points = Sequence[tuple[float, float]]
 
 
 def capacity_plot(
-    curves: Mapping[float, Points], others: Mapping[str, Points] | None = None, *, elevation: float = 0.0
+    curves: Mapping[float, Points], others: Mapping[str, Points] | None = None, *, elevation_deg: float = 0.0
 ) -> "Figure":
     """Mean PSNR against the load, a curve for each bound on the lamp power; the dashed line is where pictures are good.
 
@@ -127,7 +129,7 @@ def capacity_plot(
         `lightcube.predict` or `lightcube.score` tell them.
     others
         More such points by what they are, drawn hollow and not joined.
-    elevation
+    elevation_deg
         Of the lamp, degrees; it decides what a load is.
     """
     figure = _figure(9.0, 5.3)
@@ -141,8 +143,8 @@ def capacity_plot(
         axes.plot(*zip(*points, strict=True), label=label, markersize=6.5, **look)
     axes.axhline(GOOD_DB, color=_QUIET, linewidth=0.8, linestyle="--")
     lamp, size, side = "level lamp", "width", "the cube"
-    if elevation:
-        lamp, size, side = f"lamp raised by {elevation:g}°", "area", "a side of the cube"
+    if elevation_deg:
+        lamp, size, side = f"lamp raised by {elevation_deg:g}°", "area", "a side of the cube"
     axes.set(title=f"How much a cube holds, {lamp}", ylabel="mean PSNR, dB", xscale="log")
     axes.set_xlabel(f"load: number of pictures × {size} of a picture / {size} of {side}")
     low, high = axes.get_xlim()
@@ -163,16 +165,16 @@ class _Beam(NamedTuple):
     ends: Reals
 
 
-def geometry_plot(cube: Cube, angle: float | None = None) -> "Figure":
+def geometry_plot(cube: Cube, angle_deg: float | None = None) -> "Figure":
     """The set-up from above and from the side, to one scale: cube, lamps, screens, stops, and light to their corners.
 
     Parameters
     ----------
-    angle
+    angle_deg
         Of the turntable, degrees; None = the first stop's. The pointer shows it among the stops around the table.
     """
     rig = drawn(cube).rig
-    at = float(rig.stops.angle[0]) if angle is None else angle
+    at = float(rig.stops.angle_deg[0]) if angle_deg is None else angle_deg
     room = standing(cube, at)
     points = extent(cube.grid, room)
     middle, half = (points.max(axis=0) + points.min(axis=0)) / 2, np.ptp(points, axis=0) / 2
@@ -200,9 +202,9 @@ def _colour(rig: Rig, lamp: int) -> tuple[float, ...]:
     return tuple(float(part) for part in 0.9 * light / light.max())
 
 
-def _beams(cube: Cube, room: Standing, angle: float) -> Iterator[_Beam]:
+def _beams(cube: Cube, room: Standing, angle_deg: float) -> Iterator[_Beam]:
     """Of every lamp that shines on a screen at that angle."""
-    rig, powers = moment(cube, [angle])
+    rig, powers = moment(cube, [angle_deg])
     lit = np.any(powers[rig.pair] * rig.sums.share > 0, axis=1)
     lamps = list(np.unique(rig.sums.lamp))
     for screen, number in sorted(set(zip(rig.sums.picture[lit].tolist(), rig.sums.lamp[lit].tolist(), strict=True))):
@@ -220,7 +222,7 @@ def _draw_beam(axes: "Axes", beam: _Beam, up: int) -> None:
     axes.plot(x, y, color=beam.colour, alpha=0.6, linewidth=0.7)
 
 
-def _draw_table(axes: "Axes", grid: Grid, rig: Rig, room: Standing, angle: float, up: int) -> None:
+def _draw_table(axes: "Axes", grid: Grid, rig: Rig, room: Standing, angle_deg: float, up: int) -> None:
     """Draw the turntable, a tick for each stop where the axis points at who looks, and the pointer."""
     middle, right, down = table_of(grid, replace(room, turn=np.eye(3)))
     way = -math.copysign(1.0, float(room.axis @ rig.turning.axis))  # from right to down is clockwise
@@ -231,12 +233,12 @@ def _draw_table(axes: "Axes", grid: Grid, rig: Rig, room: Standing, angle: float
 
     disc = np.arange(0.0, 360.0, 5.0)
     axes.fill(*hull(rim(disc, 1.0)).T, facecolor="#ece8de", edgecolor="#b9b3a4", linewidth=0.8, closed=True)
-    stops = np.unique(rig.stops.angle)
+    stops = np.unique(rig.stops.angle_deg)
     if abs(np.cross((1.0, 0.0, 0.0), np.eye(3)[up]) @ room.axis) < 0.5 or len(stops) == 1:
         return
     for ends in zip(rim(stops, 0.94), rim(stops, 1.0), strict=True):
         axes.plot(*np.stack(ends).T, color=_INK, linewidth=0.9)
-    tip = np.concatenate([rim(np.array([angle]), 0.99), rim(angle + np.array([-3.0, 3.0]), 0.9)])
+    tip = np.concatenate([rim(np.array([angle_deg]), 0.99), rim(angle_deg + np.array([-3.0, 3.0]), 0.9)])
     axes.fill(*tip.T, color=_INK)
 
 

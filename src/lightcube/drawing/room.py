@@ -41,9 +41,9 @@ _BACK, _FRAME, _TABLE, _RIM = (0.07, 0.07, 0.074), (0.3, 0.3, 0.31), (0.3, 0.3, 
 _EDGE, _DARK_LAMP = (0.75, 0.86, 1.0), (0.16, 0.16, 0.17)
 
 
-def room_picture(cube: Cube, angle: float, camera: Camera) -> NDArray[np.float32]:
+def room_picture(cube: Cube, angle_deg: float, camera: Camera) -> NDArray[np.float32]:
     """The room at a turntable angle (degrees), ``(row, column, 3)`` linear light, 1 = white."""
-    return room_player(cube, camera)(angle)
+    return room_player(cube, camera)(angle_deg)
 
 
 def room_player(cube: Cube, camera: Camera) -> Callable[[float], NDArray[np.float32]]:
@@ -53,13 +53,13 @@ def room_player(cube: Cube, camera: Camera) -> Callable[[float], NDArray[np.floa
     """
     cast = player(cube)
     glass = columns_from_volume(cube.extinction)
-    low = min(float(extent(cube.grid, standing(cube, angle))[:, 2].min()) for angle in _AROUND)
+    low = min(float(extent(cube.grid, standing(cube, angle_deg))[:, 2].min()) for angle_deg in _AROUND)
     empty = Canvas(camera)
     _floor(empty, cube.grid, low - 0.02 * size_of(cube.grid))
 
-    def show(angle: float) -> NDArray[np.float32]:
-        canvas, now = empty.copy(), standing(cube, angle)
-        for screen, picture in zip(now.screens, cast([angle]), strict=True):
+    def show(angle_deg: float) -> NDArray[np.float32]:
+        canvas, now = empty.copy(), standing(cube, angle_deg)
+        for screen, picture in zip(now.screens, cast([angle_deg]), strict=True):
             _show_screen(canvas, screen, picture)
         absorbed = _enter(canvas, cube.grid, now.turn)
         _overlay(canvas, cube.grid, now, front=False)
@@ -82,9 +82,9 @@ def camera_for(cube: Cube, size: tuple[int, int] = (540, 960)) -> Camera:
     size
         Rows and columns of its picture.
     """
-    stops = np.unique(cube.angles)
+    stops = np.unique(cube.angles_deg)
     rooms = [standing(cube, stop) for stop in stops[:: math.ceil(len(stops) / _MOST_STOPS)]]
-    others = [standing(cube, angle) for angle in _AROUND]
+    others = [standing(cube, angle_deg) for angle_deg in _AROUND]
     points = np.concatenate([extent(cube.grid, room) for room in rooms + others])
     across = math.tan(math.radians(_FIELD) / 2)
     best, chosen = -math.inf, (np.ones(3), np.zeros(3))

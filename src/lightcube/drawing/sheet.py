@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from lightcube.optics.transfer import encode, to_uint8
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 
 #: Shorter side that a picture is enlarged to, by whole pixels; gap and line height in pixels.
 _SIDE, _GAP, _LINE = 128, 8, 16
@@ -17,14 +17,14 @@ _PAPER, _INK = (250, 250, 248), (40, 40, 40)
 MOST = 32
 
 
-def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float]) -> NDArray[np.uint8]:
+def contact_sheet(shown: NDArray[np.float32], targets: Targets, psnr: list[float]) -> NDArray[np.uint8]:
     """Draw wanted, shown and difference of each view, with its name and PSNR (dB).
 
     Parameters
     ----------
     shown
         ``(view, row, column, channel)`` in linear light.
-    frames
+    targets
         What was wanted.
     psnr
         One figure per view.
@@ -34,9 +34,9 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
     ``(row, column, 3)`` 8-bit sRGB. The difference of display values is drawn around mid grey. Of more than 32
     views, 32 are shown.
     """
-    count = len(frames)
+    count = len(targets)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
-    rows, columns = frames.rig.picture_shape
+    rows, columns = targets.rig.picture_shape
     scale = max(1, round(_SIDE / min(rows, columns)))
     cell_height, cell_width = rows * scale * 3 + 2 * _LINE + 2 * _GAP, max(columns * scale, 96) + _GAP
     per_line = max(1, min(len(chosen), 1800 // cell_width))
@@ -49,35 +49,35 @@ def contact_sheet(shown: NDArray[np.float32], frames: Frames, psnr: list[float])
     for place, view in enumerate(chosen):
         left = _GAP + place % per_line * cell_width
         top = _GAP + _LINE + place // per_line * cell_height
-        label = f"{frames.names[view]}"[:16]
+        label = f"{targets.names[view]}"[:16]
         draw.text((left, top), label, _INK, font)
-        draw.text((left, top + _LINE - 3), f"{frames.angles[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
-        for index, picture in enumerate(triple(shown[view], frames, int(view))):
+        draw.text((left, top + _LINE - 3), f"{targets.angles_deg[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
+        for index, picture in enumerate(triple(shown[view], targets, int(view))):
             tile = Image.fromarray(picture).resize((columns * scale, rows * scale), Image.Resampling.NEAREST)
             sheet.paste(tile, (left, top + 2 * _LINE + index * (rows * scale + 2)))
     return np.asarray(sheet)
 
 
-def triple(shown: NDArray[np.float32], frames: Frames, view: int) -> list[NDArray[np.uint8]]:
+def triple(shown: NDArray[np.float32], targets: Targets, view: int) -> list[NDArray[np.uint8]]:
     """Wanted, shown and difference of one view, 8-bit RGB; grey where there is nothing wanted."""
-    wanted, weight = frames.pictures[view], frames.weight[view][..., None] > 0
-    difference = 0.5 + encode(shown, frames.transfer) - encode(wanted, frames.transfer)
+    wanted, weight = targets.pictures[view], targets.weight[view][..., None] > 0
+    difference = 0.5 + encode(shown, targets.transfer) - encode(wanted, targets.transfer)
     eighth = np.clip(np.rint(difference * 255), 0, 255).astype(np.uint8)
-    pictures = [to_uint8(wanted, frames.transfer), to_uint8(shown, frames.transfer), eighth]
+    pictures = [to_uint8(wanted, targets.transfer), to_uint8(shown, targets.transfer), eighth]
     return [np.broadcast_to(np.where(weight, p, 128), (*p.shape[:2], 3)).astype(np.uint8) for p in pictures]
 
 
 def beside_targets(
-    shown: Iterable[NDArray[np.float32]], frames: Frames, angles: NDArray[np.float64]
+    shown: Iterable[NDArray[np.float32]], targets: Targets, angles_deg: NDArray[np.float64]
 ) -> Iterator[NDArray[np.float32]]:
     """Yield each picture with the wanted one of the nearest stop to its right, ``(row, 2 column + 2, channel)``.
 
-    Pictures are in linear light; `angles` are theirs, in degrees. Pixels that nobody cares about are grey.
+    Pictures are in linear light; `angles_deg` are theirs, in degrees. Pixels that nobody cares about are grey.
     """
-    for picture, angle in zip(shown, angles, strict=True):
-        apart = np.abs(np.remainder(frames.angles - angle + 180, 360) - 180)
+    for picture, angle_deg in zip(shown, angles_deg, strict=True):
+        apart = np.abs(np.remainder(targets.angles_deg - angle_deg + 180, 360) - 180)
         nearest = int(np.argmin(apart))
-        wanted = np.where(frames.weight[nearest][..., None] > 0, frames.pictures[nearest], np.float32(0.2))
+        wanted = np.where(targets.weight[nearest][..., None] > 0, targets.pictures[nearest], np.float32(0.2))
         gap = np.zeros((len(picture), 2, picture.shape[2]), np.float32)
         yield np.concatenate([picture, gap, wanted], axis=1)
 

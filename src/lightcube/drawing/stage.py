@@ -48,8 +48,8 @@ def drawing(stage: Stage) -> str:
         box = (left, _HEAD, left + wide, _HEAD + height)
         panels.append(_Panel(name, letters, axes, box, scale, middle, names))
     whole = _HEAD + height + _FOOT
-    angle = f"{stage.stops[0]:g}°"
-    title = f"The room at stop 1 of {len(stage.stops)}, the table at {angle}" if room.has_table else "The room"
+    angle = f"{stage.stops_deg[0]:g}°"
+    title = f"The room at stop 1 of {len(stage.stops_deg)}, the table at {angle}" if room.has_table else "The room"
     size = f'viewBox="0 0 {_WIDTH} {whole:.0f}" width="{_WIDTH}" height="{whole:.0f}"'
     style = f'font-family={quoteattr(_FONT)} font-size="12" fill="{_INK}"'
     parts = [
@@ -68,7 +68,7 @@ def drawing(stage: Stage) -> str:
 
 @dataclass(frozen=True)
 class _Room:
-    """Where everything stands at the first stop, mm in the room's frame."""
+    """Where everything stands at the first stop, mm in the room's axes."""
 
     stage: Stage
 
@@ -77,12 +77,12 @@ class _Room:
         array = np.asarray(points, np.float64)
         if not turns:
             return array
-        return np.asarray(array @ rotations(self.stage.axis, np.array([self.stage.stops[0]]))[0].T)
+        return np.asarray(array @ rotations(self.stage.axis, np.array([self.stage.stops_deg[0]]))[0].T)
 
     @property
     def has_table(self) -> bool:
         """Whether anything turns at all."""
-        return len(self.stage.stops) > 1
+        return len(self.stage.stops_deg) > 1
 
     @cached_property
     def cube(self) -> Reals:
@@ -112,7 +112,7 @@ class _Room:
         right, down = (step / screen.pitch_mm for step in screen.steps)
         wide, high = screen.size_mm
         corners = [a * wide / 2 * right + b * high / 2 * down for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        middle = np.array(screen.centre)
+        middle = np.array(screen.centre_mm)
         placed = self.placed([*(middle + corner for corner in corners), middle], screen.turns)
         return placed[:4], placed[4], self.placed(screen.facing, screen.turns)
 
@@ -120,8 +120,8 @@ class _Room:
     def lamps(self) -> dict[str, Reals]:
         """Where each lamp is drawn: parallel light comes from a sun on its side of the cube, clear of other lamps."""
         radius = float(np.linalg.norm(self.cube, axis=1).max())
-        stands = [lamp for lamp in self.stage.lamps if lamp.position is not None]
-        points = {lamp.name: self.placed(np.array(lamp.position), lamp.turns) for lamp in stands}
+        stands = [lamp for lamp in self.stage.lamps if lamp.position_mm is not None]
+        points = {lamp.name: self.placed(np.array(lamp.position_mm), lamp.turns) for lamp in stands}
         solid = [self.screen(each)[1] for each in self.stage.screens] + list(points.values())
         near = max(2.0 * radius, 0.6 * max(float(np.linalg.norm(each)) for each in solid))
         for lamp in self.stage.lamps:
@@ -151,7 +151,9 @@ class _Room:
 
     def beams(self) -> Iterator[tuple[Lamp, Screen, Reals]]:
         """The beams of each lamp and screen of a picture of this stop, as points whose hull they fill."""
-        shots = [shot for shot in self.stage.shots if (self.stage.stops[shot.stop] - self.stage.stops[0]) % 360 == 0]
+        shots = [
+            shot for shot in self.stage.shots if (self.stage.stops_deg[shot.stop] - self.stage.stops_deg[0]) % 360 == 0
+        ]
         for name, lit in dict.fromkeys((shot.screen, lamp) for shot in shots for lamp in shot.lamps):
             screen, lamp = self.stage.screen(name), self.stage.lamp(lit)
             yield lamp, screen, self._beam(lamp, screen)
@@ -211,9 +213,9 @@ class _Panel:
 def _panel(room: _Room, panel: _Panel, key: str) -> Iterator[str]:
     """Everything in one panel, back to front; names come last."""
     left, top, right, bottom = panel.box
-    frame = f'x="{left:.0f}" y="{top:.0f}" width="{right - left:.0f}" height="{bottom - top:.0f}" rx="9"'
-    yield f'<clipPath id="{key}"><rect {frame}/></clipPath>'
-    yield f'<rect {frame} fill="{_PAPER}" stroke="{_LINE}"/>'
+    box = f'x="{left:.0f}" y="{top:.0f}" width="{right - left:.0f}" height="{bottom - top:.0f}" rx="9"'
+    yield f'<clipPath id="{key}"><rect {box}/></clipPath>'
+    yield f'<rect {box} fill="{_PAPER}" stroke="{_LINE}"/>'
     yield f'<g clip-path="url(#{key})" aria-label={quoteattr(panel.name)}>'
     if room.has_table:
         yield _table(room, panel)
@@ -263,7 +265,7 @@ def _table(room: _Room, panel: _Panel) -> str:
 
 def _stops(room: _Room, panel: _Panel) -> Iterator[str]:
     """Ticks and numbers of the stops, as many as there is room for, and the pointer that turns with the table."""
-    stops = np.array(room.stage.stops)
+    stops = np.array(room.stage.stops_deg)
     for outer, inner in zip(panel.at(room.rim(stops)), panel.at(room.rim(stops, 0.95)), strict=True):
         yield path([inner, outer], f'stroke="{_QUIET}" stroke-width="1"')
     shown: list[Reals] = []
@@ -364,7 +366,7 @@ def _signs(room: _Room, y: float) -> Iterator[tuple[str, str]]:
     at = np.array([8.0, y])
     if any(lamp.direction is not None for lamp in room.stage.lamps):
         yield _sun(at, (1.0, 1.0, 1.0)), "parallel light"
-    if any(lamp.position is not None for lamp in room.stage.lamps):
+    if any(lamp.position_mm is not None for lamp in room.stage.lamps):
         yield _bulb(at, (1.0, 1.0, 1.0)), "point lamp"
     pin = path([moved(at, -3, -8), moved(at, -3, 8)], f'stroke="{_INK}" stroke-width="2.6"')
     pin += path([moved(at, -3, 0), moved(at, 5, 0)], f'stroke="{_INK}" stroke-width="1.2"')
@@ -376,7 +378,7 @@ def _signs(room: _Room, y: float) -> Iterator[tuple[str, str]]:
 
 def _counted(stage: Stage) -> str:
     """How much there is of everything, in one line."""
-    counts = [(len(stage.lamps), "lamp"), (len(stage.screens), "screen"), (len(stage.stops), "stop")]
+    counts = [(len(stage.lamps), "lamp"), (len(stage.screens), "screen"), (len(stage.stops_deg), "stop")]
     counts.append((len(stage.shots), "picture"))
     shape = " × ".join(str(n) for n in reversed(stage.grid.shape))
     size = " × ".join(f"{length:.4g}" for length in reversed(stage.grid.size_mm))

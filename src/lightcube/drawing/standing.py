@@ -1,7 +1,7 @@
 """What stands where in the room at a turntable angle: the cube, the screens and the lamps.
 
-Lengths are mm. The room's frame is the cube's at angle 0. Where the table carries the cube, what the rig says in
-the cube's frame is turned with it; where the cube stands still, the two frames are one.
+Lengths are mm. The room's axes is the cube's at angle 0. Where the table carries the cube, what the rig says in
+the cube's axes is turned with it; where the cube stands still, the two are one.
 """
 
 from dataclasses import dataclass, replace
@@ -56,7 +56,7 @@ class PlacedLamp:
 
 @dataclass(frozen=True)
 class Standing:
-    """What stands where at an angle, in the room's frame."""
+    """What stands where at an angle, in the room's axes."""
 
     turn: Reals
     axis: Reals
@@ -76,28 +76,28 @@ def drawn(cube: Cube) -> Cube:
     level = np.hypot(light[:, 0], light[:, 1])
     endless = rig.screens.endless[rig.stops.screen][rig.sums.picture]
     away = np.where(endless, _BEHIND * cube.grid.size_mm[1] / np.maximum(level, 1e-9), 0.0)
-    views = replace(rig.views, origins=rig.views.origins + away[:, None] * light)
+    views = replace(rig.views, origins_mm=rig.views.origins_mm + away[:, None] * light)
     powers, names = np.tile(cube.powers, (times, 1)), times * cube.names
     return replace(cube, rig=replace(rig, views=views), lamp_powers=powers, names=names, targets=None)
 
 
-def standing(cube: Cube, angle: float) -> Standing:
+def standing(cube: Cube, angle_deg: float) -> Standing:
     """Where the cube, the screens and the lamps stand at an angle (degrees)."""
     cube = drawn(cube)
-    rig, powers = moment(cube, [angle])
-    turn = rotations(rig.turning.axis, np.array([angle if carries_cube(rig) else 0.0]))[0]
+    rig, powers = moment(cube, [angle_deg])
+    turn = rotations(rig.turning.axis, np.array([angle_deg if carries_cube(rig) else 0.0]))[0]
     starts = rig.starts
     screens = []
     for picture, pixels in enumerate(rig.stops.window):
         its = slice(starts[picture], starts[picture + 1])
-        middle = rig.views.origins[its].mean(axis=0)  # of a pixel's samples
+        middle = rig.views.origins_mm[its].mean(axis=0)  # of a pixel's samples
         screens.append(_placed(turn, middle, rig.views, starts[picture], (int(pixels[0]), int(pixels[1]))))
     light = powers[rig.pair] * rig.sums.share
     lamps = []
     for number in range(len(rig.lamps.names)):
         if not np.any(cube.rig.sums.lamp == number):
             continue
-        place, parallel = _lamp_place(cube.rig, number, angle)
+        place, parallel = _lamp_place(cube.rig, number, angle_deg)
         lamps.append(PlacedLamp(turn @ place, parallel, light[rig.sums.lamp == number].sum(axis=0)))
     axis = rig.turning.axis * (1 if rig.turning.axis[2] >= 0 else -1)
     return _clear(cube.grid, Standing(turn, unit(axis), tuple(screens), tuple(lamps)))
@@ -110,16 +110,18 @@ def carries_cube(rig: Rig) -> bool:
 
 def _placed(turn: Reals, middle: Reals, views: Views, view: int, pixels: tuple[int, int]) -> PlacedScreen:
     """The upper left `pixels` of a view's raster, in the room."""
-    right, down = views.column_steps[view], views.row_steps[view]
+    right, down = views.column_steps_mm[view], views.row_steps_mm[view]
     rows, columns = views.picture_shape
     return PlacedScreen(turn @ (middle - columns / 2 * right - rows / 2 * down), turn @ right, turn @ down, pixels)
 
 
-def _lamp_place(rig: Rig, number: int, angle: float) -> tuple[Reals, bool]:
-    """Where a lamp stands (or the way its light travels) in the cube's frame, lit or not, and whether it is the way."""
+def _lamp_place(rig: Rig, number: int, angle_deg: float) -> tuple[Reals, bool]:
+    """Where a lamp stands (or the way its light travels) in the cube's axes, lit or not, and whether it is the way."""
     picture = int(rig.sums.picture[np.argmax(rig.sums.lamp == number)])
     alone = rig.take([picture])
-    lamps = alone.turned(angle - alone.stops.angle).views.lamps[alone.sums.lamp == number]  # of a disc's samples
+    lamps = alone.turned(angle_deg - alone.stops.angle_deg).views.lamps[
+        alone.sums.lamp == number
+    ]  # of a disc's samples
     return lamps[:, :3].mean(axis=0), not lamps[0, 3]
 
 

@@ -34,37 +34,37 @@ def cast(
     yield from _cast(columns_from_volume(cube.extinction), cube, rig or cube.rig, powers)
 
 
-def play(cube: Cube, angles: ArrayLike | None = None, *, whole_screen: bool = False) -> NDArray[np.float32]:
+def play(cube: Cube, angles_deg: ArrayLike | None = None, *, whole_shadow: bool = False) -> NDArray[np.float32]:
     """What the screen shows, ``(picture, row, column, channel)`` float32 linear light, lamp included, never clipped.
 
     Parameters
     ----------
-    angles
+    angles_deg
         Turntable angles in degrees; None = the pictures that the cube was made for. Where there are several screens the
         pictures of an angle follow each other (`lightcube.forward.turning.moment`).
-    whole_screen
+    whole_shadow
         Show the whole shadow and its surroundings instead of the picture, where the screen has no edges.
     """
-    return player(cube, whole_screen=whole_screen)(angles)
+    return player(cube, whole_shadow=whole_shadow)(angles_deg)
 
 
-def player(cube: Cube, *, whole_screen: bool = False) -> Callable[[ArrayLike | None], NDArray[np.float32]]:
+def player(cube: Cube, *, whole_shadow: bool = False) -> Callable[[ArrayLike | None], NDArray[np.float32]]:
     """Make a function of the angles that shows what `play` does, fast enough for a cube that is turned by hand.
 
     The cube is laid out for casting once, which takes as much memory again.
 
     Parameters
     ----------
-    whole_screen
+    whole_shadow
         As `play` takes it.
     """
     columns = columns_from_volume(cube.extinction)
 
-    def show(angles: ArrayLike | None) -> NDArray[np.float32]:
-        if angles is None:
-            now, powers = cube.rig.whole(cube.grid) if whole_screen else cube.rig, cube.powers
+    def show(angles_deg: ArrayLike | None) -> NDArray[np.float32]:
+        if angles_deg is None:
+            now, powers = cube.rig.whole(cube.grid) if whole_shadow else cube.rig, cube.powers
         else:
-            now, powers = moment(cube, angles, whole_screen=whole_screen)
+            now, powers = moment(cube, angles_deg, whole_shadow=whole_shadow)
         return np.stack(list(_cast(columns, cube, now, powers)))
 
     return show

@@ -7,10 +7,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lightcube.optics.cube import Cube
 from lightcube.optics.rig import Rig
-from lightcube.optics.views import smallest_gap
+from lightcube.optics.views import smallest_gap_deg
 
 
-def moment(cube: Cube, angles: ArrayLike, *, whole_screen: bool = False) -> tuple[Rig, NDArray[np.float64]]:
+def moment(cube: Cube, angles_deg: ArrayLike, *, whole_shadow: bool = False) -> tuple[Rig, NDArray[np.float64]]:
     """The room of a cube and its lamps' powers ``(pairs, channels)`` at any turntable angles (degrees).
 
     The pictures of an angle follow each other, one for each screen (`lightcube.optics.rig.Rig.at`). The power of each
@@ -19,11 +19,11 @@ def moment(cube: Cube, angles: ArrayLike, *, whole_screen: bool = False) -> tupl
 
     Parameters
     ----------
-    whole_screen
+    whole_shadow
         Show the whole shadow and its surroundings instead of the picture, where the screen has no edges.
     """
     rig = cube.rig
-    now, _ = (rig.whole(cube.grid) if whole_screen else rig).at(angles)
+    now, _ = (rig.whole(cube.grid) if whole_shadow else rig).at(angles_deg)
     return now, powers_of(cube, now)
 
 
@@ -36,24 +36,24 @@ def powers_of(cube: Cube, rig: Rig) -> NDArray[np.float64]:
     for screen, lamp in np.unique(np.stack([shown, rig.pairs[:, 1]], axis=1), axis=0):
         mine = (shown == screen) & (rig.pairs[:, 1] == lamp)
         alike = (screens == screen) & (own.pairs[:, 1] == lamp)
-        stops, asked = own.stops.angle[own.pairs[alike, 0]], rig.stops.angle[rig.pairs[mine, 0]]
-        powers[mine] = _powers_between(cube.hold_deg, asked, stops, logs[alike], own.period)
+        stops, asked = own.stops.angle_deg[own.pairs[alike, 0]], rig.stops.angle_deg[rig.pairs[mine, 0]]
+        powers[mine] = _powers_between(cube.hold_deg, asked, stops, logs[alike], own.period_deg)
     return powers
 
 
 def _powers_between(
-    hold: float,
-    angles: NDArray[np.float64],
+    hold_deg: float,
+    angles_deg: NDArray[np.float64],
     stops: NDArray[np.float64],
     logs: NDArray[np.float64],
     period: float,
 ) -> NDArray[np.float64]:
     """Power at each of the angles, ``(angles, channels)``, from ln P at the stops, constant over the hold."""
     # just short of the middle between two stops, so that the ends of their holds keep their order
-    hold = min(hold, smallest_gap(stops, period) / 2 - 1e-6)
-    if hold > 0:
-        stops, logs = np.concatenate([stops - hold, stops + hold]), np.concatenate([logs, logs])
-    return np.exp(np.stack([np.interp(angles, stops, column, period=period) for column in logs.T], axis=1))
+    hold_deg = min(hold_deg, smallest_gap_deg(stops, period) / 2 - 1e-6)
+    if hold_deg > 0:
+        stops, logs = np.concatenate([stops - hold_deg, stops + hold_deg]), np.concatenate([logs, logs])
+    return np.exp(np.stack([np.interp(angles_deg, stops, column, period=period) for column in logs.T], axis=1))
 
 
 def turn(cube: Cube, count: int, start: float = 0.0, end: float = 360.0) -> NDArray[np.float64]:
@@ -63,15 +63,15 @@ def turn(cube: Cube, count: int, start: float = 0.0, end: float = 360.0) -> NDAr
     Where half a turn shows the mirror image a stop is passed twice. Where stops are nearer to each other than the
     angles, some are left out.
     """
-    stops = cube.angles
+    stops = cube.angles_deg
     if cube.rig.mirrors:
         stops = np.concatenate([stops, stops + 180])
     laps = 360.0 * np.arange(math.floor(min(start, end) / 360) - 1, math.ceil(max(start, end) / 360) + 1)
     passed = (stops[:, None] + laps).ravel()
-    angles = np.linspace(start, end, count, endpoint=False)
+    angles_deg = np.linspace(start, end, count, endpoint=False)
     place = (passed - start) * count / (end - start)
     nearest = np.rint(place).astype(int)
     for stop in np.argsort(-np.abs(place - nearest)):  # where two stops want the same angle, the nearer has it
         if 0 <= nearest[stop] < count:
-            angles[nearest[stop]] = passed[stop]
-    return angles
+            angles_deg[nearest[stop]] = passed[stop]
+    return angles_deg

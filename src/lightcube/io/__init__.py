@@ -17,7 +17,7 @@ __getattr__, __dir__, __all__ = when_used(
         "scene_names": "scenes",
         "is_stage": "stages",
         "read_stage": "stages",
-        "read_stage_frames": "stages",
+        "read_stage_targets": "stages",
         "stage_pictures": "stages",
     },
 )

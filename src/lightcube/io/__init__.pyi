@@ -6,7 +6,7 @@ from lightcube.io.movies import ClippedPictures
 from lightcube.io.outputs import Output, save
 from lightcube.io.pictures import TransparentPictures, read_pictures
 from lightcube.io.scenes import read_scene, scene_names
-from lightcube.io.stages import is_stage, read_stage, read_stage_frames, stage_pictures
+from lightcube.io.stages import is_stage, read_stage, read_stage_targets, stage_pictures
 
 __all__ = [
     "ClippedPictures",
@@ -19,7 +19,7 @@ __all__ = [
     "read_pictures",
     "read_scene",
     "read_stage",
-    "read_stage_frames",
+    "read_stage_targets",
     "save",
     "scene_names",
     "stage_pictures",

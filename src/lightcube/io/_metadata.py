@@ -17,7 +17,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 
 #: Of the files that this version writes; it reads no earlier ones, which were never released.
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Strict = ConfigDict(extra="forbid", strict=True)
@@ -28,7 +28,7 @@ class _CubeJson(BaseModel):
 
     model_config = _Strict
 
-    format_version: Literal[3]
+    format_version: Literal[4]
     written_by: str
     extinction_unit: Literal["1/mm"]
     voxel_mm: Annotated[_Number, Field(gt=0)]

@@ -24,9 +24,9 @@ class _ViewsJson(BaseModel):
     model_config = _STRICT
 
     lamps: list[Annotated[list[_Number], Field(min_length=4, max_length=4)]]
-    origins: list[_Three]
-    column_steps: list[_Three]
-    row_steps: list[_Three]
+    origins_mm: list[_Three]
+    column_steps_mm: list[_Three]
+    row_steps_mm: list[_Three]
     picture_shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=2, max_length=2)]
 
 
@@ -59,7 +59,7 @@ class _TurningJson(BaseModel):
 class _StopsJson(BaseModel):
     model_config = _STRICT
 
-    angle: list[_Number]
+    angle_deg: list[_Number]
     screen: list[_Count]
     window: list[Annotated[list[_Count], Field(min_length=2, max_length=2)]]
 
@@ -140,5 +140,5 @@ def _check_light(views: Views) -> None:
         raise InputError("lamps: the fourth number of a lamp is 0 or 1")
     if not np.all((lamps[:, 3] == 1) | np.any(lamps[:, :3] != 0, axis=1)):
         raise InputError("lamps: a direction of light is zero")
-    if not np.all(np.any(np.cross(views.column_steps, views.row_steps) != 0, axis=1)):
+    if not np.all(np.any(np.cross(views.column_steps_mm, views.row_steps_mm) != 0, axis=1)):
         raise InputError("column_steps: a screen's columns and rows run along one line")

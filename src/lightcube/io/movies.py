@@ -15,7 +15,7 @@ from lightcube.errors import InputError
 from lightcube.io import _encoders
 from lightcube.io._files import Writer
 from lightcube.io._places import Place, names_in
-from lightcube.io.frames_folder import VIEWS_FILE, views_text
+from lightcube.io.pictures_folder import VIEWS_FILE, views_text
 from lightcube.optics.transfer import Transfer, check_transfer, encode
 from lightcube.optics.views import Views
 
@@ -199,7 +199,7 @@ def _write_npy(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Cli
             file.write(picture.astype("<f4").tobytes())
 
 
-def is_frames_folder(path: Place) -> bool:
+def is_pictures_folder(path: Place) -> bool:
     """Whether a folder holds nothing but what `_write_folder` writes."""
     return all(name == VIEWS_FILE or PurePath(name).suffix == ".png" for name in names_in(path))
 

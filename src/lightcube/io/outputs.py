@@ -68,7 +68,7 @@ KINDS: Mapping[Kind, Row] = {
         "a movie",
         movies.WRITERS,
         lambda thing: isinstance(thing, Iterable) and not (isinstance(thing, str | Mapping) or _is_picture(thing)),
-        movies.is_frames_folder,
+        movies.is_pictures_folder,
     ),
 }
 

@@ -12,9 +12,9 @@ from lightcube.io._decode import Budget, Levels, Take, read_animation, read_sing
 from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._places import fetched, place
 from lightcube.io._video import read_video
-from lightcube.io.frames_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
+from lightcube.io.pictures_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
 from lightcube.optics.transfer import Transfer, check_transfer, decode
-from lightcube.pictures.frames import Pictures
+from lightcube.pictures.pictures import Pictures
 
 _READERS: dict[str, Callable[[Path, Budget, Take], None]] = {
     ".gif": read_animation,
@@ -105,7 +105,7 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
         held = "one picture" if images else "no picture"
         needed = "a cube needs at least two: add more" if least > 1 else "one at least is needed: give another"
         raise InputError(f"{path} holds {held}, and {needed}")
-    return Pictures(tuple(images), names, views.angles, views.elevation, transfer), transparent
+    return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), transparent
 
 
 def _linear_light(levels: Levels, transfer: Transfer) -> tuple[NDArray[np.float32], bool]:

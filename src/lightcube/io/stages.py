@@ -21,7 +21,8 @@ from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import Transfer, check_transfer, decode
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import Fit, fit
-from lightcube.pictures.frames import Frames, Pictures
+from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.targets import Targets
 from lightcube.scene.description import Count, Line, Number, Point, Positive, hex_colour, sentence
 
 _LISTS = ("lamp", "screen", "picture")
@@ -57,20 +58,20 @@ class CubeTable(_Table):
 class TurntableTable(_Table):
     """Where the table stops: at the angles `stops`, or `count` times, spread evenly over the whole turn."""
 
-    stops: Annotated[tuple[Number, ...], Field(min_length=1)] = (0.0,)
+    stops_deg: Annotated[tuple[Number, ...], Field(min_length=1)] = (0.0,)
     count: Count | None = None
     axis: Point = (0.0, 0.0, 1.0)
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
-        if {"stops", "count"} <= self.model_fields_set:
-            raise PydanticCustomError("stops", "stops and count are both given: use one of the two")
+        if {"stops_deg", "count"} <= self.model_fields_set:
+            raise PydanticCustomError("stops_deg", "stops_deg and count are both given: use one of the two")
         return self
 
     @property
-    def angles(self) -> tuple[float, ...]:
+    def angles_deg(self) -> tuple[float, ...]:
         """Of the stops, degrees."""
-        return self.stops if self.count is None else tuple(spread_angles(self.count, 360.0).tolist())
+        return self.stops_deg if self.count is None else tuple(spread_angles(self.count, 360.0).tolist())
 
 
 class LampTable(_Table):
@@ -78,7 +79,7 @@ class LampTable(_Table):
 
     name: Name
     direction: Point | None = None
-    position: Point | None = None
+    position_mm: Point | None = None
     colour: Light | None = None
     power: Number | None = None
     power_max: Number | None = None
@@ -99,7 +100,7 @@ class ScreenTable(_Table):
     """A screen, as `lightcube.optics.stage.Screen`; `pitch_mm` is the cube's voxel side where it is left out."""
 
     name: Name
-    centre: Point
+    centre_mm: Point
     size_mm: tuple[Number, Number]
     pitch_mm: Number | None = None
     normal: Point | None = None
@@ -188,7 +189,7 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
     for number, (table, first) in enumerate(zip(said.picture, stage.shots, strict=True), start=1):
         with _about(f"{file.name}: picture {number}"):
             pictures = read_pictures(file.parent / table.file, transfer=transfer, least=1)
-            stops = table.stops_of(len(pictures), len(stage.stops))
+            stops = table.stops_of(len(pictures), len(stage.stops_deg))
         shots += [replace(first, name=name, stop=stop - 1) for name, stop in zip(pictures.names, stops, strict=True)]
         images += pictures.images
         fits += [table.fit] * len(pictures)
@@ -203,9 +204,9 @@ def stage_pictures(path: str | Path) -> list[Path]:
     return list(dict.fromkeys(file.parent / table.file for table in _parse(file).picture))
 
 
-def read_stage_frames(
+def read_stage_targets(
     path: str | Path, *, lamp_samples: int = 1, pixel_samples: int = 1, transfer: Transfer = "srgb"
-) -> tuple[Stage, Frames]:
+) -> tuple[Stage, Targets]:
     """Read a stage file as `read_stage` does, and fit its pictures to their screens.
 
     Parameters
@@ -280,7 +281,7 @@ def _stage(said: StageFile) -> Stage:
             )
             for table in said.picture
         ),
-        said.turntable.angles,
+        said.turntable.angles_deg,
         said.turntable.axis,
         said.cube.turns,
     )

@@ -107,7 +107,7 @@ def finish(job: Job, store: DiskStore, out: str | Path, *, overwrite: bool = Fal
     solution = merged(job, store)
     done = len(store.names().intersection(job.unit_names))
     if done == job.units:
-        scored = replace(solution.cube, scores=metrics.score(solution.cube, job.frames))
+        scored = replace(solution.cube, scores=metrics.score(solution.cube, job.targets))
         solution = replace(solution, cube=scored)
     at = place(out)
     Output(at, "cube", overwrite).write(solution.cube)

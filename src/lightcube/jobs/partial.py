@@ -1,6 +1,6 @@
 """The place of a cube that is still being made: ``NAME.partial`` beside the NAME it will have.
 
-A folder with what was asked for (``job.json``, ``frames.npz``), the pieces that are finished (``level-1.npz``,
+A folder with what was asked for (``job.json``, ``targets.npz``), the pieces that are finished (``level-1.npz``,
 ``unit-0.npz``, …) and the newest state of those that are not (``unit-0.state.npz``). Each file is written under a
 hidden name and then renamed: whenever the work is killed, what has a name is whole. At a URL a file appears whole too.
 """
@@ -43,13 +43,13 @@ from lightcube.io._places import (
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.solvers import check_lasting, find_method
 
 #: Of the folders that this version writes and reads.
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 
-_JOB, _FRAMES = "job.json", "frames.npz"
+_JOB, _TARGETS = "job.json", "targets.npz"
 _PIECE = re.compile(r"((?:level|unit)-[0-9]+)(\.state)?\.npz")
 _HIDDEN = re.compile(r"\..+\.npz-[0-9a-f]{32}|\.job\.json-[0-9a-f]{32}")
 #: A hidden file that nobody has written to for so many seconds is of a run that was killed.
@@ -63,7 +63,7 @@ class _JobJson(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    format_version: Literal[2]
+    format_version: Literal[3]
     written_by: str
     fingerprint: dict[str, str | int | float | None]
     shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=3, max_length=3)]
@@ -218,7 +218,7 @@ def check_partial(out: str | Path) -> Place:
 def is_partial(partial: Place) -> bool:
     """Tell whether there is a folder that holds nothing but parts of a job, or nothing."""
     return is_folder(partial) and all(
-        name in (_JOB, _FRAMES) or _PIECE.fullmatch(name) or _HIDDEN.fullmatch(name) for name in names_in(partial)
+        name in (_JOB, _TARGETS) or _PIECE.fullmatch(name) or _HIDDEN.fullmatch(name) for name in names_in(partial)
     )
 
 
@@ -244,7 +244,7 @@ def load_job(partial: str | Path) -> Job:
         Where there is no such folder, no job in it yet, its method cannot be imported, or it is damaged.
     """
     folder = place(partial)
-    said, path = _read_job(folder), child(folder, _FRAMES)
+    said, path = _read_job(folder), child(folder, _TARGETS)
     find_method(str(said.recipe.get("method") or "display"))  # by its own words where it cannot be found
     arrays = _read_arrays(path)
     if arrays is None:
@@ -252,7 +252,7 @@ def load_job(partial: str | Path) -> Job:
     try:
         pictures, weights = arrays["pictures"], arrays["weights"]
         job = Job(
-            frames=Frames(pictures, said.rig.rig(), weights, tuple(said.names), said.transfer),
+            targets=Targets(pictures, said.rig.rig(), weights, tuple(said.names), said.transfer),
             grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),
             recipe=from_plain(said.recipe),
             units=said.units,
@@ -267,17 +267,17 @@ def load_job(partial: str | Path) -> Job:
 
 
 def _write_job(folder: Place, job: Job) -> None:
-    frames, grid = job.frames, job.grid
-    _write_arrays(child(folder, _FRAMES), {"pictures": frames.pictures, "weights": frames.weight})
+    targets, grid = job.targets, job.grid
+    _write_arrays(child(folder, _TARGETS), {"pictures": targets.pictures, "weights": targets.weight})
     document = {
         "format_version": FORMAT_VERSION,
         "written_by": f"lightcube {version('lightcube')}",
         "fingerprint": dict(fingerprint(job)),
         "shape": list(grid.shape),
         "voxel_mm": grid.voxel_mm,
-        "names": list(frames.names),
-        "transfer": frames.transfer,
-        "rig": rig_to_json(frames.rig),
+        "names": list(targets.names),
+        "transfer": targets.transfer,
+        "rig": rig_to_json(targets.rig),
         "recipe": job.recipe.plain(),
         "units": job.units,
         "provenance": plain(job.provenance),
@@ -358,6 +358,6 @@ def _opened(path: Place) -> IO[bytes]:
 
 
 def _damaged(path: Place, what: str) -> InputError:
-    if name_of(path) in (_JOB, _FRAMES):
+    if name_of(path) in (_JOB, _TARGETS):
         return InputError(f"{path} is damaged ({what}): remove the folder and start again")
     return InputError(f"{path} is damaged ({what}): remove it, and that piece is computed again")

@@ -25,7 +25,7 @@ def run(job: Job, pieces: list[str], store: DiskStore, tell: Tell) -> bool:
                 tell(_resumed(step, len(done.intersection(job.unit_names)), job.units))
         figures = {}
         if step.shown is not None and time.monotonic() - looked > _LOOK_S:
-            figures["PSNR"] = metrics.mean_psnr(step.shown(), job.frames, step.window)
+            figures["PSNR"] = metrics.mean_psnr(step.shown(), job.targets, step.window)
             looked = time.monotonic()
         left = (time.monotonic() - began) * (1 - step.done) / (step.done - first) if step.done > first else None
         return bool(tell(Progress(round(step.done * step.iterations), step.iterations, figures, left)))

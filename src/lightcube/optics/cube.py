@@ -104,9 +104,9 @@ class Cube:
         return self.lamp_powers
 
     @property
-    def angles(self) -> NDArray[np.float64]:
+    def angles_deg(self) -> NDArray[np.float64]:
         """Turntable angle of each picture's stop, degrees."""
-        return self.rig.stops.angle
+        return self.rig.stops.angle_deg
 
     def __repr__(self) -> str:
         nz, ny, nx = self.grid.shape

@@ -57,7 +57,7 @@ def _round_up(value: float, parity: int) -> int:
     return whole + (whole - parity) % 2
 
 
-def raster_shape(grid: Grid, elevation: float = 0.0) -> tuple[int, int]:
+def raster_shape(grid: Grid, elevation_deg: float = 0.0) -> tuple[int, int]:
     """``(rows, columns)`` of a screen at voxel pitch that holds the cube's whole shadow at every turntable angle.
 
     ``columns`` is the smallest integer of at least ``hypot(nx, ny)`` with ny's parity, ``rows`` that of
@@ -65,20 +65,20 @@ def raster_shape(grid: Grid, elevation: float = 0.0) -> tuple[int, int]:
     """
     nz, ny, nx = grid.shape
     diagonal = math.hypot(nx, ny)
-    height = nz + diagonal * abs(math.tan(math.radians(check_elevation(elevation))))
+    height = nz + diagonal * abs(math.tan(math.radians(check_elevation(elevation_deg))))
     return _round_up(height, nz), _round_up(diagonal, ny)
 
 
-def picture_shape(grid: Grid, frame_width: float, aspect: float, elevation: float = 0.0) -> tuple[int, int]:
+def picture_shape(grid: Grid, picture_width: float, aspect: float, elevation_deg: float = 0.0) -> tuple[int, int]:
     """``(rows, columns)`` of pictures on the screen raster.
 
     Parameters
     ----------
-    frame_width
+    picture_width
         Width of the picture as a fraction of the cube's width ``ny``.
     aspect
         Width of the picture divided by its height.
-    elevation
+    elevation_deg
         Of the lamp, in degrees.
 
     Returns
@@ -91,15 +91,15 @@ def picture_shape(grid: Grid, frame_width: float, aspect: float, elevation: floa
     InputError
         Where the picture would be wider than the cube's screen, or a size is not positive.
     """
-    if not (math.isfinite(frame_width) and frame_width > 0):
-        raise InputError(f"a frame width must be a positive fraction of the cube's width, not {frame_width}")
+    if not (math.isfinite(picture_width) and picture_width > 0):
+        raise InputError(f"a picture width must be a positive fraction of the cube's width, not {picture_width}")
     if not (math.isfinite(aspect) and aspect > 0):
         raise InputError(f"an aspect (width / height) must be a positive number, not {aspect}")
-    most_rows, most_columns = raster_shape(grid, elevation)
-    columns = nearest(min(frame_width * grid.shape[1], most_columns + 2), most_columns)
+    most_rows, most_columns = raster_shape(grid, elevation_deg)
+    columns = nearest(min(picture_width * grid.shape[1], most_columns + 2), most_columns)
     if columns > most_columns:
         raise InputError(
-            f"a frame width of {frame_width:g} of the cube's is wider than its screen of {most_columns} pixels: "
+            f"a picture width of {picture_width:g} of the cube's is wider than its screen of {most_columns} pixels: "
             f"use at most {most_columns / grid.shape[1]:.3f}"
         )
     rows = min(nearest(min(columns / aspect, most_rows + 2), most_rows), most_rows)
@@ -112,13 +112,13 @@ def nearest(value: float, parity: int) -> int:
     return max(2 * round((value - odd) / 2) + odd, 2 - odd)
 
 
-def check_elevation(elevation: float) -> float:
-    """Return `elevation` (degrees), or raise `InputError` unless it lies strictly between -90 and 90."""
-    if not (math.isfinite(elevation) and abs(elevation) < 89.999):
-        raise InputError(f"an elevation must lie between -90 and 90 degrees, both excluded, not {elevation:g}")
-    return float(elevation)
+def check_elevation(elevation_deg: float) -> float:
+    """Return `elevation_deg` (degrees), or raise `InputError` unless it lies strictly between -90 and 90."""
+    if not (math.isfinite(elevation_deg) and abs(elevation_deg) < 89.999):
+        raise InputError(f"an elevation must lie between -90 and 90 degrees, both excluded, not {elevation_deg:g}")
+    return float(elevation_deg)
 
 
-def dense_step(grid: Grid) -> float:
+def dense_step_deg(grid: Grid) -> float:
     """Degrees between two angles for a picture to stand in between: 0.5 for 64 voxels across, as 1/n (measured)."""
     return 0.5 * 64 / max(grid.shape[1:])

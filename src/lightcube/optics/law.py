@@ -28,13 +28,15 @@ def falling_light(rig: Rig) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         if not np.any(np.hstack(asked)):
             continue
         pixels = (
-            views.origins[v] + along[:, None, None] * views.row_steps[v] + across[None, :, None] * views.column_steps[v]
+            views.origins_mm[v]
+            + along[:, None, None] * views.row_steps_mm[v]
+            + across[None, :, None] * views.column_steps_mm[v]
         )
         ways = pixels - views.lamps[v, :3] if views.lamps[v, 3] else np.broadcast_to(views.lamps[v, :3], pixels.shape)
         lengths = np.maximum(np.linalg.norm(ways, axis=-1), PARALLEL)  # a lamp may stand on a pixel
         units = ways / lengths[..., None]
         if asked[0]:
-            normal = np.cross(views.column_steps[v], views.row_steps[v])
+            normal = np.cross(views.column_steps_mm[v], views.row_steps_mm[v])
             light[v] *= np.abs(units @ normal) / np.linalg.norm(normal)
         if asked[1] and views.lamps[v, 3]:
             light[v] *= (fading.full_at_mm[v] / lengths) ** 2

@@ -2,7 +2,7 @@
 
 A picture is a sum over its views of ``P g (1 - a (1 - T))``: P the lamp's power, g the light of a lamp of power 1 that
 reaches the pixel past no cube, T the transmittance of the beam, and a the strength of the shadow, which fades with
-distance (`lightcube.optics.law`). Lengths are mm, all is in the cube's own frame, as in `lightcube.optics.views`.
+distance (`lightcube.optics.law`). Lengths are mm, all is in the cube's own axes, as in `lightcube.optics.views`.
 """
 
 import math
@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.transfer import BLACK
-from lightcube.optics.views import Views, check_angles, hold_offsets, rotated, smallest_gap, turntable_views
+from lightcube.optics.views import Views, check_angles, hold_offsets_deg, rotated, smallest_gap_deg, turntable_views
 
 Reals = NDArray[np.float64]
 Counts = NDArray[np.intp]
@@ -136,7 +136,7 @@ class Turning(_Columns):
     turns
         ``(views, 2)`` bool: whether the lamp, and the screen, goes round the cube.
     way
-        ``(views, 2)``: which way, in the cube's frame, as the angle rises: 1 counter-clockwise about `axis`, else -1.
+        ``(views, 2)``: which way, in the cube's axes, as the angle rises: 1 counter-clockwise about `axis`, else -1.
     axis
         ``(3,)``, of the turntable.
     """
@@ -156,19 +156,19 @@ class Stops(_Columns):
 
     Parameters
     ----------
-    angle, screen
+    angle_deg, screen
         ``(pictures,)``: angle of the stop (degrees), and the screen, a number into the rig's `Screens`.
     window
         ``(pictures, 2)``: how many rows and columns of the picture, from its upper left, lie on the screen.
     """
 
-    angle: Reals
+    angle_deg: Reals
     screen: Counts
     window: Counts
 
     def __post_init__(self) -> None:
-        pictures = len(self.angle)
-        self._keep(angle=(np.float64, (pictures,)), screen=(np.intp, (pictures,)), window=(np.intp, (pictures, 2)))
+        pictures = len(self.angle_deg)
+        self._keep(angle_deg=(np.float64, (pictures,)), screen=(np.intp, (pictures,)), window=(np.intp, (pictures, 2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,7 +216,7 @@ class Rig:
     Parameters
     ----------
     views
-        The beams, in the cube's frame: what the matrix is made of.
+        The beams, in the cube's axes: what the matrix is made of.
     sums, fading, turning
         Of each view.
     stops
@@ -232,10 +232,10 @@ class Rig:
     Examples
     --------
     >>> import lightcube as lc
-    >>> rig = lc.turntable(lc.Grid((3, 5, 7)), [0, 45, 90], elevation=30)
+    >>> rig = lc.turntable(lc.Grid((3, 5, 7)), [0, 45, 90], elevation_deg=30)
     >>> rig
     <rig of 3 pictures of 9 x 9 pixels, 3 views>
-    >>> rig.take([2, 0]).stops.angle
+    >>> rig.take([2, 0]).stops.angle_deg
     array([90.,  0.])
     """
 
@@ -251,8 +251,8 @@ class Rig:
         views = len(self.views)
         if not len(self.sums.picture) == len(self.fading.cosine) == len(self.turning.turns) == views:
             raise InputError(f"the parts of a rig are not all of {views} views")
-        if self.sums.picture[-1] + 1 != len(self.stops.angle):
-            raise InputError(f"{len(self.stops.angle)} stops do not fit {self.sums.picture[-1] + 1} pictures")
+        if self.sums.picture[-1] + 1 != len(self.stops.angle_deg):
+            raise InputError(f"{len(self.stops.angle_deg)} stops do not fit {self.sums.picture[-1] + 1} pictures")
         for numbers, names in ((self.sums.lamp, self.lamps.names), (self.stops.screen, self.screens.names)):
             if np.any((numbers < 0) | (numbers >= len(names))):
                 raise InputError("a rig's lamps and screens must be numbers of the names that it has, from 0")
@@ -261,7 +261,7 @@ class Rig:
     def of(
         cls,
         views: Views,
-        angles: ArrayLike | None = None,
+        angles_deg: ArrayLike | None = None,
         *,
         power: float | None = None,
         power_max: float = POWER_MAX,
@@ -271,7 +271,7 @@ class Rig:
 
         Parameters
         ----------
-        angles
+        angles_deg
             Of the pictures' stops, degrees; default those of the views' parallel lamps.
         power
             Power of the lamp where it is fixed, linear light: 1 shows white where a beam meets nothing.
@@ -288,7 +288,7 @@ class Rig:
             Fading.none(count),
             Turning(np.ones((count, 2), np.bool_), np.full((count, 2), -1.0), np.array([0.0, 0.0, 1.0])),
             Stops(
-                views.angles if angles is None else check_angles(angles),
+                views.angles_deg if angles_deg is None else check_angles(angles_deg),
                 np.zeros(count, np.intp),
                 np.tile(views.picture_shape, (count, 1)),
             ),
@@ -297,7 +297,7 @@ class Rig:
         )
 
     def __len__(self) -> int:
-        return len(self.stops.angle)
+        return len(self.stops.angle_deg)
 
     def __repr__(self) -> str:
         rows, columns = self.picture_shape
@@ -343,37 +343,39 @@ class Rig:
         axis = self.turning.axis / np.linalg.norm(self.turning.axis)
         light, across = (
             vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-            for vectors in (self.views.lamps[:, :3], self.views.column_steps)
+            for vectors in (self.views.lamps[:, :3], self.views.column_steps_mm)
         )
-        upright = np.linalg.norm(np.cross(self.views.row_steps, axis), axis=1)
+        upright = np.linalg.norm(np.cross(self.views.row_steps_mm, axis), axis=1)
         return bool(
             np.all(self.turning.turns)
             and np.all(self.turning.way[:, 0] == self.turning.way[:, 1])
             and np.all(self.views.lamps[:, 3] == 0)
             and np.all(np.abs(light @ axis) < _NONE)
             and np.all(np.abs(across @ axis) < _NONE)
-            and np.all(upright < _NONE * np.linalg.norm(self.views.row_steps, axis=1))
+            and np.all(upright < _NONE * np.linalg.norm(self.views.row_steps_mm, axis=1))
         )
 
     @cached_property
-    def period(self) -> float:
+    def period_deg(self) -> float:
         """Degrees after which lamps repeat: 360, or 180 where half a turn mirrors and no two stops are so far apart."""
         return (
             180.0
             if self.mirrors
             and all(
                 len(np.unique(np.round(own % 180, 9))) == len(np.unique(np.round(own % 360, 9)))
-                for own in (self.stops.angle[self.stops.screen == screen] for screen in np.unique(self.stops.screen))
+                for own in (
+                    self.stops.angle_deg[self.stops.screen == screen] for screen in np.unique(self.stops.screen)
+                )
             )
             else 360.0
         )
 
     @property
-    def widest_hold(self) -> float:
+    def widest_hold_deg(self) -> float:
         """Half the way, in degrees, between the two nearest stops of a screen."""
         apart = 180.0 if self.mirrors else 360.0
         screens = np.unique(self.stops.screen)
-        return min(smallest_gap(self.stops.angle[self.stops.screen == screen], apart) for screen in screens) / 2
+        return min(smallest_gap_deg(self.stops.angle_deg[self.stops.screen == screen], apart) for screen in screens) / 2
 
     def views_of(self, pictures: Sequence[int] | NDArray[np.integer]) -> Counts:
         """Numbers of the views that belong to some of the pictures, in their order."""
@@ -403,11 +405,11 @@ class Rig:
 
     def turned(self, degrees: ArrayLike) -> "Rig":
         """The same when the table has turned on by so many degrees: one number, or one per picture."""
-        angles = np.broadcast_to(np.asarray(degrees, np.float64), len(self))
-        each = angles[self.sums.picture]
+        angles_deg = np.broadcast_to(np.asarray(degrees, np.float64), len(self))
+        each = angles_deg[self.sums.picture]
         lamp, screen = (np.where(self.turning.turns[:, i], self.turning.way[:, i] * each, 0.0) for i in (0, 1))
         views = rotated(self.views, self.turning.axis, lamp, screen)
-        return replace(self, views=views, stops=replace(self.stops, angle=self.stops.angle + angles))
+        return replace(self, views=views, stops=replace(self.stops, angle_deg=self.stops.angle_deg + angles_deg))
 
     def held(self, hold_deg: float, step_deg: float) -> "Rig":
         """Every picture at several angles within `hold_deg` degrees of its stop, at most `step_deg` apart, in a row.
@@ -417,7 +419,7 @@ class Rig:
         InputError
             Where `hold_deg` is negative, or wider than half the way to the nearest other stop of a screen.
         """
-        offsets = hold_offsets(hold_deg, self.widest_hold, step_deg)
+        offsets = hold_offsets_deg(hold_deg, self.widest_hold_deg, step_deg)
         if len(offsets) == 1:
             return self
         return self.take(np.repeat(np.arange(len(self)), len(offsets))).turned(np.tile(offsets, len(self)))
@@ -425,17 +427,17 @@ class Rig:
     @cached_property
     def both_sides(self) -> "Rig":
         """The same with the mirror image of every picture at the stop half a turn on, where level light shows it."""
-        if self.period == 360:
+        if self.period_deg == 360:
             return self
         again = self.turned(180.0)
         views = again.views
-        aside = np.sum(views.origins * views.column_steps, axis=1) / np.sum(views.column_steps**2, axis=1)
-        views = replace(views, origins=views.origins - 2 * aside[:, None] * views.column_steps)
+        aside = np.sum(views.origins_mm * views.column_steps_mm, axis=1) / np.sum(views.column_steps_mm**2, axis=1)
+        views = replace(views, origins_mm=views.origins_mm - 2 * aside[:, None] * views.column_steps_mm)
         both = self.take(np.tile(np.arange(len(self)), 2))
-        stops = replace(both.stops, angle=np.concatenate([self.stops.angle, again.stops.angle]))
+        stops = replace(both.stops, angle_deg=np.concatenate([self.stops.angle_deg, again.stops.angle_deg]))
         return replace(both, views=self.views.joined(views), stops=stops)
 
-    def at(self, angles: ArrayLike) -> tuple["Rig", Counts]:
+    def at(self, angles_deg: ArrayLike) -> tuple["Rig", Counts]:
         """The room at any turntable angles (degrees), and of which picture each of its pictures is the nearest stop.
 
         The pictures of an angle follow each other, one for each screen in the order of ``screens.names``. The room is
@@ -443,15 +445,15 @@ class Rig:
         a turn on level light shows pictures mirrored.
         """
         both = self.both_sides
-        asked, screens = check_angles(angles), np.unique(both.stops.screen)
-        away = np.abs(np.remainder(asked[:, None] - both.stops.angle + 180, 360) - 180)
+        asked, screens = check_angles(angles_deg), np.unique(both.stops.screen)
+        away = np.abs(np.remainder(asked[:, None] - both.stops.angle_deg + 180, 360) - 180)
         own = np.where(both.stops.screen == screens[:, None, None], away, np.inf)  # (screen, angle, picture)
         shown = np.argmin(own, axis=2).T.ravel()
         lit = (np.min(own, axis=2) < np.min(away, axis=1) + _SAME_STOP).T.ravel()
         now = np.repeat(asked, len(screens))
-        moved = both.take(shown).turned(now - both.stops.angle[shown])
+        moved = both.take(shown).turned(now - both.stops.angle_deg[shown])
         share = moved.sums.share * lit[moved.sums.picture][:, None]
-        stops = replace(moved.stops, angle=now)
+        stops = replace(moved.stops, angle_deg=now)
         return replace(moved, sums=replace(moved.sums, share=share), stops=stops), shown % len(self)
 
     def sampled(self, *, lamp: int = 1, pixel: int = 1) -> "Rig":
@@ -475,13 +477,13 @@ class Rig:
         copied = self._with_views(kept)
         lamps = np.concatenate([np.repeat(each, len(fine) ** 2, axis=0) for each in seeds])
         spread = np.concatenate([np.tile(np.stack([right, down], axis=1), (len(each), 1)) for each in seeds])
-        steps = copied.views.column_steps, copied.views.row_steps
-        origins = copied.views.origins + spread[:, :1] * steps[0] + spread[:, 1:] * steps[1]
+        steps = copied.views.column_steps_mm, copied.views.row_steps_mm
+        origins_mm = copied.views.origins_mm + spread[:, :1] * steps[0] + spread[:, 1:] * steps[1]
         share = copied.sums.share / copies[kept, None]
         sums = replace(copied.sums, share=share, picture=self.sums.picture[kept])
         if lamp > 1:
             sums = replace(sums, disc_deg=np.zeros(len(kept)))
-        views = Views(lamps, origins, *steps, self.picture_shape)
+        views = Views(lamps, origins_mm, *steps, self.picture_shape)
         return Rig(views, sums, copied.fading, copied.turning, self.stops, self.lamps, self.screens)
 
     def shifted(self, offsets: NDArray[np.integer]) -> "Rig":
@@ -489,8 +491,8 @@ class Rig:
         if offsets.shape != (len(self), 2):
             raise InputError(f"offsets of shape {offsets.shape} do not fit the pictures, which want ({len(self)}, 2)")
         views, own = self.views, offsets[self.sums.picture]
-        origins = views.origins + own[:, :1] * views.column_steps + own[:, 1:] * views.row_steps
-        return replace(self, views=replace(views, origins=origins))
+        origins_mm = views.origins_mm + own[:, :1] * views.column_steps_mm + own[:, 1:] * views.row_steps_mm
+        return replace(self, views=replace(views, origins_mm=origins_mm))
 
     def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> "Rig":
         """The same pictures with pixels `ratio` times as large, so many of them around the same middle."""
@@ -504,13 +506,13 @@ class Rig:
         if not np.all(self.screens.endless[self.stops.screen]):
             return self
         views = self.views
-        steepest = float(np.max(np.abs(views.elevations)))
-        origins = views.origins.copy()
-        for steps in (views.column_steps, views.row_steps):
-            origins -= (np.sum(origins * steps, axis=1) / np.sum(steps**2, axis=1))[:, None] * steps
+        steepest = float(np.max(np.abs(views.elevations_deg)))
+        origins_mm = views.origins_mm.copy()
+        for steps in (views.column_steps_mm, views.row_steps_mm):
+            origins_mm -= (np.sum(origins_mm * steps, axis=1) / np.sum(steps**2, axis=1))[:, None] * steps
         shape = raster_shape(grid, steepest)
         stops = replace(self.stops, window=np.tile(shape, (len(self), 1)))
-        return replace(self, views=replace(views, origins=origins, picture_shape=shape), stops=stops)
+        return replace(self, views=replace(views, origins_mm=origins_mm, picture_shape=shape), stops=stops)
 
     @property
     def elevation_deg(self) -> float | None:
@@ -519,11 +521,11 @@ class Rig:
         And screens stand upright behind the cube and go round with their lamps, as a turntable's do.
         """
         views = self.views
-        raised = np.unique(views.elevations)
+        raised = np.unique(views.elevations_deg)
         alike = len(views) == len(self) and np.all(views.lamps[:, 3] == 0) and len(raised) == 1
-        upright = np.all(self.turning.turns) and np.all(np.abs(views.row_steps[:, :2]) < _NONE)
-        along = np.abs(np.sum(views.column_steps * views.lamps[:, :3], axis=1))
-        facing = np.all(along < _NONE * np.linalg.norm(views.column_steps, axis=1))
+        upright = np.all(self.turning.turns) and np.all(np.abs(views.row_steps_mm[:, :2]) < _NONE)
+        along = np.abs(np.sum(views.column_steps_mm * views.lamps[:, :3], axis=1))
+        facing = np.all(along < _NONE * np.linalg.norm(views.column_steps_mm, axis=1))
         return float(raised[0]) if alike and upright and facing else None
 
 
@@ -538,9 +540,9 @@ def power_bounds(power: float | None, power_max: float | None = None) -> tuple[f
 
 def turntable(
     grid: Grid,
-    angles: ArrayLike,
+    angles_deg: ArrayLike,
     *,
-    elevation: float = 0.0,
+    elevation_deg: float = 0.0,
     picture_shape: tuple[int, int] | None = None,
     power: float | None = None,
     power_max: float = POWER_MAX,
@@ -550,9 +552,9 @@ def turntable(
 
     Parameters
     ----------
-    angles
+    angles_deg
         Turntable angles in degrees; a positive angle turns the cube counter-clockwise seen from above.
-    elevation
+    elevation_deg
         Of the lamp, in degrees: light travels along ``(cos e, 0, -sin e)`` in the room.
     picture_shape
         ``(rows, columns)`` of a window in the middle of the screen; default the whole `raster_shape`.
@@ -568,11 +570,11 @@ def turntable(
     --------
     >>> import lightcube as lc
     >>> rig = lc.turntable(lc.Grid((4, 6, 6)), [0, 90], picture_shape=(4, 2))
-    >>> rig.views.column_steps.round(3) + 0.0
+    >>> rig.views.column_steps_mm.round(3) + 0.0
     array([[ 0., -1.,  0.],
            [-1.,  0.,  0.]])
     """
-    views = turntable_views(grid, angles, elevation=elevation, picture_shape=picture_shape)
+    views = turntable_views(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=picture_shape)
     return Rig.of(views, power=power, power_max=power_max, black=black)
 
 

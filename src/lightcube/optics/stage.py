@@ -46,7 +46,7 @@ class Lamp:
         What pictures call it.
     direction
         The way its light travels, of any length; then it is parallel.
-    position
+    position_mm
         Where it stands, mm; then it is a point. One of the two is given.
     colour
         Its light in linear red, green and blue, each at least 0.
@@ -66,7 +66,7 @@ class Lamp:
 
     name: str
     direction: Vector | None = None
-    position: Vector | None = None
+    position_mm: Vector | None = None
     colour: Vector = (1.0, 1.0, 1.0)
     power: float | None = None
     power_max: float = POWER_MAX
@@ -85,7 +85,7 @@ class Screen:
     ----------
     name
         What pictures call it.
-    centre
+    centre_mm
         Where its middle is, mm.
     size_mm
         Width and height.
@@ -108,7 +108,7 @@ class Screen:
     """
 
     name: str
-    centre: Vector
+    centre_mm: Vector
     size_mm: tuple[float, float]
     pitch_mm: float
     normal: Vector | None = None
@@ -129,7 +129,7 @@ class Screen:
     @property
     def facing(self) -> Reals:
         """Unit vector out of its lit side."""
-        return unit(self.normal if self.normal is not None else -np.array(self.centre))
+        return unit(self.normal if self.normal is not None else -np.array(self.centre_mm))
 
     @property
     def steps(self) -> tuple[Reals, Reals]:
@@ -179,7 +179,7 @@ class Stage:
     lamps: tuple[Lamp, ...]
     screens: tuple[Screen, ...]
     shots: tuple[Shot, ...]
-    stops: tuple[float, ...] = (0.0,)
+    stops_deg: tuple[float, ...] = (0.0,)
     axis: Vector = (0.0, 0.0, 1.0)
     cube_turns: bool = True
 
@@ -194,12 +194,12 @@ class Stage:
             raise InputError("no picture is wanted on this stage: name at least one, its screen, lamps and stop")
         for shot in self.shots:
             self._check_shot(shot)
-        if not self.stops or not np.all(np.isfinite(self.stops)):
+        if not self.stops_deg or not np.all(np.isfinite(self.stops_deg)):
             raise InputError("the turntable's stops must be finite numbers of degrees, and at least one")
         _check_vector("the turntable", "axis", self.axis)
 
     def __repr__(self) -> str:
-        counts = {"lamp": self.lamps, "screen": self.screens, "picture": self.shots, "stop": self.stops}
+        counts = {"lamp": self.lamps, "screen": self.screens, "picture": self.shots, "stop": self.stops_deg}
         said = ", ".join(f"{len(each)} {name}{'s' * (len(each) != 1)}" for name, each in counts.items())
         return f"<stage of {said}, {self.grid!r}>"
 
@@ -240,14 +240,14 @@ class Stage:
             ),
             Turning(np.array(carried), way, np.array(self.axis)),
             Stops(
-                angle=np.zeros(len(self.shots)),
+                angle_deg=np.zeros(len(self.shots)),
                 screen=np.array([screens.index(shot.screen) for shot in self.shots]),
                 window=np.array([self.screen(shot.screen).pixels for shot in self.shots]),
             ),
             Lamps(tuple(lamps), least, most),
             Screens(tuple(screens), np.array([each.black for each in self.screens]), np.zeros(len(screens), np.bool_)),
         )
-        return standing.turned([self.stops[shot.stop] for shot in self.shots])
+        return standing.turned([self.stops_deg[shot.stop] for shot in self.shots])
 
     def _check_shot(self, shot: Shot) -> None:
         screens, lamps = ([each.name for each in things] for things in (self.screens, self.lamps))
@@ -262,9 +262,9 @@ class Stage:
                 raise InputError(f"picture {shot.name!r}: there is no lamp {name!r}: use one of {', '.join(lamps)}")
         if len(set(shot.lamps)) < len(shot.lamps):
             raise InputError(f"picture {shot.name!r} names a lamp twice: name each lamp once")
-        if not 0 <= shot.stop < len(self.stops):
+        if not 0 <= shot.stop < len(self.stops_deg):
             raise InputError(
-                f"picture {shot.name!r}: there is no stop {shot.stop + 1}: the turntable has {len(self.stops)}"
+                f"picture {shot.name!r}: there is no stop {shot.stop + 1}: the turntable has {len(self.stops_deg)}"
             )
 
 
@@ -275,12 +275,12 @@ def _powers(lamp: Lamp) -> tuple[float, float]:
 
 def _views(lit: Sequence[tuple[int, Screen, Lamp]], shape: tuple[int, int]) -> Views:
     """A view for each picture's lamp, as all stands at angle 0."""
-    places = [(lamp.direction, 0.0) if lamp.position is None else (lamp.position, 1.0) for _, _, lamp in lit]
+    places = [(lamp.direction, 0.0) if lamp.position_mm is None else (lamp.position_mm, 1.0) for _, _, lamp in lit]
     return Views(
         lamps=np.array([(*place, point) for place, point in places if place is not None]),
-        origins=np.array([_middle(screen, shape) for _, screen, _ in lit]),
-        column_steps=np.array([screen.steps[0] for _, screen, _ in lit]),
-        row_steps=np.array([screen.steps[1] for _, screen, _ in lit]),
+        origins_mm=np.array([_middle(screen, shape) for _, screen, _ in lit]),
+        column_steps_mm=np.array([screen.steps[0] for _, screen, _ in lit]),
+        row_steps_mm=np.array([screen.steps[1] for _, screen, _ in lit]),
         picture_shape=shape,
     )
 
@@ -289,7 +289,7 @@ def _middle(screen: Screen, shape: tuple[int, int]) -> Reals:
     """Middle of a raster of `shape` whose upper left is the screen's."""
     rows, columns = screen.pixels
     right, down = screen.steps
-    return np.asarray(np.array(screen.centre) + (shape[1] - columns) / 2 * right + (shape[0] - rows) / 2 * down)
+    return np.asarray(np.array(screen.centre_mm) + (shape[1] - columns) / 2 * right + (shape[0] - rows) / 2 * down)
 
 
 def _check_names(kind: str, names: Sequence[str], most: int) -> None:
@@ -325,12 +325,12 @@ def _check_fading(who: str, reach_mm: float, falloff_mm: float) -> None:
 
 def _check_lamp(lamp: Lamp) -> None:
     who = f"lamp {lamp.name!r}"
-    if (lamp.direction is None) == (lamp.position is None):
-        raise InputError(f"{who}: give either a direction (parallel light) or a position (a point), one of the two")
+    if (lamp.direction is None) == (lamp.position_mm is None):
+        raise InputError(f"{who}: give either a direction (parallel light) or a position_mm (a point), one of the two")
     if lamp.direction is not None:
         _check_vector(who, "direction", lamp.direction)
-    if lamp.position is not None:
-        _check_vector(who, "position", lamp.position)
+    if lamp.position_mm is not None:
+        _check_vector(who, "position_mm", lamp.position_mm)
     if len(lamp.colour) != 3 or not all(0 <= part <= 1e6 for part in lamp.colour) or not any(lamp.colour):
         raise InputError(f"{who}: colour must be three numbers of at least 0, not all 0, not {lamp.colour}")
     for key, power in (("power", lamp.power), ("power_max", lamp.power_max)):
@@ -338,7 +338,7 @@ def _check_lamp(lamp: Lamp) -> None:
             raise InputError(f"{who}: {key} must lie between {POWER_MIN:g} and 1e6, not {power:g}")
     if not 0 <= lamp.size_deg < 90:
         raise InputError(f"{who}: size_deg must be at least 0 and below 90, not {lamp.size_deg:g}")
-    if lamp.position is None and lamp.full_at_mm < math.inf:
+    if lamp.position_mm is None and lamp.full_at_mm < math.inf:
         raise InputError(
             f"{who}: full_at_mm is for point lamps, and parallel light is the same everywhere: leave it out"
         )
@@ -349,11 +349,11 @@ def _check_lamp(lamp: Lamp) -> None:
 def _check_screen(screen: Screen) -> None:
     who = f"screen {screen.name!r}"
     if screen.normal is None:
-        _check_vector(who, "centre", screen.centre)
+        _check_vector(who, "centre_mm", screen.centre_mm)
     else:
         _check_vector(who, "normal", screen.normal)
-    if len(screen.centre) != 3 or not math.hypot(*screen.centre) <= _MOST:
-        raise InputError(f"{who}: centre must be three finite numbers not beyond {_MOST:g}, not {screen.centre}")
+    if len(screen.centre_mm) != 3 or not math.hypot(*screen.centre_mm) <= _MOST:
+        raise InputError(f"{who}: centre_mm must be three finite numbers not beyond {_MOST:g}, not {screen.centre_mm}")
     for length in screen.size_mm:
         _check_least(who, "size_mm", length, 0, above=True)
     if not _LEAST <= screen.pitch_mm <= _MOST:

@@ -1,7 +1,7 @@
 """Where the voxels, the lamp and the screen are.
 
 Axes are right-handed with z up, lengths in millimetres, angles in degrees for people. Everything is
-in the cube's own frame: the cube stands still and the lamp goes round it. See docs/conventions.md.
+in the cube's own axes: the cube stands still and the lamp goes round it. See docs/conventions.md.
 """
 
 import math
@@ -17,7 +17,7 @@ from lightcube.optics.grid import Grid, check_elevation, raster_shape
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """Lamp and screen of every view, as vectors in the cube's frame (mm, float64).
+    """Lamp and screen of every view, as vectors in the cube's axes (mm, float64).
 
     The centre of pixel ``(row, column)`` of view ``v`` lies at
     ``origins[v] + (column - (columns - 1) / 2) * column_steps[v] + (row - (rows - 1) / 2) * row_steps[v]``.
@@ -27,9 +27,9 @@ class Views:
     lamps
         ``(views, 4)``, homogeneous: ``(x, y, z, 0)`` is parallel light travelling along ``(x, y, z)``,
         ``(x, y, z, 1)`` a point lamp standing at ``(x, y, z)``.
-    origins
+    origins_mm
         ``(views, 3)``, the middle of each picture on its screen.
-    column_steps, row_steps
+    column_steps_mm, row_steps_mm
         ``(views, 3)``, from one pixel to the next one to its right, and to the next one below it.
     picture_shape
         ``(rows, columns)`` of every picture.
@@ -52,20 +52,20 @@ class Views:
 
     On a turntable, where the lamp is parallel, its angles can be asked for, and some of the views be taken:
 
-    >>> views = lc.turntable(lc.Grid((3, 5, 7)), [0, 45, 90], elevation=30).views
-    >>> views.take([2, 0]).angles
+    >>> views = lc.turntable(lc.Grid((3, 5, 7)), [0, 45, 90], elevation_deg=30).views
+    >>> views.take([2, 0]).angles_deg
     array([90.,  0.])
     """
 
     lamps: NDArray[np.float64]
-    origins: NDArray[np.float64]
-    column_steps: NDArray[np.float64]
-    row_steps: NDArray[np.float64]
+    origins_mm: NDArray[np.float64]
+    column_steps_mm: NDArray[np.float64]
+    row_steps_mm: NDArray[np.float64]
     picture_shape: tuple[int, int]
 
     def __post_init__(self) -> None:
         count = len(np.atleast_2d(self.lamps))
-        for name, width in (("lamps", 4), ("origins", 3), ("column_steps", 3), ("row_steps", 3)):
+        for name, width in (("lamps", 4), ("origins_mm", 3), ("column_steps_mm", 3), ("row_steps_mm", 3)):
             array = np.array(getattr(self, name), dtype=np.float64)
             if array.shape != (count, width) or not np.all(np.isfinite(array)) or count == 0:
                 raise InputError(
@@ -85,14 +85,14 @@ class Views:
         return f"<{len(self)} views of {rows} x {columns} pixels>"
 
     @property
-    def angles(self) -> NDArray[np.float64]:
+    def angles_deg(self) -> NDArray[np.float64]:
         """Turntable angle of each view's parallel lamp, degrees in [0, 360), to 1e-9."""
         x, y = self.lamps[:, 0], self.lamps[:, 1]
         degrees: NDArray[np.float64] = np.degrees(np.arctan2(-y, x))
         return np.asarray(np.round(degrees, 9) % 360, dtype=np.float64)
 
     @property
-    def elevations(self) -> NDArray[np.float64]:
+    def elevations_deg(self) -> NDArray[np.float64]:
         """Elevation of each view's parallel lamp above the horizon, degrees in (-90, 90), to 1e-9."""
         level = np.hypot(self.lamps[:, 0], self.lamps[:, 1])
         return np.asarray(np.round(np.degrees(np.arctan2(-self.lamps[:, 2], level)), 9), dtype=np.float64)
@@ -101,26 +101,28 @@ class Views:
         """Return some of the views, in the order of `indices`."""
         return Views(
             self.lamps[indices],
-            self.origins[indices],
-            self.column_steps[indices],
-            self.row_steps[indices],
+            self.origins_mm[indices],
+            self.column_steps_mm[indices],
+            self.row_steps_mm[indices],
             self.picture_shape,
         )
 
     def joined(self, other: "Views") -> "Views":
         """Return these views and then the others, of the same shape of pictures."""
-        names = ("lamps", "origins", "column_steps", "row_steps")
+        names = ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm")
         arrays = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
         return Views(**arrays, picture_shape=self.picture_shape)
 
     def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> "Views":
         """Return the same views with pixels `ratio` times as large, so many of them around the same middle."""
-        return Views(self.lamps, self.origins, ratio * self.column_steps, ratio * self.row_steps, picture_shape)
+        return Views(
+            self.lamps, self.origins_mm, ratio * self.column_steps_mm, ratio * self.row_steps_mm, picture_shape
+        )
 
 
-def check_angles(angles: ArrayLike) -> NDArray[np.float64]:
-    """Return `angles` (degrees) as a float64 vector, or raise `InputError` unless all are finite and there is one."""
-    vector = np.atleast_1d(np.asarray(angles, dtype=np.float64))
+def check_angles(angles_deg: ArrayLike) -> NDArray[np.float64]:
+    """Return `angles_deg` as a float64 vector, or raise `InputError` unless all are finite and there is one."""
+    vector = np.atleast_1d(np.asarray(angles_deg, dtype=np.float64))
     if vector.ndim != 1 or vector.size == 0:
         raise InputError("angles must be a list of at least one number of degrees")
     if not np.all(np.isfinite(vector)):
@@ -128,8 +130,8 @@ def check_angles(angles: ArrayLike) -> NDArray[np.float64]:
     return vector
 
 
-def spread_angles(count: int, span: float | None = None, *, elevation: float = 0.0) -> NDArray[np.float64]:
-    """`count` angles spread evenly over `span` degrees (default 180 at elevation 0, else 360).
+def spread_angles(count: int, span_deg: float | None = None, *, elevation_deg: float = 0.0) -> NDArray[np.float64]:
+    """`count` angles spread evenly over `span_deg` degrees (default 180 at elevation 0, else 360).
 
     They start half a step from 0, or a third of a step where half a step would put one on a multiple
     of 90 degrees: there a picture as wide as the cube has no margin.
@@ -137,35 +139,35 @@ def spread_angles(count: int, span: float | None = None, *, elevation: float = 0
     Raises
     ------
     InputError
-        Where `count` is below 1, or `span` not above 0 or beyond 360.
+        Where `count` is below 1, or `span_deg` not above 0 or beyond 360.
 
     Examples
     --------
     >>> import lightcube as lc
     >>> lc.spread_angles(4)
     array([ 22.5,  67.5, 112.5, 157.5])
-    >>> lc.spread_angles(4, elevation=35)
+    >>> lc.spread_angles(4, elevation_deg=35)
     array([ 45., 135., 225., 315.])
     >>> lc.spread_angles(1)  # half a step would be 90
     array([60.])
     """
-    if span is None:
-        span = 360.0 if elevation else 180.0
+    if span_deg is None:
+        span_deg = 360.0 if elevation_deg else 180.0
     if count < 1:
         raise InputError(f"cannot spread {count} angles: at least 1 is needed")
-    if not 0 < span <= 360:
-        raise InputError(f"cannot spread angles over {span:g} degrees: use a span above 0 and up to 360")
-    step = span / count
+    if not 0 < span_deg <= 360:
+        raise InputError(f"cannot spread angles over {span_deg:g} degrees: use a span above 0 and up to 360")
+    step = span_deg / count
     for offset in (1 / 2, 1 / 3):
-        angles = (np.arange(count, dtype=np.float64) + offset) * step
-        if np.min(np.abs(np.remainder(angles + 45, 90) - 45)) > 1e-9:
+        angles_deg = (np.arange(count, dtype=np.float64) + offset) * step
+        if np.min(np.abs(np.remainder(angles_deg + 45, 90) - 45)) > 1e-9:
             break
-    return angles
+    return angles_deg
 
 
-def _turned(angles: NDArray[np.float64], vector: tuple[float, float, float]) -> NDArray[np.float64]:
-    """`vector` of the room in the frame of a cube that was turned counter-clockwise by `angles` (degrees)."""
-    cos, sin = _cos_sin(angles)
+def _turned(angles_deg: NDArray[np.float64], vector: tuple[float, float, float]) -> NDArray[np.float64]:
+    """`vector` of the room in the axes of a cube that was turned counter-clockwise by `angles_deg` (degrees)."""
+    cos, sin = _cos_sin(angles_deg)
     x, y, z = vector
     return np.stack([cos * x + sin * y, -sin * x + cos * y, np.full_like(cos, z)], axis=1)
 
@@ -196,34 +198,34 @@ def rotations(axis: ArrayLike, degrees: NDArray[np.float64]) -> NDArray[np.float
 
 
 def turntable_views(
-    grid: Grid, angles: ArrayLike, *, elevation: float = 0.0, picture_shape: tuple[int, int] | None = None
+    grid: Grid, angles_deg: ArrayLike, *, elevation_deg: float = 0.0, picture_shape: tuple[int, int] | None = None
 ) -> Views:
     """The beams of `lightcube.turntable`, which takes and raises the same.
 
     Examples
     --------
     >>> import lightcube as lc
-    >>> rig = lc.turntable(lc.Grid((3, 5, 7)), [0, 90], elevation=30, picture_shape=(3, 5))
+    >>> rig = lc.turntable(lc.Grid((3, 5, 7)), [0, 90], elevation_deg=30, picture_shape=(3, 5))
     >>> rig.views.lamps  # turned by 90 degrees the cube sees the lamp from its other side
     array([[ 0.866,  0.   , -0.5  ,  0.   ],
            [ 0.   , -0.866, -0.5  ,  0.   ]])
     """
-    turned = check_angles(angles)
-    elevation = check_elevation(elevation)
-    raster = raster_shape(grid, elevation)
+    turned = check_angles(angles_deg)
+    elevation_deg = check_elevation(elevation_deg)
+    raster = raster_shape(grid, elevation_deg)
     shape = picture_shape or raster
     if shape[0] > raster[0] or shape[1] > raster[1]:
         raise InputError(
             f"a picture of {shape[0]} x {shape[1]} pixels (rows x columns) is larger than "
             f"the cube's screen of {raster[0]} x {raster[1]}"
         )
-    tilt = math.radians(elevation)
+    tilt = math.radians(elevation_deg)
     light = _turned(turned, (math.cos(tilt), 0.0, -math.sin(tilt)))
     return Views(
         lamps=np.concatenate([light, np.zeros((len(turned), 1))], axis=1),
-        origins=np.zeros((len(turned), 3)),
-        column_steps=_turned(turned, (0.0, -grid.voxel_mm, 0.0)),
-        row_steps=_turned(turned, (0.0, 0.0, -grid.voxel_mm)),
+        origins_mm=np.zeros((len(turned), 3)),
+        column_steps_mm=_turned(turned, (0.0, -grid.voxel_mm, 0.0)),
+        row_steps_mm=_turned(turned, (0.0, 0.0, -grid.voxel_mm)),
         picture_shape=shape,
     )
 
@@ -232,19 +234,20 @@ def rotated(views: Views, axis: ArrayLike, lamps: NDArray[np.float64], screens: 
     """Views whose lamps and screens have gone round the cube, counter-clockwise about `axis`, by degrees per view."""
     lamp, screen = rotations(axis, lamps), rotations(axis, screens)
     shone = np.einsum("vij,vj->vi", lamp, views.lamps[:, :3])
-    origins, right, down = (
-        np.einsum("vij,vj->vi", screen, vectors) for vectors in (views.origins, views.column_steps, views.row_steps)
+    origins_mm, right, down = (
+        np.einsum("vij,vj->vi", screen, vectors)
+        for vectors in (views.origins_mm, views.column_steps_mm, views.row_steps_mm)
     )
-    return Views(np.column_stack([shone, views.lamps[:, 3]]), origins, right, down, views.picture_shape)
+    return Views(np.column_stack([shone, views.lamps[:, 3]]), origins_mm, right, down, views.picture_shape)
 
 
-def smallest_gap(angles: NDArray[np.float64], period: float) -> float:
-    """Degrees between the two nearest of the `angles` that differ, which repeat after `period` degrees."""
-    stops = np.unique(np.round(angles % period, 9) % period)
+def smallest_gap_deg(angles_deg: NDArray[np.float64], period: float) -> float:
+    """Degrees between the two nearest of the `angles_deg` that differ, which repeat after `period` degrees."""
+    stops = np.unique(np.round(angles_deg % period, 9) % period)
     return float(np.min(np.diff(stops, append=stops[0] + period)))
 
 
-def hold_offsets(hold_deg: float, most: float, step: float) -> NDArray[np.float64]:
+def hold_offsets_deg(hold_deg: float, most: float, step: float) -> NDArray[np.float64]:
     """Degrees off its stop at which a picture is asked for, 0 in the middle, at most `step` apart.
 
     Raises
@@ -267,9 +270,9 @@ def hold_offsets(hold_deg: float, most: float, step: float) -> NDArray[np.float6
 _SAME_ANGLE = 1e-9
 
 
-def distinct_angles(angles: ArrayLike) -> NDArray[np.float64]:
-    """Return `angles` (degrees) as a vector, or raise `InputError` where two are the same view, turns apart."""
-    vector = check_angles(angles)
+def distinct_angles(angles_deg: ArrayLike) -> NDArray[np.float64]:
+    """Return `angles_deg` (degrees) as a vector, or raise `InputError` where two are the same view, turns apart."""
+    vector = check_angles(angles_deg)
     turned = np.remainder(vector, 360.0)
     order = np.argsort(turned, kind="stable")
     gaps = np.diff(turned[order], append=turned[order[0]] + 360.0)

@@ -1,4 +1,4 @@
-"""From pictures of any sizes to the frames of a screen: angles, cropping, resampling in linear light."""
+"""From pictures of any sizes to what is wanted on a screen: angles, cropping, resampling in linear light."""
 
 import math
 from collections import Counter
@@ -15,7 +15,8 @@ from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import POWER_MAX, Rig, turntable
 from lightcube.optics.transfer import BLACK, from_uint8, to_uint8
 from lightcube.optics.views import distinct_angles, spread_angles
-from lightcube.pictures.frames import Frames, Pictures
+from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.targets import Targets
 
 Fit = Literal["crop", "pad", "stretch"]
 Picture = NDArray[np.float32]
@@ -36,10 +37,10 @@ def turntable_for(
     pictures: Pictures,
     grid: Grid,
     *,
-    angles: ArrayLike | None = None,
-    span: float | None = None,
-    elevation: float | None = None,
-    frame_width: float = 1.0,
+    angles_deg: ArrayLike | None = None,
+    span_deg: float | None = None,
+    elevation_deg: float | None = None,
+    picture_width: float = 1.0,
     power: float | None = None,
     power_max: float = POWER_MAX,
     black: float = BLACK,
@@ -48,15 +49,15 @@ def turntable_for(
 
     Parameters
     ----------
-    angles
+    angles_deg
         Turntable angles in degrees, one per picture; default those that came with the pictures, and where
         none did, spread evenly.
-    span
+    span_deg
         Degrees over which angles are spread evenly, instead of those that came with the pictures.
-    elevation
+    elevation_deg
         Of the lamp, in degrees; default the one that came with the pictures, else 35.
-    frame_width
-        Width of the frames as a fraction of the cube's width; their aspect is the first picture's as closely as
+    picture_width
+        Width of the pictures as a fraction of the cube's width; their aspect is the first picture's as closely as
         `lightcube.optics.grid.picture_shape` can.
     power, power_max, black
         Of the lamp and the screen, as `lightcube.turntable` takes them.
@@ -64,22 +65,24 @@ def turntable_for(
     Raises
     ------
     InputError
-        Where there are fewer than two pictures, the angles do not fit, or the frames would be wider than
+        Where there are fewer than two pictures, the angles do not fit, or they would be wider than
         the cube's screen.
     """
     if len(pictures) < 2:
         raise InputError(
             f"{len(pictures)} picture{'s' if not pictures.images else ''} cannot fill a cube: give at least two"
         )
-    lamp = elevation if elevation is not None else pictures.elevation
+    lamp = elevation_deg if elevation_deg is not None else pictures.elevation_deg
     lamp = check_elevation(RAISED if lamp is None else lamp)
-    turned = _angles(pictures, angles, span, lamp)
+    turned = _angles(pictures, angles_deg, span_deg, lamp)
     rows, columns = pictures.images[0].shape[:2]
-    shape = picture_shape(grid, frame_width, columns / rows, lamp)
-    return turntable(grid, turned, elevation=lamp, picture_shape=shape, power=power, power_max=power_max, black=black)
+    shape = picture_shape(grid, picture_width, columns / rows, lamp)
+    return turntable(
+        grid, turned, elevation_deg=lamp, picture_shape=shape, power=power, power_max=power_max, black=black
+    )
 
 
-def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Frames:
+def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Targets:
     """Fit pictures to the screens of a rig, one each.
 
     Parameters
@@ -91,9 +94,9 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Fra
 
     Returns
     -------
-    Frames as large as the rig's pictures; what lies beside a screen is white and don't care. They are resampled in
+    Targets as large as the rig's pictures; what lies beside a screen is white and don't care. They are resampled in
     linear light with a Lanczos filter of three lobes, widened where pictures shrink, and never leave the range of
-    values of the picture. A picture that has the frames' size stays as it is.
+    values of the picture. A picture that has that size already stays as it is.
 
     Raises
     ------
@@ -109,12 +112,12 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Fra
     weights = np.zeros(fitted.shape[:3], np.float32)
     for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, rig.stops.window, fits, strict=True)):
         _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way))
-    return Frames(fitted, rig, weights, pictures.names, pictures.transfer)
+    return Targets(fitted, rig, weights, pictures.names, pictures.transfer)
 
 
-def fit_report(pictures: Pictures, frames: Frames, fit: Fit = "crop") -> str:
+def fit_report(pictures: Pictures, targets: Targets, fit: Fit = "crop") -> str:
     """Say in one line, without a full stop, what `fit` did to the pictures; sizes are width x height."""
-    target = frames.rig.picture_shape
+    target = targets.rig.picture_shape
     sizes = Counter((image.shape[0], image.shape[1]) for image in pictures.images)
     first = (pictures.images[0].shape[0], pictures.images[0].shape[1])
     count = f"{len(pictures)} pictures"
@@ -129,37 +132,41 @@ def fit_report(pictures: Pictures, frames: Frames, fit: Fit = "crop") -> str:
     return f"{count}, {done} from {_size(first)}{more} to {_size(target)}{rule}"
 
 
-def targets(frames: Frames) -> NDArray[np.uint8]:
-    """Frames as 8-bit display levels ``(view, row, column, channel + 1)``, the last channel the weight.
+def as_levels(targets: Targets) -> NDArray[np.uint8]:
+    """Targets as 8-bit display levels ``(view, row, column, channel + 1)``, the last channel the weight.
 
     Weights are scaled so that the largest is 255; none that is above 0 becomes 0.
     """
-    most = float(frames.weight.max())
-    made = np.empty((*frames.pictures.shape[:3], frames.pictures.shape[3] + 1), np.uint8)
-    for levels, picture, weight in zip(made, frames.pictures, frames.weight, strict=True):  # one by one, for the memory
-        levels[..., :-1] = to_uint8(picture, frames.transfer)
+    most = float(targets.weight.max())
+    made = np.empty((*targets.pictures.shape[:3], targets.pictures.shape[3] + 1), np.uint8)
+    for levels, picture, weight in zip(
+        made, targets.pictures, targets.weight, strict=True
+    ):  # one by one, for the memory
+        levels[..., :-1] = to_uint8(picture, targets.transfer)
         levels[..., -1] = np.where(weight > 0, np.maximum(np.rint(weight.astype(np.float64) / most * 255), 1), 0)
     return made
 
 
-def frames_from_targets(cube: Cube) -> Frames:
-    """Return the frames that `cube` was made for, from its 8-bit targets; `InputError` where it has none."""
+def targets_of(cube: Cube) -> Targets:
+    """Return the targets that `cube` was made for, from its 8-bit targets; `InputError` where it has none."""
     if cube.targets is None:
-        raise InputError("this cube was not made from pictures, so it has no targets: give the frames themselves")
+        raise InputError("this cube was not made from pictures, so it has no targets: give the pictures themselves")
     pictures = from_uint8(cube.targets[..., :-1], cube.transfer)
     weights = cube.targets[..., -1].astype(np.float32) / np.float32(255)
-    return Frames(pictures, cube.rig, weights, cube.names, cube.transfer)
+    return Targets(pictures, cube.rig, weights, cube.names, cube.transfer)
 
 
-def _angles(pictures: Pictures, angles: ArrayLike | None, span: float | None, elevation: float) -> NDArray[np.float64]:
+def _angles(
+    pictures: Pictures, angles_deg: ArrayLike | None, span_deg: float | None, elevation_deg: float
+) -> NDArray[np.float64]:
     """One angle per picture: those asked for, else those that came along, else spread evenly."""
-    if angles is not None and span is not None:
+    if angles_deg is not None and span_deg is not None:
         raise InputError("angles and a span of angles are both given: use one of the two")
-    if angles is None and span is None:
-        angles = pictures.angles
-    if angles is None:
-        return distinct_angles(spread_angles(len(pictures), span, elevation=elevation))
-    chosen = distinct_angles(angles)
+    if angles_deg is None and span_deg is None:
+        angles_deg = pictures.angles_deg
+    if angles_deg is None:
+        return distinct_angles(spread_angles(len(pictures), span_deg, elevation_deg=elevation_deg))
+    chosen = distinct_angles(angles_deg)
     if len(chosen) != len(pictures):
         raise InputError(f"{len(chosen)} angles for {len(pictures)} pictures: give one angle per picture")
     return chosen
@@ -177,7 +184,7 @@ def _source_box(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tu
 
 
 def _inside(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[slice, slice]:
-    """Rows and columns of the frame that the picture fills, in its middle."""
+    """Rows and columns of the screen that the picture fills, in its middle."""
     if mode != "pad":
         return slice(None), slice(None)
     scale = min(target[0] / size[0], target[1] / size[1])
@@ -189,11 +196,11 @@ def _inside(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[
     return spans[0], spans[1]
 
 
-def _fill(frame: Picture, weight: Picture, image: Picture, mode: Fit) -> None:
-    """Put `image` into `frame`, and 1 into `weight` where it lies."""
-    size, shape = image.shape[:2], (frame.shape[0], frame.shape[1])
+def _fill(area: Picture, weight: Picture, image: Picture, mode: Fit) -> None:
+    """Put `image` into `area`, and 1 into `weight` where it lies."""
+    size, shape = image.shape[:2], (area.shape[0], area.shape[1])
     inside = _inside(size, shape, mode)
-    frame[inside] = _resample(image, frame[inside].shape[:2], _source_box(size, shape, mode))
+    area[inside] = _resample(image, area[inside].shape[:2], _source_box(size, shape, mode))
     weight[inside] = 1
 
 

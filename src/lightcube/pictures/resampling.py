@@ -8,34 +8,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.optics.grid import Grid
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 
 Array = NDArray[np.floating[Any]]
 
 
-def halved(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
+def halved(targets: Targets, grid: Grid) -> tuple[Targets, Grid]:
     """Return the same pictures and cube with voxels and pixels twice as large, an odd last half voxel added."""
-    return coarser(frames, grid, 2)
+    return coarser(targets, grid, 2)
 
 
-def coarser(frames: Frames, grid: Grid, ratio: float) -> tuple[Frames, Grid]:
+def coarser(targets: Targets, grid: Grid, ratio: float) -> tuple[Targets, Grid]:
     """Return the same pictures and cube with voxels and pixels `ratio` times as large, the last ones rounded up.
 
     Pixels are means in linear light, their weights the mean weight; both cubes and all pictures share their centres.
     """
     nz, ny, nx = (_parts(count, ratio) for count in grid.shape)
     small = Grid((nz, ny, nx), ratio * grid.voxel_mm)
-    rows, columns = frames.rig.picture_shape
+    rows, columns = targets.rig.picture_shape
     down, across = _covered(rows, ratio), _covered(columns, ratio)
     shape = (len(down), len(across))
-    weight = np.empty((len(frames), *shape), np.float32)
-    pictures = np.ones((*weight.shape, frames.pictures.shape[-1]), np.float32)
-    for view, picture in enumerate(frames.pictures):  # one by one, for the memory
-        weight[view] = down @ frames.weight[view] @ across.T
-        light = np.einsum("ir,rck,jc->ijk", down, picture * frames.weight[view, ..., None], across, optimize=True)
+    weight = np.empty((len(targets), *shape), np.float32)
+    pictures = np.ones((*weight.shape, targets.pictures.shape[-1]), np.float32)
+    for view, picture in enumerate(targets.pictures):  # one by one, for the memory
+        weight[view] = down @ targets.weight[view] @ across.T
+        light = np.einsum("ir,rck,jc->ijk", down, picture * targets.weight[view, ..., None], across, optimize=True)
         part = weight[view, ..., None]
         np.divide(light, part, out=pictures[view], where=part > 0)
-    return replace(frames, pictures=pictures, rig=frames.rig.with_pixels(ratio, shape), weights=weight), small
+    return replace(targets, pictures=pictures, rig=targets.rig.with_pixels(ratio, shape), weights=weight), small
 
 
 def enlarged(volume: Array, shape: tuple[int, int, int], slices: slice | None = None) -> Array:

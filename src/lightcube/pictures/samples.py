@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics.transfer import decode
-from lightcube.pictures.frames import Pictures
+from lightcube.pictures.pictures import Pictures
 
 #: Pictures that come with scikit-image.
 _PHOTOGRAPHS: dict[str, Callable[[], NDArray[np.uint8]]] = {

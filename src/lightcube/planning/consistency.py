@@ -10,7 +10,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import POWER_MAX
 from lightcube.optics.transfer import BLACK, decode, encode
 from lightcube.optics.views import Views
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ _LOAD_LEVEL, _LOAD_RAISED = 4.5, 5.0
 _SOLID = 0.1
 
 
-def check(frames: Frames, grid: Grid) -> dict[str, Any]:
+def check(targets: Targets, grid: Grid) -> dict[str, Any]:
     """Find out about pictures, all under lamps of one elevation, what can be known before solving.
 
     Returns
@@ -49,24 +49,24 @@ def check(frames: Frames, grid: Grid) -> dict[str, Any]:
     ``moments``
         See there.
     """
-    elevation, lamp_max = raised(frames.rig), float(frames.rig.lamps.most.max())
-    rows, columns = frames.rig.views.picture_shape
-    white, blank = plain_rows(frames)
+    elevation_deg, lamp_max = raised(targets.rig), float(targets.rig.lamps.most.max())
+    rows, columns = targets.rig.views.picture_shape
+    white, blank = plain_rows(targets)
     return {
-        "pictures": len(frames),
+        "pictures": len(targets),
         "columns": columns,
         "rows": rows,
-        "elevation": elevation,
+        "elevation_deg": elevation_deg,
         "lamp_max": lamp_max,
-        "load": load(frames.rig.views, grid),
-        "load_limit": _LOAD_LEVEL if _is_level(frames.rig.views) else _LOAD_RAISED,
-        "mirrored": [[frames.names[view] for view in pair] for pair in mirror_conflicts(frames)],
-        "duplicates": [[frames.names[view] for view in pair] for pair in duplicates(frames)],
-        "white_rows": {frames.names[view]: runs for view, runs in white.items()},
-        "blank_rows": {frames.names[view]: runs for view, runs in blank.items()},
-        "row_conflicts": row_conflicts(frames, grid, lamp_max),
-        "whole_shadow": bool(np.all(_holds_shadow(frames.rig.views, grid))),
-        "moments": moments(frames),
+        "load": load(targets.rig.views, grid),
+        "load_limit": _LOAD_LEVEL if _is_level(targets.rig.views) else _LOAD_RAISED,
+        "mirrored": [[targets.names[view] for view in pair] for pair in mirror_conflicts(targets)],
+        "duplicates": [[targets.names[view] for view in pair] for pair in duplicates(targets)],
+        "white_rows": {targets.names[view]: runs for view, runs in white.items()},
+        "blank_rows": {targets.names[view]: runs for view, runs in blank.items()},
+        "row_conflicts": row_conflicts(targets, grid, lamp_max),
+        "whole_shadow": bool(np.all(_holds_shadow(targets.rig.views, grid))),
+        "moments": moments(targets),
     }
 
 
@@ -81,64 +81,64 @@ def load(views: Views, grid: Grid) -> float:
     return len(views) * columns / ny * (1.0 if _is_level(views) else rows / nz)
 
 
-def mirror_conflicts(frames: Frames) -> list[tuple[int, int]]:
+def mirror_conflicts(targets: Targets) -> list[tuple[int, int]]:
     """Pairs of views half a turn apart at elevation 0 whose pictures are not mirror images of each other.
 
     With level light every beam runs through the same voxels in both, so the later picture is the mirror
     image of the earlier one whatever the cube.
     """
-    level = frames.rig.views.elevations == 0
-    angles = frames.rig.views.angles
+    level = targets.rig.views.elevations_deg == 0
+    angles_deg = targets.rig.views.angles_deg
     conflicts = []
-    for first in range(len(frames)):
-        half_turn = np.abs(np.remainder(angles[first] + 180 - angles + 180, 360) - 180) < 1e-6
+    for first in range(len(targets)):
+        half_turn = np.abs(np.remainder(angles_deg[first] + 180 - angles_deg + 180, 360) - 180) < 1e-6
         for second in np.flatnonzero(half_turn & level & level[first]):
             if second <= first:
                 continue
-            shown = encode(frames.pictures[first], frames.transfer)
-            mirrored = encode(frames.pictures[second][:, ::-1], frames.transfer)
-            weight = frames.weight[first] * frames.weight[second][:, ::-1]
+            shown = encode(targets.pictures[first], targets.transfer)
+            mirrored = encode(targets.pictures[second][:, ::-1], targets.transfer)
+            weight = targets.weight[first] * targets.weight[second][:, ::-1]
             squares = np.sum(weight[..., None] * (shown - mirrored) ** 2)
             if squares > _VISIBLE**2 * np.sum(weight) * shown.shape[-1]:
                 conflicts.append((first, int(second)))
     return conflicts
 
 
-def duplicates(frames: Frames) -> list[tuple[int, int]]:
+def duplicates(targets: Targets) -> list[tuple[int, int]]:
     """Pairs of views that want the same picture, to a root mean square of one display level of 255.
 
     Over pixels that matter in both, weighted by the product of their weights.
     """
-    weight = frames.weight.reshape(len(frames), -1)
+    weight = targets.weight.reshape(len(targets), -1)
     common = weight @ weight.T
     squares = np.zeros_like(common)
     # sum of w w' (p - p')^2 for all pairs at once, by matrix products
-    for channel in np.moveaxis(frames.pictures, -1, 0):
-        shown = encode(channel, frames.transfer).reshape(weight.shape) - np.float32(0.5)
+    for channel in np.moveaxis(targets.pictures, -1, 0):
+        shown = encode(channel, targets.transfer).reshape(weight.shape) - np.float32(0.5)
         crossed = (weight * shown**2) @ weight.T
         squares += crossed + crossed.T - 2 * (weight * shown) @ (weight * shown).T
-    common *= frames.pictures.shape[-1]
+    common *= targets.pictures.shape[-1]
     pairs = np.argwhere(np.triu((squares <= _SAME**2 * common) & (common > 0), k=1))
     return [(int(first), int(second)) for first, second in pairs]
 
 
-def plain_rows(frames: Frames) -> tuple[dict[int, list[list[int]]], dict[int, list[list[int]]]]:
+def plain_rows(targets: Targets) -> tuple[dict[int, list[list[int]]], dict[int, list[list[int]]]]:
     """Rows that are white from end to end, and rows of any other one colour, by view: runs of ``[first, last]`` row.
 
     White is a display value of at least 0.98, one colour is one to a display level of 255, both over pixels that
     matter. Views without such rows are left out.
     """
-    shown, matters = encode(frames.pictures, frames.transfer), frames.weight[..., None] > 0
+    shown, matters = encode(targets.pictures, targets.transfer), targets.weight[..., None] > 0
     darkest = np.min(np.where(matters, shown, 1e9), axis=2)
     lightest = np.max(np.where(matters, shown, -1e9), axis=2)
-    some = np.any(frames.weight > 0, axis=2)
+    some = np.any(targets.weight > 0, axis=2)
     white = some & np.all(darkest >= 1 - _VISIBLE, axis=-1)
     blank = some & np.all(lightest - darkest <= _SAME, axis=-1) & ~white
     whites, blanks = ({v: _runs(np.flatnonzero(row)) for v, row in enumerate(kind)} for kind in (white, blank))
     return {v: runs for v, runs in whites.items() if runs}, {v: runs for v, runs in blanks.items() if runs}
 
 
-def row_conflicts(frames: Frames, grid: Grid, lamp_max: float = POWER_MAX) -> list[dict[str, Any]]:
+def row_conflicts(targets: Targets, grid: Grid, lamp_max: float = POWER_MAX) -> list[dict[str, Any]]:
     """Rows in which one picture is so bright that another cannot be as dark as it wants, whatever the cube.
 
     Level lamps only; with a raised lamp every row draws on many slices, and the list is empty.
@@ -165,26 +165,26 @@ def row_conflicts(frames: Frames, grid: Grid, lamp_max: float = POWER_MAX) -> li
     seen there. So totals bound each other, up to the factor ``1 / (2 - sqrt(2))`` by which sums over beams a voxel
     apart can differ for one and the same voxel: what is listed is certain, and less goes unnoticed.
     """
-    if not _is_level(frames.rig.views):
+    if not _is_level(targets.rig.views):
         return []
-    light = _log_light(frames)
-    matters = frames.weight[..., None] > 0
+    light = _log_light(targets)
+    matters = targets.weight[..., None] > 0
     _, _, width, channels = light.shape
     strongest = math.log(lamp_max)
     white = np.minimum(np.max(np.where(matters, light, -np.inf), axis=(1, 2)), strongest)
     wanted = np.where(matters, np.maximum(white[:, None, None] - light, 0), 0)
     # what is black already may absorb any more
-    bound = matters & (frames.pictures > _black(frames))
+    bound = matters & (targets.pictures > _black(targets))
     allowed = np.sum(np.where(bound, np.maximum(strongest - light, 0), np.inf), axis=2)
     found: dict[tuple[int, int], dict[str, Any]] = {}
-    for dark in range(len(frames)):
-        inside = _inside(frames.rig.views, grid, dark)
+    for dark in range(len(targets)):
+        inside = _inside(targets.rig.views, grid, dark)
         totals = np.tensordot(inside.astype(np.float64), wanted[dark], axes=(0, 1))
         at = np.argwhere(totals > _SAMPLING * allowed)
         bright, row, channel = at.T
         total, left, columns = totals[bright, row, channel], allowed[bright, row, channel], inside.sum(axis=0)[bright]
         means = np.exp(white[dark, channel] - np.stack([_SAMPLING * left, total]) / columns)
-        darkest, mean = encode(means, frames.transfer)
+        darkest, mean = encode(means, targets.transfer)
         for i in np.flatnonzero(darkest - mean > _VISIBLE):
             key = int(row[i]), int(channel[i])
             if key in found and found[key]["darkest"] - found[key]["mean"] >= darkest[i] - mean[i]:
@@ -192,8 +192,8 @@ def row_conflicts(frames: Frames, grid: Grid, lamp_max: float = POWER_MAX) -> li
             found[key] = {
                 "row": key[0],
                 "channel": ("red", "green", "blue")[key[1]] if channels == 3 else str(key[1]),
-                "bright": frames.names[bright[i]],
-                "dark": frames.names[dark],
+                "bright": targets.names[bright[i]],
+                "dark": targets.names[dark],
                 "allowed": float(left[i]),
                 "wanted": float(total[i]),
                 "columns": int(columns[i]),
@@ -204,7 +204,7 @@ def row_conflicts(frames: Frames, grid: Grid, lamp_max: float = POWER_MAX) -> li
     return [found[key] for key in sorted(found)]
 
 
-def moments(frames: Frames) -> dict[str, float]:
+def moments(targets: Targets) -> dict[str, float]:
     """How far totals and centroids of absorbance are from those that shadows of one solid have.
 
     Of the shadows of one solid the totals (zeroth moments) agree, and the centroids (first moments) move as the solid
@@ -230,20 +230,20 @@ def moments(frames: Frames) -> dict[str, float]:
     that are don't care count as the mean of their row, rows of such pixels as the mean of the other views. Pictures
     that leave a margin are not the whole shadow, and the cube's material there takes up differences.
     """
-    absorbance = _absorbance(frames)
+    absorbance = _absorbance(targets)
     _, rows, columns, channels = absorbance.shape
-    theta = np.radians(frames.rig.views.angles)
+    theta = np.radians(targets.rig.views.angles_deg)
     turning = np.stack([np.cos(theta), np.sin(theta)], axis=1)
     totals = absorbance.sum(axis=2)
     across = absorbance.transpose(0, 1, 3, 2) @ _offsets(columns)
-    down = np.zeros((len(frames), channels))
-    if not _is_level(frames.rig.views):
+    down = np.zeros((len(targets), channels))
+    if not _is_level(targets.rig.views):
         down = totals.transpose(0, 2, 1) @ _offsets(rows)
         totals, across = (moment.sum(axis=1, keepdims=True) for moment in (totals, across))
     scale = float(np.abs(np.mean(totals))) or 1.0
     apart = totals - totals.mean(axis=0)
     with_lamps = apart - apart.mean(axis=1, keepdims=True)
-    still = np.ones((len(frames), 1))
+    still = np.ones((len(targets), 1))
     return {
         "total": _rms(apart) / scale,
         "total_with_lamps": _rms(with_lamps) / scale,
@@ -255,7 +255,7 @@ def moments(frames: Frames) -> dict[str, float]:
 def advice(facts: dict[str, Any]) -> list[str]:
     """Say in a sentence each what is wrong with pictures by the facts of `check`, and what to do; often nothing."""
     said = []
-    level, moment = facts["elevation"] == 0, facts["moments"]
+    level, moment = facts["elevation_deg"] == 0, facts["moments"]
     spread = moment["total_with_lamps" if level and facts["lamp_max"] > 1 else "total"]
     # Shadows of one solid are no unrelated pictures, however many there are.
     solid = max(moment["total"], moment["across"], moment["down"]) <= _SOLID
@@ -264,13 +264,13 @@ def advice(facts: dict[str, Any]) -> list[str]:
     if facts["whole_shadow"] and spread > _SOLID:
         said.append(
             f"No solid casts these shadows: what {'a row absorbs' if level else 'they absorb'} differs by "
-            f"{spread:.0%} between pictures, a solid's by 5% at most: leave a margin (--frame-width)."
+            f"{spread:.0%} between pictures, a solid's by 5% at most: leave a margin (--picture-width)."
         )
     if facts["mirrored"]:
         (first, second), more = facts["mirrored"][0], len(facts["mirrored"]) - 1
         said.append(
             f"{first} and {second} are half a turn apart, where a level lamp shows mirror images, but they are "
-            f"different pictures{_more(more, 'such pair')}: use other angles, or raise the lamp (--elevation 35)."
+            f"different pictures{_more(more, 'such pair')}: use other angles, or raise the lamp (--elevation-deg 35)."
         )
     if facts["duplicates"]:
         (first, second), more = facts["duplicates"][0], len(facts["duplicates"]) - 1
@@ -282,7 +282,7 @@ def _on_load(facts: dict[str, Any], level: bool) -> str:
     part = facts["load_limit"] / facts["load"]
     count, wide = int(facts["pictures"] * part), int(facts["columns"] * (part if level else math.sqrt(part)))
     fewer = f"at most {count} pictures, or " if count > 1 else ""
-    raise_lamp = ", or raise the lamp (--elevation 35)" if level else ""
+    raise_lamp = ", or raise the lamp (--elevation-deg 35)" if level else ""
     return (
         f"The load is {facts['load']:.1f}; unrelated pictures come out well up to {facts['load_limit']:g}: use "
         f"{fewer}pictures at most {max(wide, 1)} pixels wide{raise_lamp}."
@@ -302,7 +302,7 @@ def _on_rows(facts: dict[str, Any]) -> list[str]:
             f"{bright} is too bright for a lamp of {facts['lamp_max']:g} in {_rows(rows)}{_more(others, 'picture')}: "
             f"in row {worst['row']} {worst['dark']} wants {worst['channel']} of {worst['mean']:.0%} on average and "
             f"cannot go below {worst['darkest']:.0%}: allow a lamp of more than {power:.2g} (--lamp-max), or raise "
-            f"the lamp (--elevation 35)."
+            f"the lamp (--elevation-deg 35)."
         )
     edges = {
         name: [run for run in runs if run[0] == 0 or run[1] == facts["rows"] - 1]
@@ -331,7 +331,7 @@ def _more(count: int, what: str) -> str:
 
 
 def _is_level(views: Views) -> bool:
-    return bool(np.all(views.elevations == 0))
+    return bool(np.all(views.elevations_deg == 0))
 
 
 def _offsets(count: int) -> Floats:
@@ -349,20 +349,20 @@ def _unexplained(moments: Floats, by: Floats) -> Floats:
     return np.asarray(flat - by @ np.linalg.lstsq(by, flat)[0], np.float64)
 
 
-def _black(frames: Frames) -> Floats:
+def _black(targets: Targets) -> Floats:
     """The darkest light that a screen shows."""
-    return np.asarray(decode(np.array([BLACK]), frames.transfer), np.float64)
+    return np.asarray(decode(np.array([BLACK]), targets.transfer), np.float64)
 
 
-def _log_light(frames: Frames) -> Floats:
+def _log_light(targets: Targets) -> Floats:
     """Logarithms of the pictures' linear light, floored where a screen is black."""
-    return np.asarray(np.log(np.maximum(frames.pictures, _black(frames))), np.float64)
+    return np.asarray(np.log(np.maximum(targets.pictures, _black(targets))), np.float64)
 
 
-def _absorbance(frames: Frames) -> Floats:
+def _absorbance(targets: Targets) -> Floats:
     """Absorbance under a lamp of power 1; what is don't care is filled with means, of the row, then of views."""
-    matters = frames.weight[..., None] > 0
-    absorbance = np.where(matters, -_log_light(frames), 0)
+    matters = targets.weight[..., None] > 0
+    absorbance = np.where(matters, -_log_light(targets), 0)
     count = matters.sum(axis=2)
     means = absorbance.sum(axis=2) / np.maximum(count, 1)
     over_views = means.sum(axis=0) / np.maximum((count > 0).sum(axis=0), 1)
@@ -373,11 +373,11 @@ def _holds_shadow(views: Views, grid: Grid) -> NDArray[np.bool_]:
     """For each view, whether no beam outside the picture touches the cube, or with a level lamp the slices shown."""
     rows, columns = views.picture_shape
     nz, ny, nx = grid.shape
-    theta = np.radians(views.angles)
+    theta = np.radians(views.angles_deg)
     cos, sin = np.abs(np.cos(theta)), np.abs(np.sin(theta))
-    high = nz + (nx * cos + ny * sin) * np.abs(np.tan(np.radians(views.elevations)))
+    high = nz + (nx * cos + ny * sin) * np.abs(np.tan(np.radians(views.elevations_deg)))
     wide_enough = columns + 1 > nx * sin + ny * cos + 1e-6
-    return np.asarray(wide_enough & ((views.elevations == 0) | (rows + 1 > high + 1e-6)))
+    return np.asarray(wide_enough & ((views.elevations_deg == 0) | (rows + 1 > high + 1e-6)))
 
 
 def _inside(views: Views, grid: Grid, view: int) -> NDArray[np.bool_]:
@@ -387,7 +387,7 @@ def _inside(views: Views, grid: Grid, view: int) -> NDArray[np.bool_]:
     half = np.array([grid.shape[2], grid.shape[1]]) / 2 + 1e-9  # beams along an outer face touch the cube
     across, along = (
         vectors[:, :2] / np.linalg.norm(vectors[:, :2], axis=1, keepdims=True)
-        for vectors in (views.column_steps, views.lamps)
+        for vectors in (views.column_steps_mm, views.lamps)
     )
     points = _offsets(columns)[:, None] * across[view]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -16,8 +16,8 @@ from lightcube.optics.absorption import absorbance
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.material import Material
 from lightcube.optics.views import Views
-from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import shares
+from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
 from lightcube.projection.projector import Projector
 from lightcube.scoring.metrics import mean_psnr
@@ -50,20 +50,20 @@ class Order:
     given_db: float
     best_db: float
 
-    def __call__(self, frames: Frames) -> Frames:
-        """Return `frames` with its pictures, weights and names in this order, the views as they are."""
-        names = tuple(frames.names[picture] for picture in self.pictures)
+    def __call__(self, targets: Targets) -> Targets:
+        """Return `targets` with its pictures, weights and names in this order, the views as they are."""
+        names = tuple(targets.names[picture] for picture in self.pictures)
         return replace(
-            frames, pictures=frames.pictures[self.pictures], weights=frames.weight[self.pictures], names=names
+            targets, pictures=targets.pictures[self.pictures], weights=targets.weight[self.pictures], names=names
         )
 
 
-def best_order(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Order:
+def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Order:
     """Find which picture should stand at which stop, so that they fight each other least.
 
     Parameters
     ----------
-    frames
+    targets
         Pictures in any order, in the views where they or others of them shall stand.
     recipe
         As `lightcube.solve` takes it; pictures of the draft are not held.
@@ -83,19 +83,19 @@ def best_order(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Orde
     ``pictures^3`` numbers per tile and colour: from 139 pictures on there is no room for two tiles a side, and the
     tour is all there is beside the given order.
     """
-    raised(frames.rig)
+    raised(targets.rig)
     recipe = recipe or Recipe()
     bound = Material(recipe.material.most(grid))
     drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0)
-    draft, small = _draft(frames, grid)
-    seen = _features(draft, _tiles(1, draft.rig.picture_shape)).reshape(len(frames), -1)
+    draft, small = _draft(targets, grid)
+    seen = _features(draft, _tiles(1, draft.rig.picture_shape)).reshape(len(targets), -1)
     canonical = np.lexsort(seen.T[::-1])
-    along = np.argsort(frames.angles, kind="stable")
-    tour = np.empty(len(frames), np.int64)
+    along = np.argsort(targets.angles_deg, kind="stable")
+    tour = np.empty(len(targets), np.int64)
     tour[along] = ordering.shortest_tour(scipy.spatial.distance.cdist(seen[canonical], seen[canonical]))
-    candidates = [np.arange(len(frames)), canonical[tour]]
-    tiles = _tiles(len(frames), draft.rig.picture_shape)
-    if len(frames) > 1 and max(tiles) > 1:
+    candidates = [np.arange(len(targets)), canonical[tour]]
+    tiles = _tiles(len(targets), draft.rig.picture_shape)
+    if len(targets) > 1 and max(tiles) > 1:
         parts = _parts(draft.rig.views, small, _features(draft, tiles)[canonical], tiles)
         candidates += [canonical[order] for order in _walks(parts, tour)]
     scores = [_draft_db(draft, small, candidate, drafted) for candidate in candidates]
@@ -103,17 +103,17 @@ def best_order(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Orde
     return Order(candidates[best].astype(np.intp), scores[0], scores[best])
 
 
-def _draft(frames: Frames, grid: Grid) -> tuple[Frames, Grid]:
-    """Return the frames and the grid at a size that solves in a moment: as they are, or 16 voxels long."""
+def _draft(targets: Targets, grid: Grid) -> tuple[Targets, Grid]:
+    """Return the targets and the grid at a size that solves in a moment: as they are, or 16 voxels long."""
     scale = max(1.0, max(grid.shape) / _DRAFT)
     nz, ny, nx = (max(1, round(side / scale)) for side in grid.shape)
     small = Grid((nz, ny, nx), grid.voxel_mm * scale)
-    rig = frames.rig
-    most = raster_shape(small, float(np.min(np.abs(rig.views.elevations))))
+    rig = targets.rig
+    most = raster_shape(small, float(np.min(np.abs(rig.views.elevations_deg))))
     rows, columns = (min(max(1, round(side / scale)), end) for side, end in zip(rig.picture_shape, most, strict=True))
     draft = rig.with_pixels(scale, (rows, columns))
-    pictures, weights = _tiled(frames.pictures, frames.weight, (rows, columns))
-    smaller = replace(frames, pictures=pictures.astype(np.float32), rig=draft, weights=weights.astype(np.float32))
+    pictures, weights = _tiled(targets.pictures, targets.weight, (rows, columns))
+    smaller = replace(targets, pictures=pictures.astype(np.float32), rig=draft, weights=weights.astype(np.float32))
     return smaller, small
 
 
@@ -139,7 +139,7 @@ def _tiles(count: int, shape: tuple[int, int]) -> tuple[int, int]:
     return min(side, shape[0]), min(side, shape[1])
 
 
-def _features(draft: Frames, tiles: tuple[int, int]) -> Floats:
+def _features(draft: Targets, tiles: tuple[int, int]) -> Floats:
     """``(picture, tile, channel)``: absorbance of each picture in tiles; columns of tiles one after the other."""
     dark = absorbance(np.maximum(draft.pictures, _BLACK))
     seen, _ = _tiled(dark, draft.weight, tiles)
@@ -179,8 +179,8 @@ def _walks(parts: NDArray[np.float32], start: NDArray[np.int64]) -> list[NDArray
     return found
 
 
-def _draft_db(draft: Frames, grid: Grid, order: NDArray[np.integer], recipe: Recipe) -> float:
+def _draft_db(draft: Targets, grid: Grid, order: NDArray[np.integer], recipe: Recipe) -> float:
     """Mean PSNR in dB of the draft cube with the pictures in this order."""
-    frames = Order(order.astype(np.intp), 0.0, 0.0)(draft)
-    cube = solving.solve(frames, grid, recipe).cube
-    return mean_psnr(np.stack(list(cast(cube))), frames)
+    targets = Order(order.astype(np.intp), 0.0, 0.0)(draft)
+    cube = solving.solve(targets, grid, recipe).cube
+    return mean_psnr(np.stack(list(cast(cube))), targets)

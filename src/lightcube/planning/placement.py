@@ -1,6 +1,6 @@
 """What cannot be on a stage, what is probably not meant, and its facts: all from where things stand alone.
 
-Lengths are mm, in the cube's own frame, as in `lightcube.optics.views`. Beams are those through the middles of pixels.
+Lengths are mm, in the cube's own axes, as in `lightcube.optics.views`. Beams are those through the middles of pixels.
 """
 
 from collections.abc import Iterable, Iterator
@@ -142,15 +142,15 @@ def facts(stage: Stage) -> dict[str, Any]:
                 "screen": shot.screen,
                 "lamps": list(shot.lamps),
                 "stop": shot.stop + 1,
-                "angle": float(stage.stops[shot.stop]),
+                "angle_deg": float(stage.stops_deg[shot.stop]),
                 "rows": screen.pixels[0],
                 "columns": screen.pixels[1],
                 "beams_in_cube": _part(lit, half),
-                "distance_mm": float(np.linalg.norm(screen.centre)),
+                "distance_mm": float(np.linalg.norm(screen.centre_mm)),
                 "pixel_in_voxels": _pixel_side(lit) / stage.grid.voxel_mm,
             }
         )
-    counts = {"lamps": len(stage.lamps), "screens": len(stage.screens), "stops": len(stage.stops)}
+    counts = {"lamps": len(stage.lamps), "screens": len(stage.screens), "stops": len(stage.stops_deg)}
     return {**counts, "pictures": len(stage.shots), "views": len(beams), "per_picture": figures}
 
 
@@ -171,8 +171,8 @@ def _beams(stage: Stage) -> list[_Beams]:
     made = []
     for v, (p, name) in enumerate((p, name) for p, shot in enumerate(stage.shots) for name in shot.lamps):
         spare = (np.array(views.picture_shape) - rig.stops.window[p]) / 2
-        right, down = views.column_steps[v], views.row_steps[v]
-        middle = views.origins[v] - spare[0] * down - spare[1] * right
+        right, down = views.column_steps_mm[v], views.row_steps_mm[v]
+        middle = views.origins_mm[v] - spare[0] * down - spare[1] * right
         shot = stage.shots[p]
         made.append(_Beams(shot, stage.lamp(name), stage.screen(shot.screen), views.lamps[v], middle, right, down))
     return made
@@ -242,7 +242,7 @@ def _where(beams: _Beams) -> str:
     if far <= 0:
         return "move the screen to where the cube's shadow falls"
     away = far * through - beams.middle
-    place = np.array(beams.screen.centre, np.float64)
+    place = np.array(beams.screen.centre_mm, np.float64)
     for step, given in zip((beams.right, beams.down), beams.screen.steps, strict=True):
         place += away @ step / (step @ step) * given
     x, y, z = (f"{value:.4g}" for value in np.round(place, 3) + 0.0)
@@ -251,7 +251,7 @@ def _where(beams: _Beams) -> str:
 
 def _clashes(stage: Stage, lit: list[list[_Beams]], half: Reals) -> Iterator[str]:
     """Pictures that want the same of their beams, each with the first earlier one that does."""
-    turned = [stage.stops[shot.stop] for shot in stage.shots]
+    turned = [stage.stops_deg[shot.stop] for shot in stage.shots]
     for q, later in enumerate(stage.shots):
         for p, earlier in enumerate(stage.shots[:q]):
             pair = f"pictures {earlier.name!r} (stop {earlier.stop + 1}) and {later.name!r} (stop {later.stop + 1})"
@@ -328,7 +328,7 @@ def _strays(stage: Stage, half: Reals) -> Iterator[tuple[str, int, str]]:
 
 def _turn(stage: Stage, shot: Shot) -> float:
     """Angle of a shot's stop within a turn, to compare with."""
-    return round(stage.stops[shot.stop] % 360, 6) % 360
+    return round(stage.stops_deg[shot.stop] % 360, 6) % 360
 
 
 def _shaded(stage: Stage, beams: list[_Beams]) -> Iterator[tuple[str, int, str]]:

@@ -9,13 +9,14 @@ from numpy.typing import ArrayLike
 
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
-from lightcube.optics.grid import Grid, dense_step
+from lightcube.optics.grid import Grid, dense_step_deg
 from lightcube.optics.rig import POWER_MAX
 from lightcube.optics.transfer import BLACK
 from lightcube.pictures.arranging import spread_over_screen
 from lightcube.pictures.fitting import RAISED, Fit, turntable_for
 from lightcube.pictures.fitting import fit as fitted
-from lightcube.pictures.frames import Frames, Pictures
+from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.targets import Targets
 from lightcube.planning.prediction import Prediction, predict
 from lightcube.scoring.metrics import GOOD_DB
 
@@ -41,7 +42,7 @@ class Plan:
     ----------
     pictures
         As they were read.
-    frames, grid, recipe
+    targets, grid, recipe
         The pictures, fitted and where they shall stand, the cube, and how it is solved.
     fit
         What happened to pictures of another aspect.
@@ -54,7 +55,7 @@ class Plan:
     """
 
     pictures: Pictures
-    frames: Frames
+    targets: Targets
     grid: Grid
     recipe: Recipe
     fit: Fit
@@ -63,11 +64,11 @@ class Plan:
     order: "Order | None" = None
 
     def __repr__(self) -> str:
-        return f"<plan of {self.frames!r} for {self.grid!r}: {self.prediction!r}>"
+        return f"<plan of {self.targets!r} for {self.grid!r}: {self.prediction!r}>"
 
-    def to_solve(self, frames: Frames) -> "Plan":
-        """The same plan for frames that stand, or follow each other, in another way: predicted anew."""
-        return replace(self, frames=frames, prediction=predict(frames, self.grid, self.recipe))
+    def to_solve(self, targets: Targets) -> "Plan":
+        """The same plan for targets that stand, or follow each other, in another way: predicted anew."""
+        return replace(self, targets=targets, prediction=predict(targets, self.grid, self.recipe))
 
 
 def plan(
@@ -77,10 +78,10 @@ def plan(
     *,
     size_mm: float = 100.0,
     shape: tuple[int, int, int] | None = None,
-    frame_width: float | None = None,
-    angles: ArrayLike | None = None,
-    span: float | None = None,
-    elevation: float | None = None,
+    picture_width: float | None = None,
+    angles_deg: ArrayLike | None = None,
+    span_deg: float | None = None,
+    elevation_deg: float | None = None,
     power: float | None = None,
     power_max: float = POWER_MAX,
     black: float = BLACK,
@@ -102,10 +103,10 @@ def plan(
     shape
         ``(nz, ny, nx)`` instead; default the proportions of the first picture under a raised lamp, and as high as the
         pictures under a level one.
-    frame_width
+    picture_width
         Width of the pictures as a fraction of the cube's; default the largest in `WIDTHS` with a predicted mean PSNR
         of at least 40 dB, or the smallest.
-    angles, span, elevation, power, power_max, black
+    angles_deg, span_deg, elevation_deg, power, power_max, black
         As `lightcube.pictures.fitting.turntable_for` takes them.
     fit
         What happens to pictures of another aspect, as `lightcube.fit` takes it.
@@ -124,23 +125,29 @@ def plan(
     """
     if not pictures.images:
         raise InputError("there are no pictures: give at least two")
-    if n < 1 or not 0 < (1 if frame_width is None else frame_width) < math.inf:
+    if n < 1 or not 0 < (1 if picture_width is None else picture_width) < math.inf:
         raise InputError(
-            f"a cube of {n} voxels with pictures {frame_width} of its width: give at least 1 voxel, and a width above "
-            "0 and at most 1.41"
+            f"a cube of {n} voxels with pictures {picture_width} of its width: give at least 1 voxel, and a width "
+            "above 0 and at most 1.41"
         )
     asked = recipe or Recipe()
     lamp: dict[str, Any] = {"power": power, "power_max": power_max, "black": black}
     rows, columns = pictures.images[0].shape[:2]
-    height = pictures.elevation if elevation is None else elevation
+    height = pictures.elevation_deg if elevation_deg is None else elevation_deg
     level = (RAISED if height is None else height) == 0
 
-    def at(width: float) -> tuple[Frames, Grid]:
+    def at(width: float) -> tuple[Targets, Grid]:
         voxels = shape or proportions(n, columns / rows, width, level=level)
         while True:
             grid = Grid(voxels, size_mm / max(voxels))
             rig = turntable_for(
-                pictures, grid, angles=angles, span=span, elevation=elevation, frame_width=width, **lamp
+                pictures,
+                grid,
+                angles_deg=angles_deg,
+                span_deg=span_deg,
+                elevation_deg=elevation_deg,
+                picture_width=width,
+                **lamp,
             )
             high = rig.picture_shape[0]
             if shape is not None or not level or high == voxels[0] or max(voxels[1:]) < n:
@@ -148,24 +155,24 @@ def plan(
             voxels = (high, *voxels[1:])  # no slices above and below the pictures
 
     def predicted(width: float) -> Plan:
-        frames, grid = at(width)
-        return Plan(pictures, frames, grid, asked, fit, predict(frames, grid, asked))
+        targets, grid = at(width)
+        return Plan(pictures, targets, grid, asked, fit, predict(targets, grid, asked))
 
-    best = _widest(predicted) if frame_width is None else predicted(frame_width)
+    best = _widest(predicted) if picture_width is None else predicted(picture_width)
     best = held_longest(best) if longest_hold else best
     if shift:
-        best = replace(best, shift=shift).to_solve(spread(best, best.frames, shift))
+        best = replace(best, shift=shift).to_solve(spread(best, best.targets, shift))
     if order == "best":
         from lightcube.planning.order import best_order  # here: the compiler comes with it
 
-        found = best_order(best.frames, best.grid, best.recipe)
-        best = replace(best, order=found).to_solve(found(best.frames))
+        found = best_order(best.targets, best.grid, best.recipe)
+        best = replace(best, order=found).to_solve(found(best.targets))
     return best
 
 
-def spread(planned: Plan, frames: Frames, shift: int) -> Frames:
-    """Frames in the plan's cube, standing up to so many pixels higher, lower or aside in turn."""
-    return replace(frames, rig=frames.rig.shifted(spread_over_screen(frames, planned.grid, shift)))
+def spread(planned: Plan, targets: Targets, shift: int) -> Targets:
+    """Targets in the plan's cube, standing up to so many pixels higher, lower or aside in turn."""
+    return replace(targets, rig=targets.rig.shifted(spread_over_screen(targets, planned.grid, shift)))
 
 
 def _widest(predicted: Callable[[float], Plan]) -> Plan:
@@ -181,13 +188,13 @@ def _widest(predicted: Callable[[float], Plan]) -> Plan:
     return best
 
 
-def proportions(n: int, aspect: float, frame_width: float, *, level: bool) -> tuple[int, int, int]:
+def proportions(n: int, aspect: float, picture_width: float, *, level: bool) -> tuple[int, int, int]:
     """``(nz, ny, nx)`` of a cube, `n` voxels along its longest side, for pictures of so much width / height.
 
     Under a raised lamp the cube has the pictures' proportions, so that the margin is the same all around them. Under
     a level one slices above and below the pictures would be of no use.
     """
-    upright = aspect / frame_width if level else aspect
+    upright = aspect / picture_width if level else aspect
     wide, high = (n, n / upright) if upright >= 1 else (n * upright, n)
     return max(1, round(high)), max(1, round(wide)), max(1, round(wide))
 
@@ -196,28 +203,32 @@ def held_longest(without: Plan) -> Plan:
     """Find the longest hold that costs less than 1 dB of what is predicted for the plan `without`."""
     if without.prediction.psnr_mean < GOOD_DB:  # where pictures drown in each other hold costs nothing, and is worth it
         return without
-    step, most = dense_step(without.grid), without.frames.rig.widest_hold
+    step, most = dense_step_deg(without.grid), without.targets.rig.widest_hold_deg
     enough = min(without.prediction.psnr_mean, BEST_SEEN_DB) - HOLD_COSTS_DB
     best = without
     for steps in _HOLDS:
-        hold = steps * step
-        if hold > most:
+        hold_deg = steps * step
+        if hold_deg > most:
             break
-        recipe = replace(without.recipe, hold_deg=hold)
-        prediction = predict(without.frames, without.grid, recipe)
+        recipe = replace(without.recipe, hold_deg=hold_deg)
+        prediction = predict(without.targets, without.grid, recipe)
         if prediction.psnr_mean < enough:
             break
         best = replace(without, recipe=recipe, prediction=prediction)
     return best
 
 
-def narrower(planned: Plan, width: float) -> Frames:
-    """The frames of a plan as they would be at another width, at the same stops."""
-    rig = planned.frames.rig
+def narrower(planned: Plan, width: float) -> Targets:
+    """The targets of a plan as they would be at another width, at the same stops."""
+    rig = planned.targets.rig
     narrow = turntable_for(
-        planned.pictures, planned.grid, angles=rig.stops.angle, elevation=rig.elevation_deg, frame_width=width
+        planned.pictures,
+        planned.grid,
+        angles_deg=rig.stops.angle_deg,
+        elevation_deg=rig.elevation_deg,
+        picture_width=width,
     )
-    frames = fitted(planned.pictures, replace(narrow, lamps=rig.lamps, screens=rig.screens), planned.fit)
+    targets = fitted(planned.pictures, replace(narrow, lamps=rig.lamps, screens=rig.screens), planned.fit)
     if planned.shift:
-        frames = spread(planned, frames, planned.shift)
-    return frames if planned.order is None else planned.order(frames)
+        targets = spread(planned, targets, planned.shift)
+    return targets if planned.order is None else planned.order(targets)

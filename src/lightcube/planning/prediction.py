@@ -35,11 +35,11 @@ from lightcube.backward import solving
 from lightcube.backward.problem import held
 from lightcube.backward.recipe import Recipe
 from lightcube.forward.casting import cast
-from lightcube.optics.grid import Grid, dense_step, nearest, raster_shape
+from lightcube.optics.grid import Grid, dense_step_deg, nearest, raster_shape
 from lightcube.optics.material import Material
 from lightcube.optics.transfer import encode
-from lightcube.pictures.frames import Frames
 from lightcube.pictures.resampling import shares
+from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
 from lightcube.scoring.metrics import BEST_DB, psnr
 
@@ -62,7 +62,7 @@ class Prediction:
     Parameters
     ----------
     psnr
-        ``(views,)``, in the order of the frames, 0 to 100.
+        ``(views,)``, in the order of the targets, 0 to 100.
     rehearsed
         Width in voxels of the small cube.
     """
@@ -84,12 +84,12 @@ class Prediction:
         return min(float(np.min(self.psnr)), MOST_DB)
 
 
-def predict(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Prediction:
+def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Prediction:
     """Predict the PSNR of each picture that `lightcube.solve` reaches in 150 passes of method ``display``.
 
     Parameters
     ----------
-    frames, grid, recipe
+    targets, grid, recipe
         As `lightcube.solve` takes them.
 
     Raises
@@ -97,8 +97,8 @@ def predict(frames: Frames, grid: Grid, recipe: Recipe | None = None) -> Predict
     InputError
         Where `solve` would refuse them.
     """
-    raised(frames.rig)
-    reached, width = rehearse(frames, grid, recipe or Recipe())
+    raised(targets.rig)
+    reached, width = rehearse(targets, grid, recipe or Recipe())
     return Prediction(law(reached, max(grid.shape[1:]) / width), width)
 
 
@@ -107,15 +107,15 @@ def law(reached: Array, ratio: float) -> Array:
     return np.clip(reached + (1 - 1 / ratio) * (BIAS + GROWTH * (reached - 30)), 0.0, BEST_DB)
 
 
-def rehearse(frames: Frames, grid: Grid, recipe: Recipe) -> tuple[Array, int]:
+def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Array, int]:
     """PSNR of each picture in a small cube, dB, and the width of that in voxels; takes what `predict` does."""
-    solving.check_frames(frames, grid)
-    hold = recipe.hold_deg
-    held(frames.rig, recipe, grid)
-    small, small_grid = reduced(frames, grid, _width(frames, grid, hold))
+    solving.check_targets(targets, grid)
+    hold_deg = recipe.hold_deg
+    held(targets.rig, recipe, grid)
+    small, small_grid = reduced(targets, grid, _width(targets, grid, hold_deg))
     width = max(small_grid.shape[1:])
     bound = Material(recipe.material.most(grid))
-    rehearsed = replace(recipe.by_display(PASSES), material=bound, hold_deg=_small_hold(frames, grid, hold, width))
+    rehearsed = replace(recipe.by_display(PASSES), material=bound, hold_deg=_small_hold(targets, grid, hold_deg, width))
     cube = solving.solve(small, small_grid, rehearsed).cube
     shown = encode(np.stack(list(cast(cube))), small.transfer)
     wanted = encode(small.pictures, small.transfer)
@@ -123,44 +123,46 @@ def rehearse(frames: Frames, grid: Grid, recipe: Recipe) -> tuple[Array, int]:
     return np.array(reached), width
 
 
-def reduced(frames: Frames, grid: Grid, width: int) -> tuple[Frames, Grid]:
+def reduced(targets: Targets, grid: Grid, width: int) -> tuple[Targets, Grid]:
     """Make a problem small: the cube about `width` voxels wide (at most), everything in nearly the same proportions.
 
     The cube keeps its size in mm, and the pictures their distribution of values in each colour. A pixel of which
     less than half has weight has none. What is small enough comes back as it is.
     """
     if max(grid.shape[1:]) <= width:
-        return frames, grid
-    elevation = float(np.max(np.abs(frames.rig.views.elevations)))
-    shape, picture_shape = _proportioned(grid, frames.rig.picture_shape, elevation, width, level=elevation == 0)
+        return targets, grid
+    elevation_deg = float(np.max(np.abs(targets.rig.views.elevations_deg)))
+    shape, picture_shape = _proportioned(
+        grid, targets.rig.picture_shape, elevation_deg, width, level=elevation_deg == 0
+    )
     ratio = max(grid.shape[1:]) / max(shape[1:])
-    pairs = [_shrunk(*each, picture_shape) for each in zip(frames.pictures, frames.weight, strict=True)]
+    pairs = [_shrunk(*each, picture_shape) for each in zip(targets.pictures, targets.weight, strict=True)]
     pictures, weights = (np.stack(arrays).astype(np.float32) for arrays in zip(*pairs, strict=True))
-    small = Frames(pictures, frames.rig.with_pixels(ratio, picture_shape), weights, frames.names, frames.transfer)
+    small = Targets(pictures, targets.rig.with_pixels(ratio, picture_shape), weights, targets.names, targets.transfer)
     return small, Grid(shape, grid.voxel_mm * ratio)
 
 
-def _width(frames: Frames, grid: Grid, hold: float) -> int:
+def _width(targets: Targets, grid: Grid, hold_deg: float) -> int:
     """Width of the small cube: what takes the work of a rehearsal, or somewhat more where pictures are held."""
     across = max(grid.shape[1:])
-    rows, columns = frames.rig.picture_shape
+    rows, columns = targets.rig.picture_shape
 
-    def affordable(angles: float) -> int:
-        work = len(frames) * angles * rows * columns * across
+    def affordable(angles_deg: float) -> int:
+        work = len(targets) * angles_deg * rows * columns * across
         return min(across, max(_LEAST, round(across * (WORK / work) ** (1 / 3))))
 
     width = affordable(1.0)
-    small = frames.rig.held(_small_hold(frames, grid, hold, width), dense_step(Grid((1, width, width))))
-    return affordable(math.sqrt(len(small) / len(frames)))
+    small = targets.rig.held(_small_hold(targets, grid, hold_deg, width), dense_step_deg(Grid((1, width, width))))
+    return affordable(math.sqrt(len(small) / len(targets)))
 
 
-def _small_hold(frames: Frames, grid: Grid, hold: float, width: int) -> float:
+def _small_hold(targets: Targets, grid: Grid, hold_deg: float, width: int) -> float:
     """Degrees over which a cube of that `width` must hold its pictures to find it as hard as the large one."""
-    return min(hold * (max(grid.shape[1:]) / width) ** HOLD, frames.rig.widest_hold)
+    return min(hold_deg * (max(grid.shape[1:]) / width) ** HOLD, targets.rig.widest_hold_deg)
 
 
 def _proportioned(
-    grid: Grid, picture_shape: tuple[int, int], elevation: float, width: int, *, level: bool
+    grid: Grid, picture_shape: tuple[int, int], elevation_deg: float, width: int, *, level: bool
 ) -> tuple[tuple[int, int, int], tuple[int, int]]:
     """Shapes of a cube not wider than `width` and of its pictures, all with parities as `raster_shape` has them.
 
@@ -175,7 +177,7 @@ def _proportioned(
         small_y, small_x = nearest(ny * scale, across), nearest(nx * scale, across + nx - ny)
         for small_z in range(max(1, round(nz * scale) - 1), round(nz * scale) + 2):
             shape = (small_z, small_y, small_x)
-            most_rows, most_columns = raster_shape(Grid(shape), elevation)
+            most_rows, most_columns = raster_shape(Grid(shape), elevation_deg)
             small_rows = min(nearest(rows * scale, small_z), most_rows)
             small_columns = min(nearest(columns * scale, small_y), most_columns)
             high, tall = math.log(small_rows / rows / scale), math.log(small_z / nz / scale)

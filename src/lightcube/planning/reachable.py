@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.optics.law import falling_light
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 
 Plane = NDArray[np.floating[Any]]
 
@@ -18,7 +18,7 @@ _SURE = 0.99
 _WORTH_SAYING = 0.005
 
 
-def least_light(frames: Frames) -> NDArray[np.float64]:
+def least_light(targets: Targets) -> NDArray[np.float64]:
     """What each pixel shows at least if the picture's brightest ones are as bright as wanted, linear light.
 
     ``(picture, row, column, channel)``, 0 where shadows do not fade. A lamp that makes pixel j as bright as b shows on
@@ -26,14 +26,14 @@ def least_light(frames: Frames) -> NDArray[np.float64]:
     ``D = sum_v share g (1 - a)`` over that lamp's views (`lightcube.optics.rig`); several lamps show no less than the
     one with the least such quotient.
     """
-    rig = frames.rig
-    least = np.zeros(frames.pictures.shape)
+    rig = targets.rig
+    least = np.zeros(targets.pictures.shape)
     if np.all(np.isinf(rig.fading.reach_mm)):
         return least
     light, shadow = falling_light(rig)
-    share_of = rig.sums.of_colours(frames.pictures.shape[-1])
-    for picture, wanted in enumerate(frames.pictures):
-        heard = frames.weight[picture] > 0
+    share_of = rig.sums.of_colours(targets.pictures.shape[-1])
+    for picture, wanted in enumerate(targets.pictures):
+        heard = targets.weight[picture] > 0
         views = np.flatnonzero(rig.sums.picture == picture)
         groups = [views[rig.sums.lamp[views] == lamp] for lamp in np.unique(rig.sums.lamp[views])]
         for channel in range(wanted.shape[-1]):
@@ -58,31 +58,31 @@ def _least(bright: Plane, full: list[Plane], dark: list[Plane]) -> Plane:
     return least
 
 
-def out_of_reach(frames: Frames) -> NDArray[np.float64]:
+def out_of_reach(targets: Targets) -> NDArray[np.float64]:
     """``(pictures,)``: the part of each picture's colours that no cube and no lamp can make as dark as wanted."""
-    certain = (frames.pictures < _SURE * least_light(frames)) & (frames.weight[..., None] > 0)
-    return np.asarray(np.sum(certain, axis=(1, 2, 3)) / _counted(frames))
+    certain = (targets.pictures < _SURE * least_light(targets)) & (targets.weight[..., None] > 0)
+    return np.asarray(np.sum(certain, axis=(1, 2, 3)) / _counted(targets))
 
 
-def too_bright(frames: Frames) -> NDArray[np.float64]:
+def too_bright(targets: Targets) -> NDArray[np.float64]:
     """``(pictures,)``: the part of each picture's colours that all its lamps at their largest power fall short of."""
-    rig = frames.rig
+    rig = targets.rig
     light, _ = falling_light(rig)
-    most = np.zeros(frames.pictures.shape)
+    most = np.zeros(targets.pictures.shape)
     for view, picture in enumerate(rig.sums.picture):
         most[picture] += rig.lamps.most[rig.sums.lamp[view]] * rig.sums.share[view] * light[view][..., None]
-    certain = (frames.pictures > most / _SURE) & (frames.weight[..., None] > 0)
-    return np.asarray(np.sum(certain, axis=(1, 2, 3)) / _counted(frames))
+    certain = (targets.pictures > most / _SURE) & (targets.weight[..., None] > 0)
+    return np.asarray(np.sum(certain, axis=(1, 2, 3)) / _counted(targets))
 
 
-def _counted(frames: Frames) -> NDArray[np.float64]:
-    return np.asarray(np.sum(frames.weight > 0, axis=(1, 2)) * float(frames.pictures.shape[-1]))
+def _counted(targets: Targets) -> NDArray[np.float64]:
+    return np.asarray(np.sum(targets.weight > 0, axis=(1, 2)) * float(targets.pictures.shape[-1]))
 
 
-def sentences(frames: Frames) -> list[str]:
+def sentences(targets: Targets) -> list[str]:
     """One sentence for each picture with colours out of reach."""
-    dark, bright = out_of_reach(frames), too_bright(frames)
-    named = list(zip(frames.names, dark, bright, strict=True))
+    dark, bright = out_of_reach(targets), too_bright(targets)
+    named = list(zip(targets.names, dark, bright, strict=True))
     return [
         f"{part:.0%} of picture {name!r} is brighter than its lamps can make it here: give them more power_max, or "
         "light of all colours"

@@ -302,7 +302,7 @@ def dot_test(operator: Any, columns: int = 3, dtype: type[np.floating[Any]] = np
     --------
     >>> import lightcube as lc
     >>> grid = lc.Grid((3, 5, 7))
-    >>> A = lc.Projector(grid, lc.turntable(grid, [13, 77], elevation=20))
+    >>> A = lc.Projector(grid, lc.turntable(grid, [13, 77], elevation_deg=20))
     >>> lc.dot_test(A) < 1e-12
     True
     """

@@ -34,9 +34,11 @@ class Rays:
         rows, columns = views.picture_shape
         side = grid.voxel_mm
         middle = np.array(grid.shape[::-1]) / 2
-        lowest_left = views.origins - (columns - 1) / 2 * views.column_steps + (rows - 1) / 2 * views.row_steps
+        lowest_left = views.origins_mm - (columns - 1) / 2 * views.column_steps_mm + (rows - 1) / 2 * views.row_steps_mm
         self.grid = grid
-        self._screens = np.stack([lowest_left / side + middle, views.column_steps / side, -views.row_steps / side], 1)
+        self._screens = np.stack(
+            [lowest_left / side + middle, views.column_steps_mm / side, -views.row_steps_mm / side], 1
+        )
         self._lamps = views.lamps.copy()
         points = views.lamps[:, 3] != 0
         self._lamps[points, :3] = views.lamps[points, :3] / side + middle

@@ -27,9 +27,9 @@ def is_stacked(grid: Grid, views: Views) -> bool:
     tolerance = 1e-9 * grid.voxel_mm
     return bool(
         np.all(views.lamps[:, 3] == 0)
-        and np.allclose(views.row_steps, (0, 0, -grid.voxel_mm), rtol=0, atol=tolerance)
-        and np.all(np.abs(views.column_steps[:, 2]) <= tolerance)
-        and np.all(np.abs(views.elevations) <= 89.999)
+        and np.allclose(views.row_steps_mm, (0, 0, -grid.voxel_mm), rtol=0, atol=tolerance)
+        and np.all(np.abs(views.column_steps_mm[:, 2]) <= tolerance)
+        and np.all(np.abs(views.elevations_deg) <= 89.999)
     )
 
 
@@ -45,10 +45,12 @@ class StackedBeams:
         rows, self._width = views.picture_shape
         nz, ny, nx = grid.shape
         side = grid.voxel_mm
-        lowest_left = views.origins - (self._width - 1) / 2 * views.column_steps + (rows - 1) / 2 * views.row_steps
+        lowest_left = (
+            views.origins_mm - (self._width - 1) / 2 * views.column_steps_mm + (rows - 1) / 2 * views.row_steps_mm
+        )
         light = views.lamps[:, :3] / np.linalg.norm(views.lamps[:, :3], axis=1, keepdims=True)
         corner = lowest_left / side + (nx / 2, ny / 2, nz / 2)
-        self.beams = np.stack([corner, views.column_steps / side, light], axis=1)
+        self.beams = np.stack([corner, views.column_steps_mm / side, light], axis=1)
         slope = np.max(np.abs(light[:, 2]) / np.hypot(light[:, 0], light[:, 1]))
         self.rise = math.ceil(slope * math.hypot(nx, ny)) + 2
         self.level = bool(slope < PARALLEL and rows == nz and np.allclose(corner[:, 2], 0.5, rtol=0, atol=1e-9))

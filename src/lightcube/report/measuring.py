@@ -12,8 +12,8 @@ from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES
 from lightcube.optics.stage import Stage
-from lightcube.pictures.fitting import targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import as_levels
+from lightcube.pictures.targets import Targets
 from lightcube.planning.consistency import advice, check
 from lightcube.planning.placement import doubtful
 from lightcube.planning.reachable import sentences
@@ -34,8 +34,8 @@ class Findings:
 
     Parameters
     ----------
-    cube, frames, stage
-        The cube, what was wanted of it, and the stage that the frames are from.
+    cube, targets, stage
+        The cube, what was wanted of it, and the stage that they are from.
     scores
         As `lightcube.score`.
     pictures
@@ -49,12 +49,12 @@ class Findings:
     advice
         What is wrong with the pictures, a sentence each.
     apart
-        By how many display levels of 255 the frames are, at most, from those that the cube was made for; None where
+        By how many display levels of 255 the targets are, at most, from those that the cube was made for; None where
         it keeps none.
     """
 
     cube: Cube
-    frames: Frames
+    targets: Targets
     stage: Stage | None
     scores: dict[str, Any]
     pictures: dict[int, list[Levels]]
@@ -66,63 +66,63 @@ class Findings:
 
 
 def measure(
-    cube: Cube, frames: Frames, stage: Stage | None = None, callback: Callable[[int, int], None] | None = None
+    cube: Cube, targets: Targets, stage: Stage | None = None, callback: Callable[[int, int], None] | None = None
 ) -> Findings:
     """Measure all that a report says of a cube and of what was wanted of it.
 
     Parameters
     ----------
     stage
-        That the frames are from, if it is at hand.
+        That the targets are from, if it is at hand.
     callback
         Called with how many pictures are compared, and how many there are as far as is known.
 
     Raises
     ------
     InputError
-        Where the frames do not fit the cube's views.
+        Where the targets do not fit the cube's views.
     """
-    check_same_views(cube, frames)
+    check_same_views(cube, targets)
     tell = callback or (lambda done, of: None)
-    rest = (len(DISTURBANCES) + 1) * len(frames)
+    rest = (len(DISTURBANCES) + 1) * len(targets)
     turns = bool(np.any(cube.rig.turning.turns))
-    between = curve(cube, frames, callback=lambda done, of: tell(done, of + rest)) if turns else None
-    of = rest + (0 if between is None else len(between.angles))
-    left = robust(cube, frames, callback=lambda done, _: tell(of - rest + done, of))
-    pictures: dict[int, list[Levels]] = {number: [] for number in chosen(frames)}
+    between = curve(cube, targets, callback=lambda done, of: tell(done, of + rest)) if turns else None
+    of = rest + (0 if between is None else len(between.angles_deg))
+    left = robust(cube, targets, callback=lambda done, _: tell(of - rest + done, of))
+    pictures: dict[int, list[Levels]] = {number: [] for number in chosen(targets)}
     shown = cast(cube)
-    scores = score_pictures(_kept(shown, frames, pictures), frames)
+    scores = score_pictures(_kept(shown, targets, pictures), targets)
     tell(of, of)
-    facts = check(frames, cube.grid) if cube.rig.is_thin and cube.rig.elevation_deg is not None else None
-    said = sentences(frames) if facts is None else advice(facts)
+    facts = check(targets, cube.grid) if cube.rig.is_thin and cube.rig.elevation_deg is not None else None
+    said = sentences(targets) if facts is None else advice(facts)
     if stage is not None:
         said = [*doubtful(stage), *said]
-    return Findings(cube, frames, stage, scores, pictures, between, left, facts, said, _apart(cube, frames))
+    return Findings(cube, targets, stage, scores, pictures, between, left, facts, said, _apart(cube, targets))
 
 
-def chosen(frames: Frames, most: int = MOST) -> list[int]:
+def chosen(targets: Targets, most: int = MOST) -> list[int]:
     """Numbers of the pictures that a page has room for, evenly chosen: those of at most so many pixels together."""
-    rows, columns = frames.rig.picture_shape
-    room = min(len(frames), max(1, most // (rows * columns)))
-    return [int(number) for number in np.unique(np.linspace(0, len(frames) - 1, room).round())]
+    rows, columns = targets.rig.picture_shape
+    room = min(len(targets), max(1, most // (rows * columns)))
+    return [int(number) for number in np.unique(np.linspace(0, len(targets) - 1, room).round())]
 
 
 def _kept(
-    shown: Iterable[NDArray[np.float32]], frames: Frames, pictures: dict[int, list[Levels]]
+    shown: Iterable[NDArray[np.float32]], targets: Targets, pictures: dict[int, list[Levels]]
 ) -> Iterator[NDArray[np.float32]]:
     """Yield pictures as they come, and keep those to be looked at."""
     for number, picture in enumerate(shown):
         if number in pictures:
-            rows, columns = frames.rig.stops.window[number]
-            pictures[number] = [each[:rows, :columns] for each in triple(picture, frames, number)]
+            rows, columns = targets.rig.stops.window[number]
+            pictures[number] = [each[:rows, :columns] for each in triple(picture, targets, number)]
         yield picture
 
 
-def _apart(cube: Cube, frames: Frames) -> int | None:
-    """Largest difference, in levels, of the frames from the cube's own targets; their weights count too."""
+def _apart(cube: Cube, targets: Targets) -> int | None:
+    """Largest difference, in levels, of the targets from the cube's own; their weights count too."""
     if cube.targets is None:
         return None
     return max(
         int(np.max(np.abs(own.astype(np.int16) - given)))
-        for own, given in zip(cube.targets, targets(frames), strict=True)
+        for own, given in zip(cube.targets, as_levels(targets), strict=True)
     )

@@ -117,16 +117,20 @@ def _placed(cube: Cube) -> dict[str, str]:
     """Stops, lamps and screens."""
     rig = cube.rig
     said = {
-        "Stops": _stops(np.unique(cube.angles)),
+        "Stops": _stops(np.unique(cube.angles_deg)),
         "Lamps": ", ".join(rig.lamps.names),
         "Screens": ", ".join(rig.screens.names),
     }
     return said if rig.elevation_deg is None else said | {"Lamp elevation": f"{rig.elevation_deg:g}°"}
 
 
-def _stops(angles: NDArray[np.float64]) -> str:
+def _stops(angles_deg: NDArray[np.float64]) -> str:
     """How many stops, and where the first and the last one are."""
-    return f"{len(angles)}, from {angles.min():.6g}° to {angles.max():.6g}°" if len(angles) > 1 else f"{angles[0]:.6g}°"
+    return (
+        f"{len(angles_deg)}, from {angles_deg.min():.6g}° to {angles_deg.max():.6g}°"
+        if len(angles_deg) > 1
+        else f"{angles_deg[0]:.6g}°"
+    )
 
 
 def pictures(found: Findings) -> str:
@@ -154,7 +158,7 @@ def _card(found: Findings, index: int) -> str:
     kinds = zip(("wanted", "shown", "difference"), found.pictures[index], strict=True)
     three = "".join(image(levels, f"{kind}: {view['name']}", exact=_exact(found)) for kind, levels in kinds)
     caption = (
-        text("b", f"{index + 1} {view['name']}") + " " + escape(f"{view['angle']:.6g}°, {number(view['psnr'])} dB")
+        text("b", f"{index + 1} {view['name']}") + " " + escape(f"{view['angle_deg']:.6g}°, {number(view['psnr'])} dB")
     )
     return figure(element("div", three, class_="three"), caption, class_="card")
 
@@ -172,10 +176,10 @@ def _table(found: Findings) -> str:
 def _rows(found: Findings, expected: list[float] | None) -> Iterator[list[object]]:
     rig = found.cube.rig
     for index, view in enumerate(found.scores["views"]):
-        row: list[object] = [index + 1, view["name"], f"{view['angle']:.3f}°", number(view["psnr"])]
+        row: list[object] = [index + 1, view["name"], f"{view['angle_deg']:.3f}°", number(view["psnr"])]
         row += [number(view["ssim"], 4), number(view["delta_e"])]
         row += [] if expected is None else [number(expected[index], 1)]
-        row += [] if found.curve is None else [f"{found.curve.lobes[index]:.2f}°"]
+        row += [] if found.curve is None else [f"{found.curve.lobes_deg[index]:.2f}°"]
         row += [rig.screens.names[rig.stops.screen[index]]] if len(rig.screens.names) > 1 else []
         yield row
 
@@ -210,7 +214,7 @@ def _between(found: Findings) -> Iterator[str]:
     if curve is None:
         yield text("p", "Nothing turns: there is nothing to be seen between the stops.")
         return
-    lobes = f"{curve.lobes.min():.2f}° to {curve.lobes.max():.2f}°, {curve.lobes.mean():.2f}° on average"
+    lobes = f"{curve.lobes_deg.min():.2f}° to {curve.lobes_deg.max():.2f}°, {curve.lobes_deg.mean():.2f}° on average"
     stands = f"A picture stays above {LOBE_DB:g} dB over {lobes}."
     drawn = charts.between_curve(curve, f"PSNR against the turntable's angle. {stands}")
     said = f"PSNR of the nearer picture as the table turns; dots are the stops. {stands}"
@@ -293,7 +297,7 @@ def _checked(known: dict[str, Any]) -> dict[str, object]:
     """What `lightcube.check` found, in words."""
     totals = known["moments"]
     white = sum(last - first + 1 for runs in known["white_rows"].values() for first, last in runs)
-    down = f", {totals['down']:.1%} of the height" if known["elevation"] else ""
+    down = f", {totals['down']:.1%} of the height" if known["elevation_deg"] else ""
     return {
         "Load": f"{known['load']:.2f}; unrelated pictures come out well up to {known['load_limit']:g}",
         "Mirrored pairs": len(known["mirrored"]) or "none",

@@ -76,7 +76,7 @@ class Compiled:
     groups: Mapping[str, Group]
     #: Everything but the placements.
     world: World
-    #: Balls that hold the shapes, in their own frames: ``(i, 3)`` and ``(i,)``.
+    #: Balls that hold the shapes, in their own axes: ``(i, 3)`` and ``(i,)``.
     centres: NDArray[np.float64]
     reaches: NDArray[np.float64]
 
@@ -164,7 +164,7 @@ def sight(description: SceneFile) -> Sight:
     right /= np.linalg.norm(right)
     up = np.cross(right, forward)
     if isinstance(camera, PerspectiveCamera):
-        height = 2 * math.tan(math.radians(camera.field_of_view) / 2)
+        height = 2 * math.tan(math.radians(camera.field_of_view_deg) / 2)
     else:
         height = camera.height
     lights = [
@@ -174,7 +174,7 @@ def sight(description: SceneFile) -> Sight:
         for light in description.lights
     ]
     return Sight(
-        frame=np.array([position, height * right, height * up, forward]),
+        axes=np.array([position, height * right, height * up, forward]),
         perspective=isinstance(camera, PerspectiveCamera),
         samples=camera.samples,
         lights=np.array(lights, dtype=np.float64).reshape(-1, 7),

@@ -67,7 +67,7 @@ class Key(_Table):
 
     time: Fraction
     position: Point | None = None
-    rotation: Point | None = None
+    rotation_deg: Point | None = None
     scale: Scale | None = None
     easing: Easing | None = None
 
@@ -93,31 +93,31 @@ class Motion(_Table):
 
     def _check_closed(self) -> None:
         """In a loop times 0 and 1 are the same instant."""
-        for channel in ("position", "rotation", "scale"):
+        for channel in ("position", "rotation_deg", "scale"):
             named = [key for key in self.keys if getattr(key, channel) is not None]
             if len(named) > 1 and named[0].time == 0 and named[-1].time == 1:
                 gaps = [b - a for a, b in zip(getattr(named[0], channel), getattr(named[-1], channel), strict=True)]
-                turn = 360.0 if channel == "rotation" else 1e30
+                turn = 360.0 if channel == "rotation_deg" else 1e30
                 if any(abs(gap - turn * round(gap / turn)) > 1e-9 for gap in gaps):
                     raise PydanticCustomError("loop", f"in a loop, {channel} at time 1 must be as at time 0")
 
 
 class Placed(_Table):
-    """Whatever stands somewhere: at rest as said here, or as its motion says; in the scene or in a parent's frame."""
+    """Whatever stands somewhere: at rest as said here, or as its motion says; in the scene or in a parent's axes."""
 
     position: Point = (0.0, 0.0, 0.0)
-    rotation: Point = (0.0, 0.0, 0.0)
+    rotation_deg: Point = (0.0, 0.0, 0.0)
     scale: Scale = (1.0, 1.0, 1.0)
     parent: str | None = None
     motion: Motion | None = None
 
 
 class Group(Placed):
-    """A frame of reference that shapes and other groups may name as their parent."""
+    """Axes that shapes and other groups may name as their parent."""
 
 
 class Checker(_Table):
-    """A second colour in every other cell of a cubic pattern in the shape's own frame."""
+    """A second colour in every other cell of a cubic pattern in the shape's own axes."""
 
     colour: Colour
     size: Positive
@@ -253,10 +253,10 @@ class _SeeingCamera(_Table):
 
 
 class PerspectiveCamera(_SeeingCamera):
-    """A pinhole camera; `field_of_view` is the angle from the picture's top to its bottom."""
+    """A pinhole camera; `field_of_view_deg` is the angle from the picture's top to its bottom."""
 
     type: Literal["perspective"]
-    field_of_view: Annotated[float, Field(strict=True, gt=0, le=170)] = 40.0
+    field_of_view_deg: Annotated[float, Field(strict=True, gt=0, le=170)] = 40.0
 
 
 class ParallelCamera(_SeeingCamera):
@@ -283,13 +283,13 @@ class Background(_Table):
     bottom: Light = (1.0, 1.0, 1.0)
 
 
-class FramesTable(_Table):
+class PicturesTable(_Table):
     """How many pictures of which ``size = [width, height]``, over how many degrees, with the lamp how high."""
 
     count: Count = 60
     size: tuple[Pixels, Pixels] = (128, 128)
-    span: Annotated[float, Field(strict=True, gt=0, le=360)] | None = None
-    elevation: Elevation = 0.0
+    span_deg: Annotated[float, Field(strict=True, gt=0, le=360)] | None = None
+    elevation_deg: Elevation = 0.0
 
 
 class SceneFile(_Table):
@@ -297,7 +297,7 @@ class SceneFile(_Table):
 
     title: str = ""
     camera: Camera
-    frames: FramesTable = FramesTable()
+    pictures: PicturesTable = PicturesTable()
     background: Background = Background()
     ambient: Light = (0.35, 0.35, 0.35)
     lights: tuple[Annotated[PointLight | DirectionalLight, Field(discriminator="type")], ...] = ()

@@ -1,7 +1,7 @@
 """Keyframes: where a shape is at any time of the animation.
 
-A pose is ``position``, ``rotation`` (degrees about the fixed x, then y, then z axis) and ``scale``, each three
-numbers; a point of the shape goes to ``position + R_z R_y R_x (scale * point)`` in the parent's frame. Rotations
+A pose is ``position``, ``rotation_deg`` (degrees about the fixed x, then y, then z axis) and ``scale``, each three
+numbers; a point of the shape goes to ``position + R_z R_y R_x (scale * point)`` in the parent's axes. Rotations
 are interpolated angle by angle, so 0 to 360 is a whole turn.
 """
 
@@ -16,7 +16,7 @@ from lightcube.scene.description import Group, Key, Motion, Placed
 
 Triple = tuple[float, float, float]
 
-_CHANNELS = ("position", "rotation", "scale")
+_CHANNELS = ("position", "rotation_deg", "scale")
 
 
 def eased(u: float, easing: str) -> float:
@@ -46,24 +46,24 @@ def rotation_matrix(degrees: Triple) -> NDArray[np.float64]:
 
 
 def pose(thing: Placed, time: float) -> tuple[Triple, Triple, Triple]:
-    """``(position, rotation, scale)`` of a shape or group in its parent's frame at `time` in [0, 1].
+    """``(position, rotation, scale)`` of a shape or group in its parent's axes at `time` in [0, 1].
 
     A channel that the motion's keys name replaces the resting one.
     """
-    rest = (thing.position, thing.rotation, thing.scale)
+    rest = (thing.position, thing.rotation_deg, thing.scale)
     if thing.motion is None:
         return rest
-    position, rotation, scale = (
+    position, rotation_deg, scale = (
         _channel(thing.motion, name, time) or still for name, still in zip(_CHANNELS, rest, strict=True)
     )
     # A smooth curve may swing a little below zero, where a size makes no sense.
-    return position, rotation, (max(scale[0], 0.0), max(scale[1], 0.0), max(scale[2], 0.0))
+    return position, rotation_deg, (max(scale[0], 0.0), max(scale[1], 0.0), max(scale[2], 0.0))
 
 
 def placement(thing: Placed, groups: Mapping[str, Group], time: float) -> NDArray[np.float64]:
-    """Affine map (3, 4) from the frame of a shape or group into the scene at `time`, parents included."""
-    position, rotation, scale = pose(thing, time)
-    own = np.column_stack([rotation_matrix(rotation) * scale, position])
+    """Affine map (3, 4) from the axes of a shape or group into the scene at `time`, parents included."""
+    position, rotation_deg, scale = pose(thing, time)
+    own = np.column_stack([rotation_matrix(rotation_deg) * scale, position])
     if thing.parent is None:
         return own
     outer = placement(groups[thing.parent], groups, time)
@@ -108,7 +108,7 @@ def _close(times: list[float], values: list[Triple], channel: str) -> None:
     if times[-1] - times[0] >= 1.0:
         return
     first, last = values[0], values[-1]
-    if channel == "rotation":
+    if channel == "rotation_deg":
         first = _triple([a + 360.0 * math.floor((b - a) / 360.0 + 0.5) for a, b in zip(first, last, strict=True)])
     times.append(times[0] + 1.0)
     values.append(first)

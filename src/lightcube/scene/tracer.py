@@ -9,7 +9,7 @@ from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.views import Views, spread_angles
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.scene.description import ShadowCamera
 from lightcube.scene.scene import Scene
 
@@ -31,14 +31,14 @@ def times(count: int) -> NDArray[np.float64]:
 
 
 def trace(
-    scene: Scene, frames: int, picture_shape: tuple[int, int], *, callback: Callback | None = None
+    scene: Scene, count: int, picture_shape: tuple[int, int], *, callback: Callback | None = None
 ) -> NDArray[np.float32]:
     """Ray-trace a scene as its perspective or parallel camera sees it.
 
     Parameters
     ----------
-    frames
-        Number of pictures; picture ``i`` is seen at time ``i / frames``.
+    count
+        Number of pictures; picture ``i`` is seen at time ``i / count``.
     picture_shape
         ``(rows, columns)``; pixels are square.
     callback
@@ -46,7 +46,7 @@ def trace(
 
     Returns
     -------
-    ``(frame, row, column, 3)`` float32 in linear light, 0 to 1 (brighter beams count as white).
+    ``(picture, row, column, 3)`` float32 in linear light, 0 to 1 (brighter beams count as white).
 
     Raises
     ------
@@ -68,16 +68,16 @@ def trace(
     if casts_shadows(scene):
         raise InputError(f"{scene.name} has a shadow camera: its pictures need the views of a cube (use shadows)")
     rows, columns = picture_shape
-    if min(frames, rows, columns) < 1:
-        raise InputError(f"cannot trace {frames} pictures of {rows} x {columns} pixels: each must be at least 1")
-    pictures = np.empty((frames, rows, columns, 3), dtype=np.float32)
+    if min(count, rows, columns) < 1:
+        raise InputError(f"cannot trace {count} pictures of {rows} x {columns} pixels: each must be at least 1")
+    pictures = np.empty((count, rows, columns, 3), dtype=np.float32)
     seen, shapes = sight(scene.description), compiled(scene)
-    instants = times(frames)
-    for start in range(0, frames, _BATCH):
-        part = slice(start, min(start + _BATCH, frames))
+    instants = times(count)
+    for start in range(0, count, _BATCH):
+        part = slice(start, min(start + _BATCH, count))
         shaded(shapes.at(instants[part]), seen, pictures[part])
         if callback is not None:
-            callback(part.stop, frames)
+            callback(part.stop, count)
     return pictures
 
 
@@ -112,14 +112,16 @@ def shadows(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None
     unit_mm = grid.size_mm[1] / camera.cube_width
     # A point lamp stands somewhere; parallel light only goes somewhere.
     lamps = np.where(views.lamps[:, 3:] != 0, views.lamps / np.array([unit_mm, unit_mm, unit_mm, 1.0]), views.lamps)
-    origins, column_steps, row_steps = (a / unit_mm for a in (views.origins, views.column_steps, views.row_steps))
+    origins_mm, column_steps_mm, row_steps_mm = (
+        a / unit_mm for a in (views.origins_mm, views.column_steps_mm, views.row_steps_mm)
+    )
     shapes = compiled(scene)
     pictures = np.empty((len(views), *views.picture_shape, 3), dtype=np.float32)
     instants = times(len(views))
     for start in range(0, len(views), _BATCH):
         part = slice(start, min(start + _BATCH, len(views)))
         world = shapes.at(instants[part])
-        shadowed(world, lamps[part], origins[part], column_steps[part], row_steps[part], pictures[part])
+        shadowed(world, lamps[part], origins_mm[part], column_steps_mm[part], row_steps_mm[part], pictures[part])
         if callback is not None:
             callback(part.stop, len(views))
     return pictures
@@ -129,39 +131,39 @@ def scene_rig(
     scene: Scene,
     count: int | None = None,
     size: tuple[int, int] | None = None,
-    span: float | None = None,
-    elevation: float | None = None,
+    span_deg: float | None = None,
+    elevation_deg: float | None = None,
 ) -> tuple[Grid, Rig]:
     """Cube and turntable that a scene is made for, unless something else is wanted.
 
     Parameters
     ----------
     count
-        Number of pictures; default the scene's own ``frames.count``.
+        Number of pictures; default the scene's own ``pictures.count``.
     size
-        ``(width, height)`` of the pictures in pixels; default the scene's own ``frames.size``.
-    span, elevation
+        ``(width, height)`` of the pictures in pixels; default the scene's own ``pictures.size``.
+    span_deg, elevation_deg
         Degrees over which the views are spread, and elevation of the lamp; default the scene's own.
 
     Returns
     -------
     A grid as wide and as high as the pictures with voxels of 1 mm, and a turntable of it with stops spread evenly over
-    the scene's ``frames.span`` at its ``frames.elevation``.
+    the scene's ``pictures.span_deg`` at its ``pictures.elevation_deg``.
     """
-    table = scene.description.frames
+    table = scene.description.pictures
     width, height = size or table.size
     grid = Grid((height, width, width))
-    raised = table.elevation if elevation is None else elevation
-    angles = spread_angles(
-        table.count if count is None else count, table.span if span is None else span, elevation=raised
+    raised = table.elevation_deg if elevation_deg is None else elevation_deg
+    angles_deg = spread_angles(
+        table.count if count is None else count, table.span_deg if span_deg is None else span_deg, elevation_deg=raised
     )
-    return grid, turntable(grid, angles, elevation=raised, picture_shape=(height, width))
+    return grid, turntable(grid, angles_deg, elevation_deg=raised, picture_shape=(height, width))
 
 
-def scene_frames(scene: Scene, rig: Rig, grid: Grid, *, callback: Callback | None = None) -> Frames:
+def scene_targets(scene: Scene, rig: Rig, grid: Grid, *, callback: Callback | None = None) -> Targets:
     """Pictures of a scene for a turntable with the cube `grid`, one per stop: by its camera, or its `shadows`."""
     if casts_shadows(scene):
         pictures = shadows(scene, rig.views, grid, callback=callback)
     else:
         pictures = trace(scene, len(rig), rig.picture_shape, callback=callback)
-    return Frames(pictures, rig)
+    return Targets(pictures, rig)

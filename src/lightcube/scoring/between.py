@@ -1,4 +1,4 @@
-"""What one sees between the frames, and what a set-up that is not perfect makes of them."""
+"""What one sees between the pictures, and what a set-up that is not perfect makes of them."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from lightcube.forward.casting import cast
 from lightcube.forward.turning import powers_of
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import encode
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.scoring.metrics import check_same_views, psnr, ssim
 
 Floats = NDArray[np.float64]
@@ -31,36 +31,36 @@ class Curve:
 
     Parameters
     ----------
-    angles
+    angles_deg
         Turntable angle of each sample, degrees.
     nearest
         Index of the view whose stop is nearest.
-    offsets
+    offsets_deg
         Degrees from that stop; 0 at the stops themselves.
     psnr, ssim
         What is cast there against the picture of that view.
-    lobes
+    lobes_deg
         ``(views,)`` degrees around each view's stop over which the PSNR stays at 30 dB or more, at most as far
         as to halfway between the stop and its neighbours; 0 where the stop itself is below.
-    period
+    period_deg
         Degrees after which the curve repeats.
     """
 
-    angles: Floats
+    angles_deg: Floats
     nearest: NDArray[np.intp]
-    offsets: Floats
+    offsets_deg: Floats
     psnr: Floats
     ssim: Floats
-    lobes: Floats
-    period: float
+    lobes_deg: Floats
+    period_deg: float
 
 
-def curve(cube: Cube, frames: Frames, steps: int = 8, *, callback: Callable[[int, int], None] | None = None) -> Curve:
-    """Compare what is cast at, around and between the stops with the nearer of the two frames.
+def curve(cube: Cube, targets: Targets, steps: int = 8, *, callback: Callable[[int, int], None] | None = None) -> Curve:
+    """Compare what is cast at, around and between the stops with the nearer of the two pictures.
 
     Parameters
     ----------
-    frames
+    targets
         The wanted pictures in the cube's views.
     steps
         Parts that each gap between neighbouring stops is divided into. Near the stops, and where a picture
@@ -71,7 +71,7 @@ def curve(cube: Cube, frames: Frames, steps: int = 8, *, callback: Callable[[int
     Raises
     ------
     InputError
-        Where the frames do not fit the cube's pictures.
+        Where the targets do not fit the cube's pictures.
 
     Notes
     -----
@@ -80,27 +80,27 @@ def curve(cube: Cube, frames: Frames, steps: int = 8, *, callback: Callable[[int
     two stops are half a turn apart. Several screens each have their own stops.
     """
     if steps < 1:
-        raise InputError(f"a curve needs at least 1 step from one frame to the next, not {steps}")
-    check_same_views(cube, frames)
-    period = cube.rig.period
-    places = cube.angles % period
+        raise InputError(f"a curve needs at least 1 step from one picture to the next, not {steps}")
+    check_same_views(cube, targets)
+    period = cube.rig.period_deg
+    places = cube.angles_deg % period
     reach = _reach(places, period, cube.rig.stops.screen)
-    samples = [(view, offset) for view in range(len(frames)) for offset in _offsets(reach[:, view], steps)]
+    samples = [(view, offset) for view in range(len(targets)) for offset in _offsets(reach[:, view], steps)]
     found = np.empty((0, 4))
     while samples:
         rows = []
-        for row in _compared(cube, frames, *np.array(samples).T):
+        for row in _compared(cube, targets, *np.array(samples).T):
             rows.append(row)
             if callback is not None:
                 callback(len(found) + len(rows), len(found) + len(samples))
         found = np.concatenate([found, rows])
-        ends = [(view, side, *_end(found, view, side)) for view in range(len(frames)) for side in (-1, 1)]
+        ends = [(view, side, *_end(found, view, side)) for view in range(len(targets)) for side in (-1, 1)]
         samples = [
             (view, side * (inside + outside) / 2)
             for view, side, _, inside, outside in ends
             if outside - inside > _RESOLUTION
         ]
-    lobes = np.zeros(len(frames))
+    lobes = np.zeros(len(targets))
     for view, _, width, _, _ in ends:
         lobes[view] += width
     nearest = found[:, 0].astype(np.intp)
@@ -130,14 +130,16 @@ def _offsets(reach: Floats, steps: int) -> Floats:
     return np.concatenate([-sides[0], [0.0], sides[1]])
 
 
-def _compared(cube: Cube, frames: Frames, view: Floats, offset: Floats) -> Iterator[tuple[float, float, float, float]]:
-    """View, offset in degrees, PSNR and SSIM of what is cast there against that view's frame, sample by sample."""
+def _compared(
+    cube: Cube, targets: Targets, view: Floats, offset: Floats
+) -> Iterator[tuple[float, float, float, float]]:
+    """View, offset in degrees, PSNR and SSIM of what is cast there against that view's picture, sample by sample."""
     index = view.astype(np.intp)
-    wanted = encode(frames.pictures, frames.transfer)
+    wanted = encode(targets.pictures, targets.transfer)
     now = cube.rig.take(index).turned(offset)
     shown = cast(cube, now, powers_of(cube, now))
     for place, degrees, picture in zip(index, offset, shown, strict=True):
-        pair = encode(picture, frames.transfer), wanted[place], frames.weight[place]
+        pair = encode(picture, targets.transfer), wanted[place], targets.weight[place]
         yield float(place), float(degrees), psnr(*pair), ssim(*pair)
 
 

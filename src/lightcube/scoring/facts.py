@@ -21,7 +21,7 @@ def facts(cube: Cube) -> dict[str, Any]:
         "lamp_power": [float(cube.powers.min()), float(cube.powers.max())],
         "extinction_mean": float(cube.extinction.mean()),
         "extinction_max": float(cube.extinction.max()),
-        "hold": cube.hold_deg,
+        "hold_deg": cube.hold_deg,
         "transfer": cube.transfer,
         "names": list(cube.names),
         **{name: value for name, value in cube.scores.items() if name != "views"},
@@ -33,8 +33,10 @@ def _where(cube: Cube) -> dict[str, Any]:
     """Where a cube's lamps and screens stand, by name."""
     rig = cube.rig
     return {
-        "angles": [float(angle) for angle in cube.angles],
-        "elevation": sorted({float(elevation) for elevation in rig.views.elevations[rig.views.lamps[:, 3] == 0]}),
+        "angles_deg": [float(angle_deg) for angle_deg in cube.angles_deg],
+        "elevation_deg": sorted(
+            {float(elevation_deg) for elevation_deg in rig.views.elevations_deg[rig.views.lamps[:, 3] == 0]}
+        ),
         "lamps": list(rig.lamps.names),
         "screens": [rig.screens.names[screen] for screen in rig.stops.screen],
     }

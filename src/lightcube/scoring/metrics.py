@@ -12,8 +12,8 @@ from lightcube.errors import InputError
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import encode
-from lightcube.pictures.fitting import frames_from_targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import targets_of
+from lightcube.pictures.targets import Targets
 
 #: The best PSNR that is reported, dB.
 BEST_DB = 100.0
@@ -57,12 +57,12 @@ def delta_e(shown: Display, wanted: Display, weight: Display) -> float:
     return float(np.sum(weight * difference) / np.sum(weight))
 
 
-def score(cube: Cube, frames: Frames | None = None) -> dict[str, Any]:
+def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
     """Compare what the cube really casts at its stops with what was wanted.
 
     Parameters
     ----------
-    frames
+    targets
         The wanted pictures in the cube's views; None = the 8-bit targets stored in the cube, which cap
         the PSNR at about 58.9 dB where the pictures were resampled.
 
@@ -74,22 +74,26 @@ def score(cube: Cube, frames: Frames | None = None) -> dict[str, Any]:
     Raises
     ------
     InputError
-        Where the cube has no targets and no frames are given, or they do not fit the cube's views.
+        Where the cube has no targets and none are given, or they do not fit the cube's views.
     """
-    wanted = frames_from_targets(cube) if frames is None else frames
+    wanted = targets_of(cube) if targets is None else targets
     check_same_views(cube, wanted)
     return score_pictures(cast(cube), wanted)
 
 
-def score_pictures(shown: Iterable[NDArray[np.float32]], frames: Frames) -> dict[str, Any]:
-    """Compare pictures in linear light ``(row, column, channel)`` with the frames, in order; returns as `score`."""
+def score_pictures(shown: Iterable[NDArray[np.float32]], targets: Targets) -> dict[str, Any]:
+    """Compare pictures in linear light ``(row, column, channel)`` with the targets, in order; returns as `score`."""
     views: list[dict[str, Any]] = []
     for index, picture in enumerate(shown):
-        pair = encode(picture, frames.transfer), encode(frames.pictures[index], frames.transfer), frames.weight[index]
+        pair = (
+            encode(picture, targets.transfer),
+            encode(targets.pictures[index], targets.transfer),
+            targets.weight[index],
+        )
         views.append(
             {
-                "name": frames.names[index],
-                "angle": float(frames.angles[index]),
+                "name": targets.names[index],
+                "angle_deg": float(targets.angles_deg[index]),
                 "psnr": psnr(*pair),
                 "ssim": ssim(*pair),
                 "delta_e": delta_e(*pair),
@@ -106,25 +110,25 @@ def score_pictures(shown: Iterable[NDArray[np.float32]], frames: Frames) -> dict
 
 
 def mean_psnr(
-    shown: NDArray[np.float32], frames: Frames, window: tuple[slice, slice] = (slice(None), slice(None))
+    shown: NDArray[np.float32], targets: Targets, window: tuple[slice, slice] = (slice(None), slice(None))
 ) -> float:
     """Mean over pictures of `psnr`, for pictures in linear light ``(view, row, column, channel)``.
 
-    `shown` are the rows and channels of the frames that `window` says; pictures without weight there do not count.
+    `shown` are the rows and channels of the targets that `window` says; pictures without weight there do not count.
     """
     rows, channels = window
     each = [
-        psnr(encode(picture, frames.transfer), encode(wanted[rows, :, channels], frames.transfer), weight[rows])
-        for picture, wanted, weight in zip(shown, frames.pictures, frames.weight, strict=True)
+        psnr(encode(picture, targets.transfer), encode(wanted[rows, :, channels], targets.transfer), weight[rows])
+        for picture, wanted, weight in zip(shown, targets.pictures, targets.weight, strict=True)
         if np.any(weight[rows])
     ]
     return float(np.mean(each)) if each else BEST_DB
 
 
-def check_same_views(cube: Cube, frames: Frames) -> None:
-    """Raise `InputError` unless the frames are as many and as large as the cube's own pictures."""
-    given, made_for = (f"{len(rig)} of {'{} x {}'.format(*rig.picture_shape)}" for rig in (frames.rig, cube.rig))
+def check_same_views(cube: Cube, targets: Targets) -> None:
+    """Raise `InputError` unless the targets are as many and as large as the cube's own pictures."""
+    given, made_for = (f"{len(rig)} of {'{} x {}'.format(*rig.picture_shape)}" for rig in (targets.rig, cube.rig))
     if given != made_for:
         raise InputError(
-            f"frames ({given} pixels) do not fit the cube, which was made for {made_for}: give those it was made from"
+            f"pictures ({given} pixels) do not fit the cube, which was made for {made_for}: give those it was made from"
         )

@@ -11,7 +11,7 @@ from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.transfer import encode
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.scoring.metrics import check_same_views, psnr
 
 
@@ -19,9 +19,9 @@ def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float
     """Yield what the screen shows at each stop of a disturbed set-up, ``(row, column, channel)``, linear light."""
     rig = cube.rig.turned(disturbance.turn_deg)
     views = rig.views
-    # In the cube's own frame it is the screen that moves, the other way; its columns and rows are one voxel apart.
-    shift = disturbance.up_voxels * views.row_steps - disturbance.right_voxels * views.column_steps
-    rig = replace(rig, views=replace(views, origins=views.origins + shift))
+    # In the cube's own axes it is the screen that moves, the other way; its columns and rows are one voxel apart.
+    shift = disturbance.up_voxels * views.row_steps_mm - disturbance.right_voxels * views.column_steps_mm
+    rig = replace(rig, views=replace(views, origins_mm=views.origins_mm + shift))
     if disturbance.levels:
         cube = replace(cube, extinction=_rounded(cube.extinction, disturbance.levels))
     for picture in cast(cube, rig, cube.powers * (1 + disturbance.lamp)):
@@ -34,8 +34,8 @@ def _rounded(extinction: NDArray[np.float32], levels: int) -> NDArray[np.float32
     return np.rint(extinction / step) * step
 
 
-def robust(cube: Cube, frames: Frames, *, callback: Callable[[int, int], None] | None = None) -> dict[str, Any]:
-    """What is left of the frames in a set-up that is a little off: ``psnr_mean`` and ``psnr_min`` by disturbance.
+def robust(cube: Cube, targets: Targets, *, callback: Callable[[int, int], None] | None = None) -> dict[str, Any]:
+    """What is left of the pictures in a set-up that is a little off: ``psnr_mean`` and ``psnr_min`` by disturbance.
 
     The `DISTURBANCES` are: none, the cube turned by 0.2 degrees, half a voxel to the right, half a voxel up, every
     lamp power 2 % too high, extinction in 8 bits, a screen's black of 1 % of white, and all of these at once.
@@ -48,16 +48,16 @@ def robust(cube: Cube, frames: Frames, *, callback: Callable[[int, int], None] |
     Raises
     ------
     InputError
-        Where the frames do not fit the cube's views.
+        Where the targets do not fit the cube's views.
     """
-    check_same_views(cube, frames)
-    wanted = encode(frames.pictures, frames.transfer)
+    check_same_views(cube, targets)
+    wanted = encode(targets.pictures, targets.transfer)
     figures = {}
     for number, (name, disturbance) in enumerate(DISTURBANCES.items()):
         each: list[float] = []
-        for picture, *pair in zip(disturbed(cube, disturbance), wanted, frames.weight, strict=True):
-            each.append(psnr(encode(picture, frames.transfer), *pair))
+        for picture, *pair in zip(disturbed(cube, disturbance), wanted, targets.weight, strict=True):
+            each.append(psnr(encode(picture, targets.transfer), *pair))
             if callback is not None:
-                callback(number * len(frames) + len(each), len(DISTURBANCES) * len(frames))
+                callback(number * len(targets) + len(each), len(DISTURBANCES) * len(targets))
         figures[name] = {"psnr_mean": float(np.mean(each)), "psnr_min": float(np.min(each))}
     return figures

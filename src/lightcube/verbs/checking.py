@@ -5,7 +5,7 @@ from typing import Any
 
 from lightcube import io
 from lightcube.optics.transfer import Transfer
-from lightcube.pictures.frames import Pictures
+from lightcube.pictures.pictures import Pictures
 from lightcube.planning.placement import doubtful, facts, impossible
 from lightcube.planning.reachable import sentences
 from lightcube.verbs import solving, staging, words
@@ -43,7 +43,7 @@ def of_pictures(pictures: Pictures, options: Options) -> Checked:
 
 def of_stage(path: str, transfer: Transfer) -> Checked:
     """What is impossible on a stage, or probably not meant."""
-    stage, frames = io.read_stage_frames(path, transfer=transfer)
-    wrong, odd = impossible(stage), [*doubtful(stage), *sentences(frames)]
+    stage, targets = io.read_stage_targets(path, transfer=transfer)
+    wrong, odd = impossible(stage), [*doubtful(stage), *sentences(targets)]
     known = {**facts(stage), "impossible": wrong, "doubtful": odd}
     return Checked(known, [*staging.table(stage), "", *odd], wrong)

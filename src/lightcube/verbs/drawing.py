@@ -16,13 +16,13 @@ def of_stage(path: str) -> str:
     return drawing(io.read_stage(path)[0])
 
 
-def of_cube(cube: Cube, angle: float | None = None) -> NDArray[np.uint8]:
+def of_cube(cube: Cube, angle_deg: float | None = None) -> NDArray[np.uint8]:
     """The room of a cube in perspective, ``(row, column, 3)`` display levels.
 
     Parameters
     ----------
-    angle
+    angle_deg
         Of the turntable, degrees; the first stop where nothing is said.
     """
-    (turned,) = cube.angles[:1] if angle is None else check_angles([angle])
+    (turned,) = cube.angles_deg[:1] if angle_deg is None else check_angles([angle_deg])
     return to_uint8(room_picture(cube, float(turned), camera_for(cube)), cube.transfer)

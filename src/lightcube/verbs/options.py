@@ -33,15 +33,21 @@ class Options:
     n: Annotated[int | None, Option("Voxels along the cube's longest side.  [default: 128]")] = None
     shape: Annotated[tuple[int, int, int] | None, Option("Voxels along each axis, NZ,NY,NX, instead of --n.")] = None
     size_mm: Annotated[float, Option("Longest side of the cube in mm.")] = 100.0
-    frame_width: Annotated[
+    picture_width: Annotated[
         float | None, Option("Width of the pictures as a part of the cube's; default as wide as 40 dB are expected.")
     ] = None
     fit: Annotated[
         Fit, Option("Pictures of another aspect than the first: cut their edges, leave the rest free, or distort.")
     ] = "crop"
-    angles: Annotated[tuple[float, ...] | None, Option("Turntable angles in degrees, A,B,C, one per picture.")] = None
-    span: Annotated[float | None, Option("Degrees to spread the views over, evenly.  [default: 360, level 180]")] = None
-    elevation: Annotated[float | None, Option("Elevation of the lamp in degrees; 0 is level.  [default: 35]")] = None
+    angles_deg: Annotated[tuple[float, ...] | None, Option("Turntable angles in degrees, A,B,C, one per picture.")] = (
+        None
+    )
+    span_deg: Annotated[
+        float | None, Option("Degrees to spread the views over, evenly.  [default: 360, level 180]")
+    ] = None
+    elevation_deg: Annotated[float | None, Option("Elevation of the lamp in degrees; 0 is level.  [default: 35]")] = (
+        None
+    )
     paper: Annotated[bool, Option("The paper's set-up: level lamp of power 1, half a turn, full width.")] = False
     order: Annotated[
         Arrangement, Option("Whether pictures stand as given, or in the order that gives the best ones.")
@@ -56,7 +62,7 @@ class Options:
     ] = None
     lamp_power: Annotated[float | None, Option("Power of a fixed lamp, linear light; 1 is white.")] = None
     lamp_max: Annotated[float | None, Option("Largest power of the lamp, at least 1.  [default: 16]")] = None
-    hold: Annotated[
+    hold_deg: Annotated[
         float | None,
         Option("Degrees around its stop over which each picture shall stand; default what costs below 1 dB."),
     ] = None
@@ -110,7 +116,7 @@ class Options:
         said: dict[str, Any] = {
             "method": self.method,
             "powers": self.powers,
-            "hold_deg": self.hold,
+            "hold_deg": self.hold_deg,
             "material": None if self.max_extinction is None else Material(self.max_extinction),
             "passes": self.iterations,
         }

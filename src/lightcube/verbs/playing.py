@@ -13,7 +13,7 @@ from lightcube.forward import casting, turning
 from lightcube.optics.cube import Cube
 from lightcube.optics.rig import Rig
 from lightcube.optics.views import Views
-from lightcube.pictures.fitting import frames_from_targets
+from lightcube.pictures.fitting import targets_of
 
 Picture = NDArray[np.float32]
 
@@ -41,23 +41,23 @@ class Show:
     names: tuple[str, ...] | None = None
 
 
-def of_stops(cube: Cube, *, target: bool, whole_screen: bool) -> Show:
+def of_stops(cube: Cube, *, target: bool, whole_shadow: bool) -> Show:
     """The pictures that a cube was made for, one by one."""
-    rig = cube.rig.whole(cube.grid) if whole_screen else cube.rig
-    return _shown(cube, rig, cube.powers, cube.angles, cube.names, target=target)
+    rig = cube.rig.whole(cube.grid) if whole_shadow else cube.rig
+    return _shown(cube, rig, cube.powers, cube.angles_deg, cube.names, target=target)
 
 
-def of_turn(cube: Cube, angles: NDArray[np.float64], *, target: bool, whole_screen: bool) -> Show:
+def of_turn(cube: Cube, angles_deg: NDArray[np.float64], *, target: bool, whole_shadow: bool) -> Show:
     """The one screen of a cube at some angles."""
-    rig, powers = turning.moment(cube, angles, whole_screen=whole_screen)
-    return _shown(cube, rig, powers, angles, None, target=target)
+    rig, powers = turning.moment(cube, angles_deg, whole_shadow=whole_shadow)
+    return _shown(cube, rig, powers, angles_deg, None, target=target)
 
 
 def _shown(
     cube: Cube,
     rig: Rig,
     powers: NDArray[np.float64],
-    angles: NDArray[np.float64],
+    angles_deg: NDArray[np.float64],
     names: tuple[str, ...] | None,
     *,
     target: bool,
@@ -65,26 +65,26 @@ def _shown(
     """Pictures of a rig, each beside the wanted one if asked for."""
     pictures, rows = casting.cast(cube, rig, powers), rig.picture_shape[0]
     if target:
-        return Show(beside_targets(pictures, frames_from_targets(cube), angles), len(rig), rows, None, names)
+        return Show(beside_targets(pictures, targets_of(cube), angles_deg), len(rig), rows, None, names)
     return Show(pictures, len(rig), rows, None if rig.elevation_deg is None else rig.views, names)
 
 
-def of_screens(cube: Cube, angles: NDArray[np.float64]) -> Show:
+def of_screens(cube: Cube, angles_deg: NDArray[np.float64]) -> Show:
     """All screens of each angle side by side."""
 
     def beside() -> Iterator[Picture]:
-        for angle in angles:
-            rig, powers = turning.moment(cube, [angle])
+        for angle_deg in angles_deg:
+            rig, powers = turning.moment(cube, [angle_deg])
             yield beside_each_other(list(casting.cast(cube, rig, powers)), rig.stops.window)
 
-    return Show(beside(), len(angles), int(cube.rig.stops.window[:, 0].max()))
+    return Show(beside(), len(angles_deg), int(cube.rig.stops.window[:, 0].max()))
 
 
-def of_room(cube: Cube, angles: NDArray[np.float64]) -> Show:
+def of_room(cube: Cube, angles_deg: NDArray[np.float64]) -> Show:
     """The room in perspective at some angles."""
     camera = camera_for(cube)
     show = room_player(cube, camera)
-    return Show((show(float(angle)) for angle in angles), len(angles), camera.size[0])
+    return Show((show(float(angle_deg)) for angle_deg in angles_deg), len(angles_deg), camera.size[0])
 
 
 def with_samples(cube: Cube, lamp_samples: int, pixel_samples: int) -> Cube:

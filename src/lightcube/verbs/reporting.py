@@ -21,14 +21,14 @@ class Report:
     scores: dict[str, Any]
 
 
-def report(cube: Cube, place: str, frames: str | None, tell: Tell) -> Report:
+def report(cube: Cube, place: str, source: str | None, tell: Tell) -> Report:
     """Measure all that is known of a cube and put it into one page.
 
     Parameters
     ----------
     place
         Where the cube was read from.
-    frames
+    source
         Where the pictures are that it was made from; None = it is compared with its own targets.
     tell
         Is told how many pictures are compared, of how many as far as is known.
@@ -38,23 +38,23 @@ def report(cube: Cube, place: str, frames: str | None, tell: Tell) -> Report:
     InputError
         Where the pictures cannot be read, or cannot be those that the cube is for.
     """
-    wanted = wanted_of(cube, frames)
-    stage = io.read_stage(frames, transfer=cube.transfer)[0] if frames is not None and io.is_stage(frames) else None
+    wanted = wanted_of(cube, source)
+    stage = io.read_stage(source, transfer=cube.transfer)[0] if source is not None and io.is_stage(source) else None
     found = measure(cube, wanted, stage, counting(tell))
-    command = reproducing(cube, wanted, frames, Path(place.removesuffix(".partial")).name)
-    text = page(found, io.bare_name(place), _compared(found, frames), command, [*origins(place, frames)])
+    command = reproducing(cube, wanted, source, Path(place.removesuffix(".partial")).name)
+    text = page(found, io.bare_name(place), _compared(found, source), command, [*origins(place, source)])
     return Report(text, found.scores)
 
 
-def _compared(found: Findings, frames: str | None) -> str:
+def _compared(found: Findings, source: str | None) -> str:
     """What the cube was compared with, in a sentence."""
-    if frames is None:
+    if source is None:
         return (
             "Compared with the 8-bit pictures that the cube keeps, which cap PSNR at about 59 dB where they were "
             "resampled."
         )
     if found.apart == 0:
-        return f"Compared with the pictures in {Path(frames).name}, which are those that the cube was made from."
+        return f"Compared with the pictures in {Path(source).name}, which are those that the cube was made from."
     off = "" if found.apart is None else f": they differ from these by up to {found.apart} levels of 255"
     about = "which are not known to be those that it was made from"
-    return f"Compared with the pictures in {Path(frames).name}, {about}{off}."
+    return f"Compared with the pictures in {Path(source).name}, {about}{off}."

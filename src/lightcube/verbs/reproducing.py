@@ -20,7 +20,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.rig import POWER_MAX, turntable
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import spread_angles
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.report.page import Command, Origin
 
 #: Longest side of a cube, mm, unless the command line says another.
@@ -31,12 +31,12 @@ _NEIGHBOURS = 4
 _DIGITS = 9
 
 
-def reproducing(cube: Cube, frames: Frames, source: str | None, target: str) -> Command:
+def reproducing(cube: Cube, targets: Targets, source: str | None, target: str) -> Command:
     """Put together the command that makes a cube again; every number is tried, and said as short as it can be.
 
     Parameters
     ----------
-    frames
+    targets
         What was wanted of the cube.
     source, target
         What the command reads and writes; without a source there is a word in its place.
@@ -46,11 +46,11 @@ def reproducing(cube: Cube, frames: Frames, source: str | None, target: str) -> 
     words = [*place, *_solver_options(cube, command)]
     if cube.transfer != "srgb":
         words += ["--transfer", cube.transfer]
-    asked = ["lightcube", "solve", source or ("FRAMES" if _is_planned(cube) else "STAGE.toml"), "-o", target]
+    asked = ["lightcube", "solve", source or ("PICTURES" if _is_planned(cube) else "STAGE.toml"), "-o", target]
     solve = [shlex.join(asked), *(shlex.join(pair) for pair in zip(words[::2], words[1::2], strict=True))]
     _doubt_origin(cube, command, source)
     units = int(provenance.get("units", 1))
-    if units == 1 or units == _usual_units(cube, frames):
+    if units == 1 or units == _usual_units(cube, targets):
         command.lines = [solve]
         return command
     command.lines = [[*solve, f"--unit {unit}/{units}"] for unit in range(1, units + 1)]
@@ -72,20 +72,20 @@ def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
         command.doubts.append(f"No size in mm gives voxels of exactly {cube.grid.voxel_mm!r} mm.")
     elif size != _SIZE_MM:
         yield from ("--size-mm", _number(size))
-    yield from ("--frame-width", _width(views.picture_shape[1], cube.grid.shape[1]))
-    yield from ("--elevation", _number(float(views.elevations[0])))
-    angles = _angles(cube)
-    if angles is None:
+    yield from ("--picture-width", _width(views.picture_shape[1], cube.grid.shape[1]))
+    yield from ("--elevation-deg", _number(float(views.elevations_deg[0])))
+    angles_deg = _angles(cube)
+    if angles_deg is None:
         command.doubts.append("No angles and elevation on the command line give exactly this cube's lamps and screens.")
-        angles = ["--angles", _listed(views.angles)]
-    yield from angles
+        angles_deg = ["--angles-deg", _listed(views.angles_deg)]
+    yield from angles_deg
     if provenance.get("fit", "crop") != "crop":
         yield from ("--fit", str(provenance["fit"]))
     if "order" in provenance:
         yield from ("--order", "best")
     if "shift" in provenance:
         yield from ("--shift", str(provenance["shift"]))
-    yield from ("--hold", _number(cube.hold_deg))
+    yield from ("--hold-deg", _number(cube.hold_deg))
     yield from _lamp(cube)
 
 
@@ -108,7 +108,7 @@ def _stage_options(cube: Cube) -> Iterator[str]:
         if name in cube.provenance:
             yield from (f"--{name.replace('_', '-')}", str(cube.provenance[name]))
     if cube.hold_deg:
-        yield from ("--hold", _number(cube.hold_deg))
+        yield from ("--hold-deg", _number(cube.hold_deg))
 
 
 def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
@@ -164,10 +164,10 @@ def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
         doubts.append(f"It was made by lightcube {written}; another version may come to other bits.")
 
 
-def _usual_units(cube: Cube, frames: Frames) -> int:
+def _usual_units(cube: Cube, targets: Targets) -> int:
     """In how many units the cube would be solved if nothing is said of them; 1 where its method is not to be found."""
     try:
-        job = Job(frames, cube.grid, recipe_of(cube))
+        job = Job(targets, cube.grid, recipe_of(cube))
     except InputError:
         return 1
     return fewest_units(job, MEMORY)
@@ -176,24 +176,26 @@ def _usual_units(cube: Cube, frames: Frames) -> int:
 def _angles(cube: Cube) -> list[str] | None:
     """The option that gives exactly the cube's views, or None."""
     views = cube.rig.views
-    angles = views.angles
+    angles_deg = views.angles_deg
     for offset in (1 / 2, 1 / 3):  # as `lightcube.optics.views.spread_angles` begins
-        span = round(float(angles[0]) / offset * len(views), 6)
-        if 0 < span <= 360 and _same(cube, spread_angles(len(views), span)):
-            return ["--span", _number(span)]
-    return ["--angles", _listed(angles)] if _same(cube, np.round(angles, _DIGITS)) else None
+        span_deg = round(float(angles_deg[0]) / offset * len(views), 6)
+        if 0 < span_deg <= 360 and _same(cube, spread_angles(len(views), span_deg)):
+            return ["--span-deg", _number(span_deg)]
+    return ["--angles-deg", _listed(angles_deg)] if _same(cube, np.round(angles_deg, _DIGITS)) else None
 
 
-def _same(cube: Cube, angles: NDArray[np.float64]) -> bool:
+def _same(cube: Cube, angles_deg: NDArray[np.float64]) -> bool:
     """Whether views at these angles have the cube's lamps and screens, bit for bit."""
     views = cube.rig.views
-    made = turntable(cube.grid, angles, elevation=float(views.elevations[0]), picture_shape=views.picture_shape).views
-    names = ["lamps", "column_steps", "row_steps"] + ["origins"] * ("shift" not in cube.provenance)
+    made = turntable(
+        cube.grid, angles_deg, elevation_deg=float(views.elevations_deg[0]), picture_shape=views.picture_shape
+    ).views
+    names = ["lamps", "column_steps_mm", "row_steps_mm"] + ["origins_mm"] * ("shift" not in cube.provenance)
     return all(np.array_equal(getattr(made, name), getattr(views, name)) for name in names)
 
 
-def _listed(angles: NDArray[np.float64]) -> str:
-    return ",".join(_number(float(angle)) for angle in angles)
+def _listed(angles_deg: NDArray[np.float64]) -> str:
+    return ",".join(_number(float(angle_deg)) for angle_deg in angles_deg)
 
 
 def _size(voxel_mm: float, voxels: int) -> float | None:
@@ -220,13 +222,13 @@ def _number(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
 
 
-def origins(cube: str, frames: str | None) -> Iterator[Origin]:
+def origins(cube: str, targets: str | None) -> Iterator[Origin]:
     """The files on this disk that were read."""
     read = [("cube", Path(cube))]
-    if frames is not None and io.is_stage(frames):
-        read += [("stage", Path(frames)), *(("pictures", path) for path in io.stage_pictures(frames))]
-    elif frames is not None:
-        read.append(("pictures", Path(frames)))
+    if targets is not None and io.is_stage(targets):
+        read += [("stage", Path(targets)), *(("pictures", path) for path in io.stage_pictures(targets))]
+    elif targets is not None:
+        read.append(("pictures", Path(targets)))
     for role, path in read:
         if path.exists():
             yield _origin(role, path)

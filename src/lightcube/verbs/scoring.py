@@ -1,4 +1,4 @@
-"""What `score` finds of a cube: figures, between the frames too and in a set-up that is off, and pictures of them."""
+"""What `score` finds of a cube: figures, between the pictures too and in a set-up that is off, and pictures of them."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,7 @@ from lightcube.drawing.sheet import contact_sheet
 from lightcube.events import Tell, counting
 from lightcube.forward import casting
 from lightcube.optics.cube import Cube
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.scoring import metrics
 from lightcube.scoring.between import Curve, curve
 from lightcube.scoring.robust import robust
@@ -36,7 +36,7 @@ class Found:
     curve: Curve | None
 
 
-def score(cube: Cube, frames: Frames, tell: Tell, *, between: bool = False, off: bool = False) -> Found:
+def score(cube: Cube, targets: Targets, tell: Tell, *, between: bool = False, off: bool = False) -> Found:
     """Compare what a cube casts with what was wanted.
 
     Parameters
@@ -44,28 +44,28 @@ def score(cube: Cube, frames: Frames, tell: Tell, *, between: bool = False, off:
     tell
         Is told how much of what was asked for besides is done.
     between
-        Whether PSNR and SSIM between the frames are asked for, and how far each one stands.
+        Whether PSNR and SSIM between the pictures are asked for, and how far each one stands.
     off
         Whether what a set-up costs that is a little off is asked for.
 
     Raises
     ------
     InputError
-        Where the frames do not fit the cube's views, or nothing is between its stops.
+        Where the targets do not fit the cube's views, or nothing is between its stops.
     """
-    scores, found, advance = metrics.score(cube, frames), None, counting(tell)
+    scores, found, advance = metrics.score(cube, targets), None, counting(tell)
     if between:
-        found = curve(cube, frames, callback=advance)
-        columns = {"angles": found.angles, "nearest": found.nearest, "psnr": found.psnr, "ssim": found.ssim}
-        scores["between"] = {name: column.tolist() for name, column in {**columns, "lobe_deg": found.lobes}.items()}
+        found = curve(cube, targets, callback=advance)
+        columns = {"angles_deg": found.angles_deg, "nearest": found.nearest, "psnr": found.psnr, "ssim": found.ssim}
+        scores["between"] = {name: column.tolist() for name, column in {**columns, "lobe_deg": found.lobes_deg}.items()}
     if off:
-        scores["robust"] = robust(cube, frames, callback=advance)
+        scores["robust"] = robust(cube, targets, callback=advance)
     return Found(scores, found)
 
 
-def sheet(cube: Cube, frames: Frames, found: Found) -> NDArray[np.uint8]:
+def sheet(cube: Cube, targets: Targets, found: Found) -> NDArray[np.uint8]:
     """Wanted, shown and difference of each view, ``(row, column, 3)`` display levels."""
-    return contact_sheet(casting.play(cube), frames, [view["psnr"] for view in found.scores["views"]])
+    return contact_sheet(casting.play(cube), targets, [view["psnr"] for view in found.scores["views"]])
 
 
 def plot(found: Curve) -> "Figure":

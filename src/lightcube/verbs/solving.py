@@ -11,7 +11,7 @@ from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.jobs.partial import begun_units
 from lightcube.optics.grid import Grid
-from lightcube.pictures.frames import Pictures
+from lightcube.pictures.pictures import Pictures
 from lightcube.planning.plan import Plan, plan
 from lightcube.planning.prediction import as_json
 from lightcube.solvers import find_method
@@ -36,14 +36,14 @@ def settled(options: Options) -> Options:
 
 def _as_in_the_paper(options: Options) -> Options:
     said = {
-        "--frame-width": options.frame_width,
-        "--angles": options.angles,
-        "--span": options.span,
-        "--elevation": options.elevation,
+        "--picture-width": options.picture_width,
+        "--angles-deg": options.angles_deg,
+        "--span-deg": options.span_deg,
+        "--elevation-deg": options.elevation_deg,
         "--powers": options.powers,
         "--lamp-power": options.lamp_power,
         "--lamp-max": options.lamp_max,
-        "--hold": options.hold,
+        "--hold-deg": options.hold_deg,
         "--shift": options.shift or None,
     }
     contradiction = [name for name, value in said.items() if value is not None]
@@ -52,7 +52,13 @@ def _as_in_the_paper(options: Options) -> Options:
             f"--paper says what {contradiction[0]} says too (lamp level and of power 1, half a turn, pictures as wide "
             "as the cube, no hold): leave out one of the two"
         )
-    white: dict[str, Any] = {"elevation": 0.0, "span": 180.0, "frame_width": 1.0, "lamp_power": 1.0, "hold": 0.0}
+    white: dict[str, Any] = {
+        "elevation_deg": 0.0,
+        "span_deg": 180.0,
+        "picture_width": 1.0,
+        "lamp_power": 1.0,
+        "hold_deg": 0.0,
+    }
     return replace(options, **white, shape=options.voxels, n=None)
 
 
@@ -71,13 +77,13 @@ def prepare(pictures: Pictures, options: Options) -> Plan:
         recipe,
         size_mm=options.size_mm,
         shape=None if options.shape is None else shape,
-        frame_width=options.frame_width,
-        angles=options.angles,
-        span=options.span,
-        elevation=options.elevation,
+        picture_width=options.picture_width,
+        angles_deg=options.angles_deg,
+        span_deg=options.span_deg,
+        elevation_deg=options.elevation_deg,
         **options.lamp,
         fit=options.fit,
-        longest_hold=options.hold is None and recipe.solver.chooses_lamps,
+        longest_hold=options.hold_deg is None and recipe.solver.chooses_lamps,
         shift=options.shift,
         order=options.order,
     )
@@ -89,7 +95,7 @@ def another_order(planned: Plan) -> "Order | None":
         return planned.order
     from lightcube.planning.order import best_order  # here: the compiler comes with it
 
-    return best_order(planned.frames, planned.grid, planned.recipe)
+    return best_order(planned.targets, planned.grid, planned.recipe)
 
 
 def job(planned: Plan, *, memory: int | None = None, units: int | None = None) -> Job:
@@ -99,7 +105,7 @@ def job(planned: Plan, *, memory: int | None = None, units: int | None = None) -
         provenance["shift"] = planned.shift
     if planned.order is not None:
         provenance["order"] = [int(picture) for picture in planned.order.pictures]
-    made = make_job(planned.frames, planned.grid, planned.recipe, units=units, memory=memory, provenance=provenance)
+    made = make_job(planned.targets, planned.grid, planned.recipe, units=units, memory=memory, provenance=provenance)
     needed = job_memory(made)
     if memory is not None and needed > memory:
         raise too_much(needed, memory)

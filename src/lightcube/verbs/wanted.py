@@ -7,41 +7,41 @@ import numpy as np
 from lightcube import io
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
-from lightcube.pictures.fitting import check_fit, fit, frames_from_targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import check_fit, fit, targets_of
+from lightcube.pictures.targets import Targets
 
 
-def _of_stage(path: str, cube: Cube) -> Frames:
+def _of_stage(path: str, cube: Cube) -> Targets:
     """The pictures of a stage file, as wanted of a cube that was made on it; `InputError` where it was on another."""
     made = {name: int(cube.provenance.get(name, 1)) for name in ("lamp_samples", "pixel_samples")}
-    _, frames = io.read_stage_frames(path, transfer=cube.transfer, **made)
-    rig = frames.rig
+    _, targets = io.read_stage_targets(path, transfer=cube.transfer, **made)
+    rig = targets.rig
     same = rig.picture_shape == cube.rig.picture_shape and len(rig.views) == len(cube.rig.views)
     if not (same and np.allclose(rig.views.lamps, cube.rig.views.lamps)):
         raise InputError(f"the cube was not made on the stage {path}: give the one it was made on")
-    return replace(frames, rig=cube.rig)
+    return replace(targets, rig=cube.rig)
 
 
-def wanted_of(cube: Cube, frames: str | None) -> Frames:
+def wanted_of(cube: Cube, source: str | None) -> Targets:
     """The pictures that a cube is compared with: those of a file or folder, or its own targets."""
-    return frames_from_targets(cube) if frames is None else refitted(cube, frames)
+    return targets_of(cube) if source is None else refitted(cube, source)
 
 
-def refitted(cube: Cube, frames: str) -> Frames:
+def refitted(cube: Cube, source: str) -> Targets:
     """Pictures as `solve` fitted them to the cube, in its order; `InputError` where they cannot be those it is for."""
-    if io.is_stage(frames):
-        return _of_stage(frames, cube)
+    if io.is_stage(source):
+        return _of_stage(source, cube)
     if not np.all(cube.rig.screens.endless):
-        raise InputError(f"the cube was made on a stage: give its file instead of {frames}, or nothing")
-    pictures = io.read_pictures(frames, transfer=cube.transfer)
+        raise InputError(f"the cube was made on a stage: give its file instead of {source}, or nothing")
+    pictures = io.read_pictures(source, transfer=cube.transfer)
     order = cube.provenance.get("order", range(len(pictures)))
     if len(order) == len(pictures):
         images, names = (tuple(each[picture] for picture in order) for each in (pictures.images, pictures.names))
         pictures = replace(pictures, images=images, names=names)
-    if pictures.angles is not None and len(pictures) == len(cube.rig):
-        apart = np.abs(np.remainder(pictures.angles - cube.angles + 180, 360) - 180)
+    if pictures.angles_deg is not None and len(pictures) == len(cube.rig):
+        apart = np.abs(np.remainder(pictures.angles_deg - cube.angles_deg + 180, 360) - 180)
         if np.max(apart) > 1e-6:
             raise InputError(
-                f"{frames} says other angles than the cube was made for: give the pictures it was made from"
+                f"{source} says other angles than the cube was made for: give the pictures it was made from"
             )
     return fit(pictures, cube.rig, check_fit(cube.provenance.get("fit", "crop")))

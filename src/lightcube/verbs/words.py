@@ -9,7 +9,7 @@ from lightcube.backward.problem import held
 from lightcube.jobs.cubes import Published
 from lightcube.optics.rig import POWER_MOST
 from lightcube.pictures.fitting import fit_report
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.targets import Targets
 from lightcube.planning.consistency import advice, check
 from lightcube.planning.plan import Plan, narrower
 from lightcube.planning.prediction import as_json, predict
@@ -24,7 +24,9 @@ POOR_DB = 25.0
 def table(facts: dict[str, Any]) -> list[str]:
     """Facts as aligned lines: how full the cube is, and what contradicts itself."""
     totals = facts["moments"]
-    off = f"{totals['across']:.1%} of the width" + f", {totals['down']:.1%} of the height" * (facts["elevation"] != 0)
+    off = f"{totals['across']:.1%} of the width" + f", {totals['down']:.1%} of the height" * (
+        facts["elevation_deg"] != 0
+    )
     conflicts = len({(each["row"]) for each in facts["row_conflicts"]})
     rows = {
         "load": f"{facts['load']:.1f}, well up to {facts['load_limit']:g}",
@@ -40,13 +42,13 @@ def table(facts: dict[str, Any]) -> list[str]:
 
 def facts(planned: Plan, order: "Order | None") -> dict[str, Any]:
     """What can be known before solving, for JSON; `order` is the best one, if it was looked for."""
-    found = check(planned.frames, planned.grid)
+    found = check(planned.targets, planned.grid)
     return {
-        "names": list(planned.frames.names),
-        "angles": [float(angle) for angle in planned.frames.angles],
+        "names": list(planned.targets.names),
+        "angles_deg": [float(angle_deg) for angle_deg in planned.targets.angles_deg],
         "voxels": list(planned.grid.shape),
-        "frame_width": planned.frames.rig.picture_shape[1] / planned.grid.shape[1],
-        "hold": planned.recipe.hold_deg,
+        "picture_width": planned.targets.rig.picture_shape[1] / planned.grid.shape[1],
+        "hold_deg": planned.recipe.hold_deg,
         **found,
         "predicted": as_json(planned.prediction),
         "shift": planned.shift,
@@ -59,15 +61,15 @@ def facts(planned: Plan, order: "Order | None") -> dict[str, Any]:
 def in_short(planned: Plan, order: "Order | None") -> list[str]:
     """Lines that `solve` says before it starts; `order` is the best one, if it was looked for."""
     nz, ny, nx = planned.grid.shape
-    hold = planned.recipe.hold_deg
+    hold_deg = planned.recipe.hold_deg
     lines = [
-        fit_report(planned.pictures, planned.frames, planned.fit),
+        fit_report(planned.pictures, planned.targets, planned.fit),
         f"cube of {nx} x {ny} x {nz} voxels, {expected(planned)}"
         + " by method display" * (planned.recipe.method != "display"),
     ]
-    if hold:
-        angles = len(held(planned.frames.rig, planned.recipe, planned.grid)) // len(planned.frames)
-        lines.append(f"held {hold:g} degrees either way: {angles} angles a picture, and as many times the work")
+    if hold_deg:
+        angles_deg = len(held(planned.targets.rig, planned.recipe, planned.grid)) // len(planned.targets)
+        lines.append(f"held {hold_deg:g} degrees either way: {angles_deg} angles a picture, and as many times the work")
     return lines + gain(planned, order)
 
 
@@ -84,13 +86,13 @@ def gain(planned: Plan, order: "Order | None") -> list[str]:
         return []
     better = order.best_db - order.given_db
     if planned.order is not None:
-        return [f"order (worth {better:.1f} dB in a draft): {', '.join(planned.frames.names)}"]
+        return [f"order (worth {better:.1f} dB in a draft): {', '.join(planned.targets.names)}"]
     return [f"another order would gain about {better:.1f} dB: --order best"] if better >= 1 else []
 
 
 def what_to_change(planned: Plan) -> list[str]:
     """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much."""
-    found = advice(check(planned.frames, planned.grid))
+    found = advice(check(planned.targets, planned.grid))
     if planned.prediction.psnr_mean >= POOR_DB:
         return [sentence for sentence in found if not sentence.startswith("The load")]
     return [*found, *_remedies(planned)]
@@ -98,22 +100,22 @@ def what_to_change(planned: Plan) -> list[str]:
 
 def _remedies(planned: Plan) -> list[str]:
     """What three changes would bring, predicted."""
-    rig, lamps = planned.frames.rig, planned.frames.rig.lamps
+    rig, lamps = planned.targets.rig, planned.targets.rig.lamps
     power = float(lamps.most.max())
-    now = planned.frames.rig.picture_shape[1] / planned.grid.shape[1]
+    now = planned.targets.rig.picture_shape[1] / planned.grid.shape[1]
     tried: list[str] = []
 
-    def tell(change: str, frames: Frames) -> None:
-        tried.append(f"{change}: {predict(frames, planned.grid, planned.recipe).psnr_mean:.0f} dB")
+    def tell(change: str, targets: Targets) -> None:
+        tried.append(f"{change}: {predict(targets, planned.grid, planned.recipe).psnr_mean:.0f} dB")
 
-    every_second = np.arange(0, len(planned.frames), 2)
+    every_second = np.arange(0, len(planned.targets), 2)
     if len(every_second) > 1:
-        tell(f"{len(every_second)} of the pictures", planned.frames.take(every_second))
-    tell(f"--frame-width {0.7 * now:.2g}", narrower(planned, 0.7 * now))
+        tell(f"{len(every_second)} of the pictures", planned.targets.take(every_second))
+    tell(f"--picture-width {0.7 * now:.2g}", narrower(planned, 0.7 * now))
     most = min(16 * power, POWER_MOST)
     if not lamps.are_fixed and most > power:
         stronger = replace(rig, lamps=replace(lamps, most=np.full(len(lamps.names), most)))
-        tell(f"--lamp-max {most:g}", replace(planned.frames, rig=stronger))
+        tell(f"--lamp-max {most:g}", replace(planned.targets, rig=stronger))
     return [f"Hardly recognisable pictures are expected; what would come of {'; of '.join(tried)}."] if tried else []
 
 

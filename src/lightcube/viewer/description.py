@@ -18,7 +18,7 @@ from lightcube.scoring import metrics
 from lightcube.viewer.packing import Packed, lost
 
 #: Of the description; a page of another one is not read.
-FORMAT = 1
+FORMAT = 2
 #: Rows and columns of the picture that the camera is chosen for.
 _WIDE = (900, 1600)
 #: Bytes that all wanted pictures may have without loss; larger ones lose a little.
@@ -27,7 +27,7 @@ _QUALITY = 85
 
 
 def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
-    """What stands where at which angle, in the cube's own frame, and what was wanted; infinity is None.
+    """What stands where at which angle, in the cube's own axes, and what was wanted; infinity is None.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
         "title": title if cube.status == "complete" else f"{title} (unfinished)",
         "voxels": {
             "shape": packed.cube.grid.shape,
-            "mm": packed.cube.grid.voxel_mm,
+            "voxel_mm": packed.cube.grid.voxel_mm,
             "channels": len(packed.codes),
             "bits": packed.bits,
             "least": packed.least,
@@ -57,18 +57,18 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
         },
         "kept": {"full": cube.grid.shape, "worst_levels": worst, "rms_levels": mean},
         "transfer": cube.transfer,
-        "hold": cube.hold_deg,
+        "hold_deg": cube.hold_deg,
         "axis": rig.turning.axis.tolist(),
-        "turns": bool(np.any(rig.turning.turns) or len(np.unique(rig.stops.angle)) > 1),
+        "turns": bool(np.any(rig.turning.turns) or len(np.unique(rig.stops.angle_deg)) > 1),
         "carried": carries_cube(rig),
         "raster": rig.picture_shape,
-        "whole": _whole(packed.cube),
+        "whole_shadow": _whole(packed.cube),
         "screens": rig.screens.names,
         "lamps": rig.lamps.names,
         "camera": {
             "eye": [float(each) for each in camera.eye],
             "target": [float(each) for each in camera.target],
-            "field": camera.field_deg,
+            "field_deg": camera.field_deg,
         },
         "pictures": _pictures(cube if same else packed.cube, shown.names, rig, bool(wanted)),
         "views": _views(rig, len(packed.codes)),
@@ -99,7 +99,7 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
     return [
         {
             "name": name,
-            "angle": float(rig.stops.angle[i]),
+            "angle_deg": float(rig.stops.angle_deg[i]),
             "screen": int(rig.stops.screen[i]),
             "window": rig.stops.window[i].tolist(),
             "wanted": i % own if wanted else None,
@@ -117,13 +117,13 @@ def _views(rig: Rig, channels: int) -> list[dict[str, Any]]:
         "lamp": rig.sums.lamp,
         "pair": rig.pair,
         "light": views.lamps,
-        "origin": views.origins,
-        "right": views.column_steps,
-        "down": views.row_steps,
+        "origin": views.origins_mm,
+        "right": views.column_steps_mm,
+        "down": views.row_steps_mm,
         "share": rig.sums.of_colours(channels),
-        "reach": rig.fading.reach_mm,
-        "falloff": rig.fading.falloff_mm,
-        "full_at": rig.fading.full_at_mm,
+        "reach_mm": rig.fading.reach_mm,
+        "falloff_mm": rig.fading.falloff_mm,
+        "full_at_mm": rig.fading.full_at_mm,
         "cosine": rig.fading.cosine,
         "turning": rig.turning.turns,
         "way": rig.turning.way,

@@ -104,9 +104,9 @@ def lost(cube: Cube, kept: Cube) -> tuple[float, float]:
     halfway between neighbouring ones; where a `smaller` one is kept, at the stops, on its pixels.
     """
     if kept.grid.shape == cube.grid.shape:
-        stops = np.unique(cube.angles)
-        angles = np.sort(np.concatenate([stops, stops + np.diff(stops, append=stops[0] + 360) / 2]))
-        pairs = zip(_shadows(cube, angles), _shadows(kept, angles), strict=True)
+        stops = np.unique(cube.angles_deg)
+        angles_deg = np.sort(np.concatenate([stops, stops + np.diff(stops, append=stops[0] + 360) / 2]))
+        pairs = zip(_shadows(cube, angles_deg), _shadows(kept, angles_deg), strict=True)
     else:
         shown = cast(kept)
         pairs = zip(shown_coarsely(cube, kept), shown, strict=True)
@@ -119,5 +119,5 @@ def lost(cube: Cube, kept: Cube) -> tuple[float, float]:
     return worst, math.sqrt(squares / count)
 
 
-def _shadows(cube: Cube, angles: NDArray[np.float64]) -> Iterator[NDArray[np.float32]]:
-    return cast(cube, *moment(cube, angles))
+def _shadows(cube: Cube, angles_deg: NDArray[np.float64]) -> Iterator[NDArray[np.float32]]:
+    return cast(cube, *moment(cube, angles_deg))

@@ -11,9 +11,9 @@ from lightcube.backward.solving import solve
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.material import Material
-from lightcube.pictures.fitting import frames_from_targets
-from lightcube.pictures.frames import Frames
+from lightcube.pictures.fitting import targets_of
 from lightcube.pictures.resampling import coarser
+from lightcube.pictures.targets import Targets
 from lightcube.scoring import metrics
 
 #: Voxels along the longest side of what a page holds, unless all of them are asked for.
@@ -38,12 +38,12 @@ def smaller(cube: Cube, callback: Watching | None = None) -> Cube:
     ratio = max(cube.grid.shape) / MOST_SIDE
     if ratio <= 1:
         return cube
-    wanted = _cast(cube) if cube.targets is None else frames_from_targets(cube)
-    frames, grid = coarser(wanted, cube.grid, ratio)
+    wanted = _cast(cube) if cube.targets is None else targets_of(cube)
+    targets, grid = coarser(wanted, cube.grid, ratio)
     recipe = recipe_of(cube)
     bound = Material(recipe.material.most(cube.grid))
-    solution = solve(frames, grid, replace(recipe.by_display(_PASSES), material=bound), callback=callback)
-    return replace(solution.cube, scores=metrics.score(solution.cube, frames), status=cube.status)
+    solution = solve(targets, grid, replace(recipe.by_display(_PASSES), material=bound), callback=callback)
+    return replace(solution.cube, scores=metrics.score(solution.cube, targets), status=cube.status)
 
 
 def shown_coarsely(cube: Cube, small: Cube) -> NDArray[np.float32]:
@@ -51,6 +51,6 @@ def shown_coarsely(cube: Cube, small: Cube) -> NDArray[np.float32]:
     return coarser(_cast(cube), cube.grid, small.grid.voxel_mm / cube.grid.voxel_mm)[0].pictures
 
 
-def _cast(cube: Cube) -> Frames:
+def _cast(cube: Cube) -> Targets:
     """The pictures that a cube casts at its stops."""
-    return Frames(np.stack(list(cast(cube))), cube.rig, None, cube.names, cube.transfer)
+    return Targets(np.stack(list(cast(cube))), cube.rig, None, cube.names, cube.transfer)

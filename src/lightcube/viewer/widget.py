@@ -26,29 +26,29 @@ class CubeWidget(anywidget.AnyWidget):
 
     Attributes
     ----------
-    angle
+    angle_deg
         Of the turntable, degrees in [0, 360). Setting it turns the cube, and turning the cube sets it:
-        ``widget.observe(callback, "angle")`` tells.
+        ``widget.observe(callback, "angle_deg")`` tells.
     """
 
     _esm = joined("widget.js") + "\nexport default { render };\n"
     _css = source("style.css")
 
-    angle = traitlets.Float(0.0).tag(sync=True)
+    angle_deg = traitlets.Float(0.0).tag(sync=True)
     scene = traitlets.Bytes().tag(sync=True)
     voxels = traitlets.Bytes().tag(sync=True)
 
     def __init__(self, cube: Cube, *, full: bool = False) -> None:
         description, voxels = contents(cube, "light cube", full=full)
         self._cube = cube
-        super().__init__(angle=float(cube.angles[0]), scene=zipped(description), voxels=voxels)
+        super().__init__(angle_deg=float(cube.angles_deg[0]), scene=zipped(description), voxels=voxels)
 
-    @traitlets.validate("angle")
+    @traitlets.validate("angle_deg")
     def _within_a_turn(self, proposal: dict[str, Any]) -> float:
-        angle = float(proposal["value"])
-        if not math.isfinite(angle):
-            raise InputError(f"a cube cannot be turned to {angle} degrees: give a finite angle")
-        return angle % 360.0 % 360.0  # of a tiny negative angle the first remainder is 360
+        angle_deg = float(proposal["value"])
+        if not math.isfinite(angle_deg):
+            raise InputError(f"a cube cannot be turned to {angle_deg} degrees: give a finite angle")
+        return angle_deg % 360.0 % 360.0  # of a tiny negative angle the first remainder is 360
 
     def _repr_mimebundle_(self, **asked: Any) -> tuple[dict[str, Any], dict[str, Any]] | None:
         """The widget, and for notebooks that are opened without a kernel what the cube shows at its stops."""

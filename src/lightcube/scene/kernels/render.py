@@ -26,7 +26,7 @@ _BEAM = 1000
 class Sight(NamedTuple):
     """Camera, lights and background as flat arrays."""
 
-    frame: NDArray[np.float64]  # (4, 3): position, right, up, forward; right and up span one picture height
+    axes: NDArray[np.float64]  # (4, 3): position, right, up, forward; right and up span one picture height
     perspective: bool
     samples: int  # samples^2 beams a pixel
     lights: NDArray[np.float64]  # (lights, 7): x, y, z, w (0: light travels along xyz, 1: stands at xyz), r, g, b
@@ -112,11 +112,11 @@ def _pixel(
     """Mean of a regular grid of beams through a pixel."""
     r, g, b = 0.0, 0.0, 0.0
     samples = sight.samples
-    frame = sight.frame
-    position = (frame[0, 0], frame[0, 1], frame[0, 2])
-    right = (frame[1, 0], frame[1, 1], frame[1, 2])
-    up = (frame[2, 0], frame[2, 1], frame[2, 2])
-    forward = (frame[3, 0], frame[3, 1], frame[3, 2])
+    axes = sight.axes
+    position = (axes[0, 0], axes[0, 1], axes[0, 2])
+    right = (axes[1, 0], axes[1, 1], axes[1, 2])
+    up = (axes[2, 0], axes[2, 1], axes[2, 2])
+    forward = (axes[3, 0], axes[3, 1], axes[3, 2])
     for sample in range(samples * samples):
         v = (row + (sample // samples + 0.5) / samples) / rows
         u = (column + (sample % samples + 0.5) / samples - 0.5 * columns) / rows

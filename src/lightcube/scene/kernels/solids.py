@@ -1,4 +1,4 @@
-"""Where a line crosses the analytic shapes, and the normals there, in each shape's own frame.
+"""Where a line crosses the analytic shapes, and the normals there, in each shape's own axes.
 
 Every shape is centred at the origin with its axis along z. A line is ``o + t d``; `d` need not have length 1, so
 that ``t`` means the same point before and after an affine map. `crossings` writes the parameters at which the

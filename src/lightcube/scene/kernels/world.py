@@ -22,7 +22,7 @@ class World(NamedTuple):
     kinds: NDArray[np.int64]  # (i,) see solids
     sizes: NDArray[np.float64]  # (i, 3)
     roots: NDArray[np.int64]  # (i,) node of the mesh's tree, or -1
-    to_local: NDArray[np.float64]  # (f, i, 3, 4) from the scene into the shape's own frame
+    to_local: NDArray[np.float64]  # (f, i, 3, 4) from the scene into the shape's own axes
     spheres: NDArray[np.float64]  # (f, i, 4) a ball around the shape: centre, radius (inf: a plane, < 0: not there)
     opaque: int  # shapes before this one are opaque, this one and the next are glass
     colours: NDArray[np.float64]  # (i, 2, 3) linear; the second is the checker's
@@ -43,7 +43,7 @@ Vector = tuple[float, float, float]
 
 @inner
 def into(m: NDArray[np.float64], f: int, i: int, o: Vector, d: Vector) -> tuple[Vector, Vector]:
-    """A line in the frame that the affine map ``m[f, i]`` (3, 4) leads to."""
+    """A line in the axes that the affine map ``m[f, i]`` (3, 4) leads to."""
     return (
         (
             m[f, i, 0, 0] * o[0] + m[f, i, 0, 1] * o[1] + m[f, i, 0, 2] * o[2] + m[f, i, 0, 3],
@@ -177,7 +177,7 @@ def normal_towards(world: World, f: int, i: int, triangle: int, p: Vector, d: Ve
     else:
         q = into(m, f, i, p, d)[0]
         n = normal(world.kinds[i], _size(world, i), q[0], q[1], q[2])
-    # Normals go by the transpose of the map that leads into the shape's frame.
+    # Normals go by the transpose of the map that leads into the shape's axes.
     x = m[f, i, 0, 0] * n[0] + m[f, i, 1, 0] * n[1] + m[f, i, 2, 0] * n[2]
     y = m[f, i, 0, 1] * n[0] + m[f, i, 1, 1] * n[1] + m[f, i, 2, 1] * n[2]
     z = m[f, i, 0, 2] * n[0] + m[f, i, 1, 2] * n[1] + m[f, i, 2, 2] * n[2]
@@ -189,7 +189,7 @@ def normal_towards(world: World, f: int, i: int, triangle: int, p: Vector, d: Ve
 
 @inner
 def colour_at(world: World, f: int, i: int, p: Vector, n: Vector) -> Vector:
-    """Linear colour of shape `i` at surface point `p` with unit normal `n`: plain, or a solid checker in its frame."""
+    """Linear colour of shape `i` at surface point `p` with unit normal `n`: plain, or a solid checker in its axes."""
     side = world.checkers[i]
     which = 0
     if side > 0.0:

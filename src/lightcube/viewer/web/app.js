@@ -88,10 +88,10 @@ function actionsOf(app) {
     nearest: toNearest,
     first: () => turning.glideTo(turning.stops[0]),
     picture(number) {
-      const { screen, angle } = scene.pictures[number];
+      const { screen, angle_deg } = scene.pictures[number];
       const place = view.exposures.findIndex((exposure) => exposure.screen === screen);
       if (place !== chosen.place) Object.assign(chosen, { place, row: null, column: null });
-      turning.glideTo(angle);
+      turning.glideTo(angle_deg);
     },
     play: () => (turning.playing ? turning.release(0) : turning.play()),
     speed: (factor) => (turning.speed = factor),
@@ -102,7 +102,7 @@ function actionsOf(app) {
       if (turning.snap && !turning.playing) toNearest();
     },
     whole() {
-      if (scene.whole === null) return false;
+      if (scene.whole_shadow === null) return false;
       // the same beam is another row of the larger picture
       Object.assign(chosen, { whole: !chosen.whole, row: null, column: null });
       return true;

@@ -29,17 +29,17 @@ function bytesFrom(view) {
 
 function widgetOf(model, root, shown) {
   const follow = () => {
-    if (model.get("angle") !== shown.angle) shown.turnTo(model.get("angle"));
+    if (model.get("angle_deg") !== shown.angle) shown.turnTo(model.get("angle_deg"));
   };
-  shown.turnTo(model.get("angle"));
+  shown.turnTo(model.get("angle_deg"));
   shown.onTurn((angle) => {
-    if (model.get("angle") === angle) return;
-    model.set("angle", angle);
+    if (model.get("angle_deg") === angle) return;
+    model.set("angle_deg", angle);
     model.save_changes();
   });
-  model.on("change:angle", follow);
+  model.on("change:angle_deg", follow);
   return () => {
-    model.off("change:angle", follow);
+    model.off("change:angle_deg", follow);
     shown.dispose();
     root.remove();
   };

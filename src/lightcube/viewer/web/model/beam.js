@@ -16,7 +16,7 @@ const ON_FACE = 1e-9;
  * @param {number} row
  * @param {number} column
  * @param {number[]} raster [rows, columns] of the exposure
- * @returns {{start: number[], way: number[], first: number, last: number, pixel: number[]}} mm in the cube's frame;
+ * @returns {{start: number[], way: number[], first: number, last: number, pixel: number[]}} mm in the cube's axes;
  *   `way` has length 1, and `pixel` is where the pixel's centre lies (`start` too)
  */
 export function beamOf(view, row, column, raster) {
@@ -36,17 +36,17 @@ export function beamOf(view, row, column, raster) {
  * A beam that runs along a face gives half of its length to each neighbour, a quarter along an edge; halves outside the
  * cube vanish.
  * @param {number[]} shape [nz, ny, nx]
- * @param {number} mm side of a voxel
- * @param {number[]} start mm in the cube's frame, whose origin is the cube's middle
+ * @param {number} voxel_mm side of a voxel
+ * @param {number[]} start mm in the cube's axes, whose origin is the cube's middle
  * @param {number[]} way of length 1
  * @param {number} [first] where along the way the beam begins, mm from the start
  * @param {number} [last] where it ends
  * @returns {{voxels: Int32Array, lengths: Float64Array}} index (z * ny + y) * nx + x, and mm
  */
-export function walk(shape, mm, start, way, first = -Infinity, last = Infinity) {
+export function walk(shape, voxel_mm, start, way, first = -Infinity, last = Infinity) {
   const most = mostPieces(shape);
   const [voxels, lengths] = [new Int32Array(most), new Float64Array(most)];
-  const count = walkInto(voxels, lengths, shape, mm, start, way, first, last);
+  const count = walkInto(voxels, lengths, shape, voxel_mm, start, way, first, last);
   return { voxels: voxels.slice(0, count), lengths: lengths.slice(0, count) };
 }
 
@@ -56,16 +56,16 @@ export function mostPieces(shape) {
 }
 
 /** As `walk`, into arrays that have room for `mostPieces`; returns how many pieces there are. */
-export function walkInto(voxels, lengths, shape, mm, start, way, first, last) {
+export function walkInto(voxels, lengths, shape, voxel_mm, start, way, first, last) {
   const counts = [shape[2], shape[1], shape[0]];
-  const places = start.map((value, axis) => value / mm + counts[axis] / 2);
+  const places = start.map((value, axis) => value / voxel_mm + counts[axis] / 2);
   const sides = places.map((place, axis) => sidesAt(place, way[axis]));
-  const scale = mm / (sides[0].length * sides[1].length * sides[2].length);
+  const scale = voxel_mm / (sides[0].length * sides[1].length * sides[2].length);
   let count = 0;
   for (const x of sides[0]) {
     for (const y of sides[1]) {
       for (const z of sides[2]) {
-        count = walkOffFaces(voxels, lengths, count, counts, [x, y, z], way, first / mm, last / mm, scale);
+        count = walkOffFaces(voxels, lengths, count, counts, [x, y, z], way, first / voxel_mm, last / voxel_mm, scale);
       }
     }
   }
@@ -135,19 +135,19 @@ function nextFace(p, d, cell) {
 /**
  * The stretch of a beam within the cube, or null where it misses: exactly where `walk` finds nothing.
  * @param {number[]} shape [nz, ny, nx]
- * @param {number} mm side of a voxel
+ * @param {number} voxel_mm side of a voxel
  * @param {object} beam of `beamOf`
  * @returns {{start: number[], end: number[]} | null} where it enters and leaves, mm
  */
-export function stretchInside(shape, mm, beam) {
-  let [enter, leave] = [beam.first / mm, beam.last / mm];
+export function stretchInside(shape, voxel_mm, beam) {
+  let [enter, leave] = [beam.first / voxel_mm, beam.last / voxel_mm];
   for (let axis = 0; axis < 3; axis++) {
-    const place = beam.start[axis] / mm + shape[2 - axis] / 2;
+    const place = beam.start[axis] / voxel_mm + shape[2 - axis] / 2;
     const kept = sidesAt(place, beam.way[axis]).map((side) => crossings(side, beam.way[axis], shape[2 - axis]));
     enter = Math.max(enter, Math.min(...kept.map((ends) => ends[0])));
     leave = Math.min(leave, Math.max(...kept.map((ends) => ends[1])));
   }
   if (!(enter < leave)) return null;
-  const [start, end] = [enter, leave].map((t) => add(beam.start, scaled(beam.way, t * mm)));
+  const [start, end] = [enter, leave].map((t) => add(beam.start, scaled(beam.way, t * voxel_mm)));
   return { start, end };
 }

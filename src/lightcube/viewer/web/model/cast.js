@@ -62,7 +62,7 @@ function castInto(total, cube, exposure, row, column, { voxels, lengths }) {
   for (const view of exposure.views) {
     const { start, way, first, last, pixel } = beamOf(view, row, column, exposure.raster);
     const { light, shadow } = fallingLight(view, pixel);
-    const count = walkInto(voxels, lengths, cube.shape, cube.mm, start, way, first, last);
+    const count = walkInto(voxels, lengths, cube.shape, cube.voxel_mm, start, way, first, last);
     const left = transmittance(cube, voxels, lengths, count);
     for (let channel = 0; channel < 3; channel++) {
       total[channel] += view.power[channel] * light * (1 - shadow * (1 - left[channel]));

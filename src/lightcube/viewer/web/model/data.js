@@ -1,6 +1,6 @@
 // From the bytes that a page carries to its scene and its voxels, or one sentence that says what is damaged.
 
-const FORMAT = 1;
+const FORMAT = 2;
 const AGAIN = "write or send the page again";
 
 /**
@@ -63,11 +63,11 @@ export async function readScene(bytes) {
  * byte as it holds, the first one lowest.
  * @param {Uint8Array} bytes gzipped
  * @param {object} scene
- * @returns {Promise<{shape: number[], mm: number, bits: number, codes: Uint16Array, tables: Float32Array[]}>} three
+ * @returns {Promise<{shape: number[], voxel_mm: number, bits: number, codes: Uint16Array, tables: Float32Array[]}>} three
  *   codes of so many bits for each voxel, [z][y][x][channel], and each channel's extinction (1/mm) by code
  */
 export async function readVoxels(bytes, scene) {
-  const { shape, mm, channels, bits, least, rates } = scene.voxels;
+  const { shape, voxel_mm, channels, bits, least, rates } = scene.voxels;
   const unpacked = await gunzip(bytes, "voxels");
   const count = shape[0] * shape[1] * shape[2];
   const low = bits - 8;
@@ -87,7 +87,7 @@ export async function readVoxels(bytes, scene) {
     }
   }
   const tables = [0, 1, 2].map((channel) => tableOf(bits, least, rates[channels === 1 ? 0 : channel]));
-  return { shape, mm, bits, codes, tables };
+  return { shape, voxel_mm, bits, codes, tables };
 }
 
 /** Extinction (1/mm) by code: nearly even steps up to about `least`, beyond it they grow with the extinction. */

@@ -39,7 +39,7 @@ export function fading(distance, reach, falloff) {
  * With u the unit direction of the beam through the pixel at q, n the screen's normal and l the place of a point lamp:
  * g = (full_at / |q - l|)^2 |u.n|, each factor only where it is asked for; a fades with u.q beyond each reach.
  * @param {object} view of an exposure
- * @param {number[]} pixel mm, in the cube's frame
+ * @param {number[]} pixel mm, in the cube's axes
  * @returns {{light: number, shadow: number}}
  */
 export function fallingLight(view, pixel) {
@@ -52,8 +52,9 @@ export function fallingLight(view, pixel) {
     const normal = cross(view.right, view.down);
     light *= Math.abs(dot(ahead, normal)) / norm(normal);
   }
-  if (point && view.full_at < Infinity) light *= (view.full_at / length) ** 2;
+  if (point && view.full_at_mm < Infinity) light *= (view.full_at_mm / length) ** 2;
   const travelled = dot(ahead, pixel);
-  const shadow = fading(travelled, view.reach[0], view.falloff[0]) * fading(travelled, view.reach[1], view.falloff[1]);
+  const [lamp, screen] = [0, 1].map((end) => fading(travelled, view.reach_mm[end], view.falloff_mm[end]));
+  const shadow = lamp * screen;
   return { light, shadow };
 }

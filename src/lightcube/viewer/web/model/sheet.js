@@ -31,7 +31,7 @@ export function sheetOf(cube, exposure, viewNumber, row) {
   const displayed = castRow(cube, exposure, row).map((light) => encode(light, exposure.transfer));
   const beams = Array.from({ length: exposure.window[1] }, (_, column) => {
     const beam = beamOf(view, row, column, exposure.raster);
-    const inside = stretchInside(cube.shape, cube.mm, beam);
+    const inside = stretchInside(cube.shape, cube.voxel_mm, beam);
     const shown = [0, 1, 2].map((channel) => Math.min(displayed[3 * column + channel], 1));
     return { column, start: inside?.start ?? null, end: inside?.end ?? null, pixel: beam.pixel, shown };
   });
@@ -50,7 +50,7 @@ export function sheetOf(cube, exposure, viewNumber, row) {
  */
 export function beamFacts(cube, exposure, viewNumber, row, column) {
   const { start, way, first, last } = beamOf(exposure.views[viewNumber], row, column, exposure.raster);
-  const { voxels, lengths } = walk(cube.shape, cube.mm, start, way, first, last);
+  const { voxels, lengths } = walk(cube.shape, cube.voxel_mm, start, way, first, last);
   return { voxels, lengths, left: transmittance(cube, voxels, lengths) };
 }
 
@@ -60,7 +60,7 @@ function planeOf(view, row, raster) {
   return [cross(way, view.right), pixel];
 }
 
-function cellsOf({ shape, mm }, normal, point) {
+function cellsOf({ shape, voxel_mm }, normal, point) {
   const steep = normal.map(Math.abs);
   const axis = [2, 1, 0].reduce((best, each) => (steep[each] > steep[best] + ON_FACE ? each : best));
   const [slow, fast] = [2, 1, 0].filter((each) => each !== axis);
@@ -71,9 +71,9 @@ function cellsOf({ shape, mm }, normal, point) {
   for (let i = 0; i < n; i++) {
     for (let j = 0; j < m; j++) {
       const middle = [0, 0, 0];
-      middle[slow] = (i + 0.5 - n / 2) * mm;
-      middle[fast] = (j + 0.5 - m / 2) * mm;
-      const height = (dot(normal, point) - dot(normal, middle)) / normal[axis] / mm + count(axis) / 2;
+      middle[slow] = (i + 0.5 - n / 2) * voxel_mm;
+      middle[fast] = (j + 0.5 - m / 2) * voxel_mm;
+      const height = (dot(normal, point) - dot(normal, middle)) / normal[axis] / voxel_mm + count(axis) / 2;
       const place = sliceAt(height, count(axis));
       if (place >= 0) cells[i * m + j] = i * strides[slow] + j * strides[fast] + place * strides[axis];
     }

@@ -1,4 +1,4 @@
-// What stands where at a turntable angle, in the cube's frame (exposures) and in the room's (standing); lengths are mm.
+// What stands where at a turntable angle, in the cube's axes (exposures) and in the room's (standing); lengths are mm.
 
 import { add, apply, cross, dot, modulo, norm, rotation, scaled, sub, unit } from "../tools/vectors.js";
 
@@ -11,7 +11,7 @@ const SAME = 1e-6;
  * @returns {number[]} degrees in [0, 360), rising, each once
  */
 export function stops(scene) {
-  const angles = scene.pictures.map((picture) => modulo(picture.angle, 360)).sort((a, b) => a - b);
+  const angles = scene.pictures.map((picture) => modulo(picture.angle_deg, 360)).sort((a, b) => a - b);
   return angles.filter((angle, i) => i === 0 || angle - angles[i - 1] > SAME);
 }
 
@@ -25,7 +25,7 @@ export function stops(scene) {
 export function nearestPicture(scene, screen, angle) {
   let [found, least] = [-1, Infinity];
   scene.pictures.forEach((picture, number) => {
-    const away = degreesApart(angle, picture.angle);
+    const away = degreesApart(angle, picture.angle_deg);
     if (picture.screen === screen && away < least) [found, least] = [number, away];
   });
   return found;
@@ -36,7 +36,7 @@ function degreesApart(one, other) {
 }
 
 /**
- * The light on every screen at any angle, in the cube's frame.
+ * The light on every screen at any angle, in the cube's axes.
  *
  * The room is lit as at the stop that is nearest: a screen that no picture is wanted on there is dark. The power of
  * each lamp is linear in ln P between the stops at which it shines on that screen, constant where a stop is held.
@@ -48,11 +48,11 @@ function degreesApart(one, other) {
  */
 export function exposures(scene, angle, whole = false) {
   const screens = [...new Set(scene.pictures.map((picture) => picture.screen))].sort((a, b) => a - b);
-  const full = whole ? scene.whole : null;
-  const nearest = Math.min(...scene.pictures.map((picture) => degreesApart(angle, picture.angle)));
+  const full = whole ? scene.whole_shadow : null;
+  const nearest = Math.min(...scene.pictures.map((picture) => degreesApart(angle, picture.angle_deg)));
   return screens.map((screen) => {
     const number = nearestPicture(scene, screen, angle);
-    const { angle: stop, window } = scene.pictures[number];
+    const { angle_deg: stop, window } = scene.pictures[number];
     const lit = degreesApart(angle, stop) < nearest + SAME;
     const views = viewsOf(scene, number).map((view) => {
       const power = lit ? powerBetween(scene, view.pair, angle) : [0];
@@ -77,9 +77,9 @@ function exposedView(scene, view, degrees, power, whole) {
     right,
     down,
     power: [0, 1, 2].map((channel) => ofChannel(view.share, channel) * ofChannel(power, channel)),
-    reach: view.reach.map(orInfinite),
-    falloff: view.falloff.map(orInfinite),
-    full_at: orInfinite(view.full_at),
+    reach_mm: view.reach_mm.map(orInfinite),
+    falloff_mm: view.falloff_mm.map(orInfinite),
+    full_at_mm: orInfinite(view.full_at_mm),
     cosine: view.cosine,
     lamp: view.lamp,
   };
@@ -109,9 +109,9 @@ function powerBetween(scene, pair, angle) {
   const { lamp, picture } = scene.pairs[pair];
   const { screen } = scene.pictures[picture];
   const alike = scene.pairs.filter((each) => each.lamp === lamp && scene.pictures[each.picture].screen === screen);
-  const angles = alike.map((each) => scene.pictures[each.picture].angle);
+  const angles = alike.map((each) => scene.pictures[each.picture].angle_deg);
   // just short of the middle between two stops, so that the ends of their holds keep their order
-  const hold = Math.min(scene.hold, smallestGap(angles) / 2 - 1e-6);
+  const hold = Math.min(scene.hold_deg, smallestGap(angles) / 2 - 1e-6);
   const offsets = hold > 0 ? [-hold, hold] : [0];
   const marks = offsets.flatMap((offset) =>
     alike.map((each, i) => ({ at: modulo(angles[i] + offset, 360), logs: each.power.map(Math.log) })),
@@ -137,11 +137,11 @@ function interpolated(marks, angle) {
 }
 
 /**
- * Where the cube, the screens and the lamps stand at an angle, in the room's frame: the cube's at angle 0.
+ * Where the cube, the screens and the lamps stand at an angle, in the room's axes: the cube's at angle 0.
  * @param {object} scene
  * @param {number} angle degrees
  * @param {boolean} [whole] as for `exposures`
- * @returns {{turn: number[], axis: number[], screens: object[], lamps: object[]}} `turn` leads from the cube's frame to
+ * @returns {{turn: number[], axis: number[], screens: object[], lamps: object[]}} `turn` leads from the cube's axes to
  *   the room's; parallel lamps are suns on the lines of their light, clear of the cube
  */
 export function standing(scene, angle, whole = false) {
@@ -174,11 +174,11 @@ function placedScreen(turn, { views, raster, window }) {
   return { corner: inRoom, right: across, down: below, pixels: window, facing: unit(cross(below, across)) };
 }
 
-/** Where a lamp stands, or the way its light travels, in the cube's frame, lit or not. */
+/** Where a lamp stands, or the way its light travels, in the cube's axes, lit or not. */
 function lampPlace(scene, lamp, angle) {
   const { picture } = scene.views.find((view) => view.lamp === lamp);
   const own = viewsOf(scene, picture).filter((view) => view.lamp === lamp); // the samples of its disc
-  const degrees = angle - scene.pictures[picture].angle;
+  const degrees = angle - scene.pictures[picture].angle_deg;
   const places = own.map((view) => apply(turnsOf(scene, view, degrees)[0], view.light));
   return { place: meanOf(places), parallel: own[0].light[3] === 0 };
 }
@@ -188,7 +188,7 @@ function sunsAway({ voxels }, screens) {
   const middles = screens.map(({ corner, right, down, pixels }) =>
     norm(add(corner, add(scaled(right, pixels[1] / 2), scaled(down, pixels[0] / 2)))),
   );
-  return Math.max((1.45 * norm(voxels.shape) * voxels.mm) / 2, 0.6 * Math.max(...middles));
+  return Math.max((1.45 * norm(voxels.shape) * voxels.voxel_mm) / 2, 0.6 * Math.max(...middles));
 }
 
 function meanOf(vectors) {

@@ -50,7 +50,7 @@ export function createCompare(scene, does) {
 
 /** "33.8° · 0.4° from it · 54.1 dB". */
 function placeText(away, picture) {
-  const stop = `stop ${degreesText(picture.angle)}`;
+  const stop = `stop ${degreesText(picture.angle_deg)}`;
   if (Math.abs(away) >= 0.005) return `${stop} · ${degreesText(Math.abs(away))} away`;
   return [stop, "here", scoreText(picture.psnr)].filter(Boolean).join(" · ");
 }

@@ -22,7 +22,7 @@ export function createControls(scene, stops, does) {
   const play = iconButton("play", "Play", "Space", does.play);
   const snap = switchButton("magnet", "Snap", "Come to rest on pictures, and on each while playing", does.snap);
   const whole = switchButton("whole", "Whole shadow", "Show the whole shadow (W)", does.whole);
-  whole.hidden = scene.whole === null;
+  whole.hidden = scene.whole_shadow === null;
   const readout = element("output", { class: "readout", "aria-live": "off" });
   const slider = createSlider(stops, does);
   const row = element("div", { class: "controls", role: "group", "aria-label": "Turning" },

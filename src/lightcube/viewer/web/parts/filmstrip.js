@@ -15,7 +15,7 @@ import { degreesText, element, scoreText } from "../tools/elements.js";
 export function createFilmstrip(scene, chosen) {
   const { pictures } = scene;
   const order = pictures.map((_, i) => i);
-  order.sort((a, b) => pictures[a].angle - pictures[b].angle || pictures[a].screen - pictures[b].screen);
+  order.sort((a, b) => pictures[a].angle_deg - pictures[b].angle_deg || pictures[a].screen - pictures[b].screen);
   const buttons = new Map(order.map((number) => [number, thumbnail(scene, number, () => chosen(number))]));
   const strip = element("div", { class: "filmstrip", role: "group", "aria-label": "Wanted pictures" });
   strip.append(...buttons.values());
@@ -49,12 +49,12 @@ function thumbnail(scene, number, pressed) {
   const picture = scene.pictures[number];
   const score = scoreText(picture.psnr);
   const mirrored = picture.mirrored ? ", mirrored" : "";
-  const label = [picture.name + mirrored, degreesText(picture.angle), score].filter(Boolean).join(", ");
+  const label = [picture.name + mirrored, degreesText(picture.angle_deg), score].filter(Boolean).join(", ");
   const given = { type: "button", class: "thumbnail", "aria-label": label, title: label, tabindex: -1, click: pressed };
   return element("button", given,
     wantedImage(scene, picture),
     element("span", { class: "name", text: picture.name }),
-    element("span", { class: "score", text: score || degreesText(picture.angle) }));
+    element("span", { class: "score", text: score || degreesText(picture.angle_deg) }));
 }
 
 function mark(button, on) {

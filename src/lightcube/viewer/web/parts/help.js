@@ -53,7 +53,8 @@ export function createHint(scene) {
 export function createHelp(scene) {
   const close = iconButton("close", "Close", "Escape", () => dialog.close());
   const gestures = scene.turns ? [["drag", whatDragDoes(scene)], ...GESTURES] : [["drag", "move the eye"], ...GESTURES.slice(1)];
-  const keys = [...(scene.turns ? TURNING_KEYS : []), ...KEYS].filter(([key]) => key !== "W" || scene.whole !== null);
+  const all = [...(scene.turns ? TURNING_KEYS : []), ...KEYS];
+  const keys = all.filter(([key]) => key !== "W" || scene.whole_shadow !== null);
   const dialog = element("dialog", { class: "help", "aria-labelledby": "lightcube-help" },
     element("header", {}, element("h2", { id: "lightcube-help", text: "Turning a light cube" }), close),
     element("p", { text: `${WHAT_IT_IS} ${scene.turns ? AT_STOPS : ON_SCREENS}` }),

@@ -76,8 +76,8 @@ export class SliceDrawing {
     const slow = axis === 2 ? 1 : 2;
     const at = (i, j) => {
       const point = [0, 0, 0];
-      point[slow] = (i - n / 2) * this.cube.mm;
-      point[fast] = (j - m / 2) * this.cube.mm;
+      point[slow] = (i - n / 2) * this.cube.voxel_mm;
+      point[fast] = (j - m / 2) * this.cube.voxel_mm;
       return place(point);
     };
     const [corner, next, below] = [at(0, 0), at(0, 1), at(1, 0)];
@@ -137,28 +137,28 @@ export class SliceDrawing {
  * Display levels by code and colour, of what a voxel lets through, as if it were so many times thicker that a deep one
  * lets through `DEEP`.
  */
-function voxelColours({ codes, tables, mm }) {
+function voxelColours({ codes, tables, voxel_mm }) {
   const step = 3 * Math.max(1, Math.floor(codes.length / 3 / LOOKED_AT));
   const absorbed = [];
   for (let i = 0; i < codes.length; i += step) {
     const each = tables.reduce((sum, table, channel) => sum + table[codes[i + channel]], 0) / 3;
-    if (each > 0) absorbed.push(each * mm);
+    if (each > 0) absorbed.push(each * voxel_mm);
   }
   absorbed.sort((a, b) => a - b);
   const deep = absorbed[Math.floor(0.9 * absorbed.length)] ?? 1;
   const thicker = Math.max(1, -Math.log(DEEP) / deep);
-  const level = (extinction) => Math.round(CLEAR * encode(Math.exp(-extinction * mm * thicker), "srgb"));
+  const level = (extinction) => Math.round(CLEAR * encode(Math.exp(-extinction * voxel_mm * thicker), "srgb"));
   return tables.map((table) => Uint8Array.from(table, level));
 }
 
 /**
- * From points in the cube's frame (mm) to the canvas (pixels of the page), as seen along the axis that is left out.
+ * From points in the cube's axes (mm) to the canvas (pixels of the page), as seen along the axis that is left out.
  *
  * The scale is the same at all angles of the table.
  */
 function placing(sheet, view, cube, width, height) {
   const [a, b] = [(sheet.axis + 1) % 3, (sheet.axis + 2) % 3];
-  const sides = cube.shape.map((count) => count * cube.mm).reverse();
+  const sides = cube.shape.map((count) => count * cube.voxel_mm).reverse();
   const radius = Math.hypot(sides[a], sides[b]) / 2;
   const sign = view.light[3] === 0 ? 1 : -1;
   const along = [sign * view.light[a], sign * view.light[b]];

@@ -15,14 +15,14 @@ const RADIANS = Math.PI / 180;
 
 /**
  * The orbit that a described camera is on.
- * @param {{eye: number[], target: number[], field: number}} described
- * @returns {{azimuth: number, height: number, distance: number, target: number[], field: number}} angles in degrees
+ * @param {{eye: number[], target: number[], field_deg: number}} described
+ * @returns {{azimuth: number, height: number, distance: number, target: number[], field_deg: number}} angles in degrees
  */
-export function orbitFrom({ eye, target, field }) {
+export function orbitFrom({ eye, target, field_deg }) {
   const way = sub(eye, target);
   const distance = norm(way);
   const azimuth = Math.atan2(way[1], way[0]) / RADIANS;
-  return limited({ azimuth, height: Math.asin(way[2] / distance) / RADIANS, distance, target, field });
+  return limited({ azimuth, height: Math.asin(way[2] / distance) / RADIANS, distance, target, field_deg });
 }
 
 /** The orbit with its height within bounds: the eye stays above the floor, and up is up in its picture. */
@@ -51,7 +51,7 @@ function fromTarget(orbit) {
 export function cameraOf(orbit, aspect) {
   const ahead = scaled(fromTarget(orbit), -1);
   const right = unit(cross(ahead, [0, 0, 1]));
-  const across = Math.tan((orbit.field / 2) * RADIANS) * Math.sqrt(aspect / ASPECT);
+  const across = Math.tan((orbit.field_deg / 2) * RADIANS) * Math.sqrt(aspect / ASPECT);
   return { eye: eyeOf(orbit), right, up: cross(right, ahead), ahead, across, tall: across / aspect };
 }
 

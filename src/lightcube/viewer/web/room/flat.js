@@ -255,7 +255,7 @@ function drawGlass(stage) {
   const glass = paintPicture(rays, rays, (row, column) => {
     const [x, y] = [left + ((column + 0.5) / rays) * wide, top + ((row + 0.5) / rays) * high];
     const way = applyInverse(room.turn, rayAt(camera, x / canvas.width, y / canvas.height).way);
-    const { voxels, lengths } = walk(cube.shape, cube.mm, eye, way, 0);
+    const { voxels, lengths } = walk(cube.shape, cube.voxel_mm, eye, way, 0);
     return transmittance(cube, voxels, lengths);
   }, "srgb");
   context.save();

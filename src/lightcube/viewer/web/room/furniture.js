@@ -46,12 +46,12 @@ const MOST_HINTED = 6;
 
 /** Half the cube's sides along x, y, z. */
 export function halfSides({ voxels }) {
-  return [...voxels.shape].reverse().map((count) => (count * voxels.mm) / 2);
+  return [...voxels.shape].reverse().map((count) => (count * voxels.voxel_mm) / 2);
 }
 
 /** The cube's longest side. */
 export function longestSide({ voxels }) {
-  return Math.max(...voxels.shape) * voxels.mm;
+  return Math.max(...voxels.shape) * voxels.voxel_mm;
 }
 
 /** Radius that lamps are drawn with. */
@@ -141,7 +141,7 @@ export function floorOf(scene) {
     const heights = roomsAround(scene, all).flatMap((room) => extentOf(scene, room).map((point) => point[2]));
     return Math.min(...heights) - 0.02 * longestSide(scene);
   });
-  return (room) => (scene.whole && room.screens[0].pixels.join() === scene.whole.join() ? whole : narrow);
+  return (room) => (scene.whole_shadow && room.screens[0].pixels.join() === scene.whole_shadow.join() ? whole : narrow);
 }
 
 /**

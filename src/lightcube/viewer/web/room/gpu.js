@@ -84,12 +84,12 @@ function makeKit(gl, scene, cube) {
     small: { frame: gl.createFramebuffer(), texture: null, size: "" },
   };
   uploadVoxels(kit, cube);
-  const { rates, least, mm } = scene.voxels;
+  const { rates, least, voxel_mm } = scene.voxels;
   for (const program of [kit.caster, kit.painter]) {
     gl.useProgram(program.made);
     gl.uniform1i(program.at("voxels"), VOXEL_UNIT);
     gl.uniform3fv(program.at("rates"), [0, 1, 2].map((i) => rates[rates.length === 1 ? 0 : i] / Math.LN2));
-    gl.uniform1f(program.at("least"), least * mm);
+    gl.uniform1f(program.at("least"), least * voxel_mm);
   }
   gl.uniformBlockBinding(kit.painter.made, gl.getUniformBlockIndex(kit.painter.made, "Things"), 0);
   gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, kit.things);
@@ -182,7 +182,7 @@ function uploadViews({ gl, views: table }, scene, views, rows, columns) {
   const numbers = new Float32Array(20 * width * views.length);
   views.forEach((view, i) => {
     const put = (row, texel, values) => numbers.set(values, 4 * ((5 * i + row) * width + texel));
-    putBeams(put, scene, inVoxels(view, scene.voxels.mm), rows, columns);
+    putBeams(put, scene, inVoxels(view, scene.voxels.voxel_mm), rows, columns);
   });
   gl.activeTexture(gl.TEXTURE0 + VIEW_UNIT);
   gl.bindTexture(gl.TEXTURE_2D, table);
@@ -190,12 +190,12 @@ function uploadViews({ gl, views: table }, scene, views, rows, columns) {
 }
 
 /** A view with all lengths in voxel sides, and nothing infinite. */
-function inVoxels(view, mm) {
+function inVoxels(view, voxel_mm) {
   const [lamp, origin, right, down] = [view.light.slice(0, 3), view.origin, view.right, view.down].map((each) =>
-    scaled(each, 1 / mm),
+    scaled(each, 1 / voxel_mm),
   );
-  const [reach, falloff, [fullAt]] = [view.reach, view.falloff, [view.full_at]].map((lengths) =>
-    lengths.map((length) => Math.min(length / mm, NEVER)),
+  const [reach, falloff, [fullAt]] = [view.reach_mm, view.falloff_mm, [view.full_at_mm]].map((lengths) =>
+    lengths.map((length) => Math.min(length / voxel_mm, NEVER)),
   );
   return { ...view, lamp, origin, right, down, reach, falloff, fullAt, point: view.light[3] !== 0 };
 }
@@ -208,7 +208,7 @@ function inVoxels(view, mm) {
  * plane that is parallel to the screen: there too the starts lie on a raster.
  */
 function putBeams(put, scene, view, rows, columns) {
-  const half = halfSides(scene).map((side) => side / scene.voxels.mm);
+  const half = halfSides(scene).map((side) => side / scene.voxels.voxel_mm);
   const { point, lamp, origin, right, down } = view;
   const normal = unit(cross(right, down));
   const way = unit(lamp).map((part) => nearZero(part, PARALLEL));
@@ -291,13 +291,13 @@ function makeSmall(gl, small, width, height) {
 /** From where the room is seen, and where the cube is. */
 function setSight(gl, painter, { scene, room, camera, floor }, width, height) {
   const { eye, right, up, ahead, across, tall } = camera;
-  const { mm } = scene.voxels;
-  const inside = add(scaled(applyInverse(room.turn, eye), 1 / mm), scaled(halfSides(scene), 1 / mm));
+  const { voxel_mm } = scene.voxels;
+  const inside = add(scaled(applyInverse(room.turn, eye), 1 / voxel_mm), scaled(halfSides(scene), 1 / voxel_mm));
   const whole = inside.map(Math.round);
   gl.uniform2f(painter.at("canvas"), width, height);
   gl.uniformMatrix3fv(painter.at("sight"), false, [...scaled(right, across), ...scaled(up, tall), ...ahead]);
   // row by row in `turn` is column by column of its transpose
-  gl.uniformMatrix3fv(painter.at("inCube"), false, room.turn.map((each) => each / mm));
+  gl.uniformMatrix3fv(painter.at("inCube"), false, room.turn.map((each) => each / voxel_mm));
   gl.uniform3iv(painter.at("eyeWhole"), whole);
   gl.uniform3fv(painter.at("eyeRest"), sub(inside, whole));
   gl.uniform3fv(painter.at("ground"), sub([0, 0, floor], eye));

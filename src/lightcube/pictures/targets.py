@@ -1,4 +1,4 @@
-"""Pictures, as read and as wanted on the screen."""
+"""Pictures as they are wanted on the screens of a rig."""
 
 from dataclasses import dataclass, replace
 
@@ -8,53 +8,10 @@ from numpy.typing import NDArray
 from lightcube.errors import InputError
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
-from lightcube.optics.views import check_angles
 
 
 @dataclass(frozen=True, eq=False)
-class Pictures:
-    """Pictures of any sizes as they were read, before they are fitted to a screen.
-
-    Parameters
-    ----------
-    images
-        Each ``(row, column, 3)`` float32 in linear light, 1 = white.
-    names
-        One name per picture, for people.
-    angles
-        Turntable angles in degrees that came with the pictures, or None.
-    elevation
-        Elevation of the lamp in degrees that came with the pictures, or None.
-    transfer
-        How the display values were decoded.
-    """
-
-    images: tuple[NDArray[np.float32], ...]
-    names: tuple[str, ...]
-    angles: NDArray[np.float64] | None = None
-    elevation: float | None = None
-    transfer: Transfer = "srgb"
-
-    def __post_init__(self) -> None:
-        if len(self.names) != len(self.images):
-            raise InputError(f"{len(self.images)} pictures have {len(self.names)} names: give one name per picture")
-        for name, image in zip(self.names, self.images, strict=True):
-            if image.ndim != 3 or image.shape[2] != 3 or image.size == 0:
-                raise InputError(f"picture {name} has shape {image.shape}, not (rows, columns, 3)")
-        if self.angles is not None and len(check_angles(self.angles)) != len(self.images):
-            raise InputError(f"{len(self.angles)} angles for {len(self.images)} pictures: give one angle per picture")
-
-    def __len__(self) -> int:
-        return len(self.images)
-
-    def __repr__(self) -> str:
-        sizes = sorted({image.shape[:2] for image in self.images})
-        said = f"{sizes[0][0]} x {sizes[0][1]} pixels" if len(sizes) == 1 else f"{len(sizes)} sizes"
-        return f"<{len(self)} pictures of {said}>"
-
-
-@dataclass(frozen=True, eq=False)
-class Frames:
+class Targets:
     """Pictures wanted on the screens of a rig.
 
     Parameters
@@ -124,12 +81,12 @@ class Frames:
         return self.weights
 
     @property
-    def angles(self) -> NDArray[np.float64]:
+    def angles_deg(self) -> NDArray[np.float64]:
         """Turntable angle of each picture's stop, degrees."""
-        return self.rig.stops.angle
+        return self.rig.stops.angle_deg
 
-    def take(self, indices: list[int] | NDArray[np.integer] | slice) -> "Frames":
-        """Return some of the frames, in the order of `indices`."""
+    def take(self, indices: list[int] | NDArray[np.integer] | slice) -> "Targets":
+        """Return some of them, in the order of `indices`."""
         chosen = list(range(len(self))[indices] if isinstance(indices, slice) else indices)
         return replace(
             self,

@@ -28,9 +28,9 @@ class _ViewsToml(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    angles: list[_Finite] | None = None
-    span: _Finite | None = None
-    elevation: _Finite | None = None
+    angles_deg: list[_Finite] | None = None
+    span_deg: _Finite | None = None
+    elevation_deg: _Finite | None = None
     names: list[str] | None = None
 
 
@@ -38,8 +38,8 @@ class _ViewsToml(BaseModel):
 class FolderViews:
     """What `views.toml` says; None where it says nothing."""
 
-    angles: NDArray[np.float64] | None = None
-    elevation: float | None = None
+    angles_deg: NDArray[np.float64] | None = None
+    elevation_deg: float | None = None
     names: tuple[str, ...] | None = None
 
 
@@ -66,8 +66,8 @@ def picture_files(folder: Path) -> list[Path]:
 def read_views(folder: Path, count: int) -> FolderViews:
     """Read `views.toml` of `folder` for `count` pictures; all None where there is no such file.
 
-    The file has the keys `angles` (list of degrees, one per picture) or `span` (degrees over which they are
-    spread evenly), `elevation` (degrees) and `names` (list of text), all optional.
+    The file has the keys `angles_deg` (list of degrees, one per picture) or `span_deg` (degrees over which they are
+    spread evenly), `elevation_deg` (degrees) and `names` (list of text), all optional.
 
     Raises
     ------
@@ -78,24 +78,24 @@ def read_views(folder: Path, count: int) -> FolderViews:
     if not file.exists():
         return FolderViews()
     said = _parse(file)
-    for key, values in (("angles", said.angles), ("names", said.names)):
+    for key, values in (("angles_deg", said.angles_deg), ("names", said.names)):
         if values is not None and len(values) != count:
             raise InputError(f"{file}: {key}: {len(values)} are listed for {count} pictures, give one per picture")
-    if said.angles is not None and said.span is not None:
-        raise InputError(f"{file}: span: angles are given already, use one of the two")
-    angles = None
-    key = "elevation"
+    if said.angles_deg is not None and said.span_deg is not None:
+        raise InputError(f"{file}: span_deg: angles_deg is given already: use one of the two")
+    angles_deg = None
+    key = "elevation_deg"
     try:
-        elevation = None if said.elevation is None else check_elevation(said.elevation)
-        if said.angles is not None:
-            key = "angles"
-            angles = distinct_angles(said.angles)
-        elif said.span is not None:
-            key = "span"
-            angles = distinct_angles(spread_angles(count, said.span, elevation=elevation or 0.0))
+        elevation_deg = None if said.elevation_deg is None else check_elevation(said.elevation_deg)
+        if said.angles_deg is not None:
+            key = "angles_deg"
+            angles_deg = distinct_angles(said.angles_deg)
+        elif said.span_deg is not None:
+            key = "span_deg"
+            angles_deg = distinct_angles(spread_angles(count, said.span_deg, elevation_deg=elevation_deg or 0.0))
     except InputError as error:
         raise InputError(f"{file}: {key}: {error}") from error
-    return FolderViews(angles, elevation, None if said.names is None else tuple(said.names))
+    return FolderViews(angles_deg, elevation_deg, None if said.names is None else tuple(said.names))
 
 
 def _parse(file: Path) -> _ViewsToml:
@@ -126,14 +126,14 @@ def views_text(views: Views | None, names: Sequence[str] | None) -> str:
     lines = []
     if views is not None:
         parallel = not np.any(views.lamps[:, 3])
-        elevations = views.elevations
-        if not parallel or np.ptp(elevations) > 1e-9:
+        elevations_deg = views.elevations_deg
+        if not parallel or np.ptp(elevations_deg) > 1e-9:
             raise InputError(
                 f"{VIEWS_FILE} can only hold a turntable's views with one elevation in parallel light: "
                 "write the pictures without views"
             )
-        lines.append(f"angles = [{', '.join(repr(float(angle)) for angle in views.angles)}]")
-        lines.append(f"elevation = {float(elevations[0])!r}")
+        lines.append(f"angles_deg = [{', '.join(repr(float(angle_deg)) for angle_deg in views.angles_deg)}]")
+        lines.append(f"elevation_deg = {float(elevations_deg[0])!r}")
     if names is not None:
         lines.append(f"names = [{', '.join(_toml_text(name) for name in names)}]")
     return "".join(line + "\n" for line in lines)
