@@ -8,7 +8,7 @@ import numpy as np
 from lightcube.backward.recipe import Recipe
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
-from lightcube.optics.rig import power_bounds
+from lightcube.optics.tables import power_bounds
 from lightcube.pictures.fitting import Fit, fit, turntable_for
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets

@@ -18,8 +18,9 @@ from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import fade, falling_light
-from lightcube.optics.rig import Lamps, Rig, Screens, turntable
+from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
+from lightcube.optics.tables import Lamps, Screens
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.resampling import halved
 from lightcube.pictures.targets import Targets
@@ -333,7 +334,8 @@ def test_a_turntable_is_a_stage_with_one_lamp_and_a_screen_behind(
     one = turntable(GRID, angles_deg, elevation_deg=elevation_deg, picture_shape=(4, 5))
     powers = powers_of(one)
     turned, staged = (Cube(extinction(), GRID, rig, powers, hold_deg=2.0) for rig in (one, stage.rig()))
-    assert turned.rig.period_deg == staged.rig.period_deg == (180 if elevation_deg == 0 and angles_deg[1] != 190 else 360)
+    period = 180 if elevation_deg == 0 and angles_deg[1] != 190 else 360
+    assert turned.rig.period_deg == staged.rig.period_deg == period
     assert turned.rig.widest_hold_deg == pytest.approx(staged.rig.widest_hold_deg)
     np.testing.assert_allclose(play(turned), play(staged), rtol=1e-4, atol=1e-6)
     between = [angle_deg + off for angle_deg in angles_deg for off in (0.0, 1.0, 7.5, 180.0, 200.0, -90.0)]

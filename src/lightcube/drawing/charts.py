@@ -86,7 +86,8 @@ def picture_bars(names: Sequence[str], psnr: Reals, expected: Reals | None, labe
 def between_curve(curve: Curve, label: str) -> str:
     """PSNR against the angle; the parts that belong to neighbouring pictures differ in colour, the stops are dots."""
     start = float(curve.angles_deg[0])
-    chart = _Chart((start, start + curve.period_deg), (min(0.0, float(curve.psnr.min())), 1.06 * float(curve.psnr.max())))
+    up = min(0.0, float(curve.psnr.min())), 1.06 * float(curve.psnr.max())
+    chart = _Chart((start, start + curve.period_deg), up)
     turn = np.arange(-360.0, 721.0, 45.0 if curve.period_deg == 360 else 30.0)
     shown = [float(angle) for angle in turn if chart.across[0] <= angle <= chart.across[1]]
     chart.axes(shown, _ticks(*chart.up), ("turntable angle, degrees", "PSNR, dB"))

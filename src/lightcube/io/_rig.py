@@ -8,7 +8,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from lightcube.errors import InputError
-from lightcube.optics.rig import Fading, Lamps, Rig, Screens, Stops, Sums, Turning
+from lightcube.optics.rig import Rig
+from lightcube.optics.tables import Fading, Lamps, Screens, Stops, Sums, Turning
 from lightcube.optics.views import Views
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]

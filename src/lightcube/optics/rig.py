@@ -12,201 +12,29 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.tables import (
+    POWER_MAX,
+    Counts,
+    Fading,
+    Lamps,
+    Reals,
+    Screens,
+    Stops,
+    Sums,
+    Turning,
+    power_bounds,
+)
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import Views, check_angles, hold_offsets_deg, rotated, smallest_gap_deg, turntable_views
 
-Reals = NDArray[np.float64]
-Counts = NDArray[np.intp]
-
-#: Bounds of the power of a lamp of which nothing is said; the lower one is that of any lamp that is not fixed.
-POWER_MIN, POWER_MAX = 1e-4, 16.0
-#: No lamp may be stronger.
-POWER_MOST = 1e6
 #: Stops nearer to each other than this, in degrees, are one.
 _SAME_STOP = 1e-6
 #: A part of a vector smaller than this is none.
 _NONE = 1e-9
-
-
-class _Columns:
-    """Arrays of one row per view or picture, which cannot be written to."""
-
-    def _keep(self, **kinds: tuple[DTypeLike, tuple[int, ...]]) -> None:
-        for name, (kind, shape) in kinds.items():
-            array: NDArray[Any] = np.array(getattr(self, name), dtype=kind)
-            if array.shape != shape:
-                raise InputError(f"{name} of a rig has shape {array.shape}, not {shape}")
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
-
-
-@dataclass(frozen=True, eq=False)
-class Sums(_Columns):
-    """Which views add up to which picture, under which lamp and with what share; those of a picture follow each other.
-
-    Parameters
-    ----------
-    picture
-        ``(views,)``: the picture that each view adds to, ascending from 0, none left out.
-    lamp
-        ``(views,)``: the lamp of each view, a number into the rig's `Lamps`.
-    share
-        ``(views, channels)`` of at least 0: the lamp's colour, divided among the samples of its disc and of pixels; one
-        channel = the same for any number of colours.
-    disc_deg
-        ``(views,)``: angular diameter of the lamp's disc as seen from the cube's middle, degrees, of which the view is
-        the middle; 0 where it has none, or the view is a sample of it.
-    """
-
-    picture: Counts
-    lamp: Counts
-    share: Reals
-    disc_deg: Reals
-
-    def __post_init__(self) -> None:
-        views = len(self.picture)
-        self._keep(
-            picture=(np.intp, (views,)),
-            lamp=(np.intp, (views,)),
-            share=(np.float64, (views, np.shape(self.share)[-1])),
-            disc_deg=(np.float64, (views,)),
-        )
-        steps = np.diff(self.picture, prepend=-1)
-        if not views or np.any((steps != 0) & (steps != 1)) or steps[0] != 1:
-            raise InputError("views of a rig must be in the order of their pictures, none of which is left out")
-        if np.any(self.share < 0):
-            raise InputError("a rig's shares must be at least 0")
-
-    def of_colours(self, channels: int) -> Reals:
-        """``(views, channels)``: the share of each view and colour."""
-        return np.broadcast_to(self.share, (len(self.share), channels))
-
-
-@dataclass(frozen=True, eq=False)
-class Fading(_Columns):
-    """How light and shadows change with distance and slant.
-
-    Parameters
-    ----------
-    reach_mm, falloff_mm
-        ``(views, 2)``, of the lamp and of the screen: so far behind the cube the shadow keeps its full strength, and
-        over each such length beyond it fades to 1/e (0 = it ends there). Both apply.
-    full_at_mm
-        ``(views,)``: so far from it a point lamp shows its power, and elsewhere by the inverse square of the distance;
-        infinity = the same everywhere.
-    cosine
-        ``(views,)`` bool: whether light that falls aslant on the screen is spread over more of it.
-    """
-
-    reach_mm: Reals
-    falloff_mm: Reals
-    full_at_mm: Reals
-    cosine: NDArray[np.bool_]
-
-    def __post_init__(self) -> None:
-        views = len(self.full_at_mm)
-        self._keep(
-            reach_mm=(np.float64, (views, 2)),
-            falloff_mm=(np.float64, (views, 2)),
-            full_at_mm=(np.float64, (views,)),
-            cosine=(np.bool_, (views,)),
-        )
-
-    @classmethod
-    def none(cls, views: int) -> "Fading":
-        """Light and shadows that are the same everywhere."""
-        return cls(np.full((views, 2), np.inf), np.zeros((views, 2)), np.full(views, np.inf), np.zeros(views, np.bool_))
-
-    @property
-    def is_none(self) -> bool:
-        """Whether light and shadows are the same everywhere."""
-        return bool(np.all(np.isinf(self.reach_mm)) and np.all(np.isinf(self.full_at_mm)) and not np.any(self.cosine))
-
-
-@dataclass(frozen=True, eq=False)
-class Turning(_Columns):
-    """What goes round the cube when the table turns.
-
-    Parameters
-    ----------
-    turns
-        ``(views, 2)`` bool: whether the lamp, and the screen, goes round the cube.
-    way
-        ``(views, 2)``: which way, in the cube's axes, as the angle rises: 1 counter-clockwise about `axis`, else -1.
-    axis
-        ``(3,)``, of the turntable.
-    """
-
-    turns: NDArray[np.bool_]
-    way: Reals
-    axis: Reals
-
-    def __post_init__(self) -> None:
-        views = len(self.turns)
-        self._keep(turns=(np.bool_, (views, 2)), way=(np.float64, (views, 2)), axis=(np.float64, (3,)))
-
-
-@dataclass(frozen=True, eq=False)
-class Stops(_Columns):
-    """Where each picture stands.
-
-    Parameters
-    ----------
-    angle_deg, screen
-        ``(pictures,)``: angle of the stop (degrees), and the screen, a number into the rig's `Screens`.
-    window
-        ``(pictures, 2)``: how many rows and columns of the picture, from its upper left, lie on the screen.
-    """
-
-    angle_deg: Reals
-    screen: Counts
-    window: Counts
-
-    def __post_init__(self) -> None:
-        pictures = len(self.angle_deg)
-        self._keep(angle_deg=(np.float64, (pictures,)), screen=(np.intp, (pictures,)), window=(np.intp, (pictures, 2)))
-
-
-@dataclass(frozen=True, eq=False)
-class Lamps(_Columns):
-    """The lamps: their names, and bounds of their power, equal where it is fixed; linear light, 1 shows white."""
-
-    names: tuple[str, ...]
-    least: Reals
-    most: Reals
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", tuple(self.names))
-        self._keep(least=(np.float64, (len(self.names),)), most=(np.float64, (len(self.names),)))
-        if not np.all((self.least > 0) & (self.least <= self.most)):
-            raise InputError("the powers of a rig's lamps must be above 0, the least before the largest")
-
-    @property
-    def are_fixed(self) -> bool:
-        """Whether every lamp has one given power."""
-        return bool(np.array_equal(self.least, self.most))
-
-
-@dataclass(frozen=True, eq=False)
-class Screens(_Columns):
-    """The screens: their names, the display value that each cannot be darker than, and whether it has no edges."""
-
-    names: tuple[str, ...]
-    black: Reals
-    endless: NDArray[np.bool_]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", tuple(self.names))
-        self._keep(black=(np.float64, (len(self.names),)), endless=(np.bool_, (len(self.names),)))
-        for black in self.black:
-            if not BLACK <= black < 1:
-                raise InputError(
-                    f"black must be a display value from {BLACK:.4f}, half a level, to below 1, not {black:g}"
-                )
 
 
 @dataclass(frozen=True, eq=False)
@@ -527,15 +355,6 @@ class Rig:
         along = np.abs(np.sum(views.column_steps_mm * views.lamps[:, :3], axis=1))
         facing = np.all(along < _NONE * np.linalg.norm(views.column_steps_mm, axis=1))
         return float(raised[0]) if alike and upright and facing else None
-
-
-def power_bounds(power: float | None, power_max: float | None = None) -> tuple[float, float]:
-    """Least and largest power of a lamp: those that are said, or as usual; `InputError` where they cannot be."""
-    if power is not None and not POWER_MIN <= power <= POWER_MOST:
-        raise InputError(f"a lamp power must lie between {POWER_MIN:g} and 1e6, not {power:g}")
-    if power_max is not None and not 1 <= power_max <= POWER_MOST:
-        raise InputError(f"the largest lamp power must lie between 1 and 1e6, not {power_max:g}")
-    return (POWER_MIN, power_max or POWER_MAX) if power is None else (power, power)
 
 
 def turntable(

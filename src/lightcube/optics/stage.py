@@ -12,18 +12,8 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import (
-    POWER_MAX,
-    POWER_MIN,
-    POWER_MOST,
-    Fading,
-    Lamps,
-    Rig,
-    Screens,
-    Stops,
-    Sums,
-    Turning,
-)
+from lightcube.optics.rig import Rig
+from lightcube.optics.tables import POWER_MAX, POWER_MIN, POWER_MOST, Fading, Lamps, Screens, Stops, Sums, Turning
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import Views, unit
 

@@ -12,7 +12,8 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
-from lightcube.optics.rig import POWER_MAX, Rig, turntable
+from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK, from_uint8, to_uint8
 from lightcube.optics.views import distinct_angles, spread_angles
 from lightcube.pictures.pictures import Pictures

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import POWER_MAX
+from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK, decode, encode
 from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, dense_step_deg
-from lightcube.optics.rig import POWER_MAX
+from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK
 from lightcube.pictures.arranging import spread_over_screen
 from lightcube.pictures.fitting import RAISED, Fit, turntable_for

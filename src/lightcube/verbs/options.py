@@ -8,7 +8,7 @@ import numpy as np
 from lightcube.backward.recipe import Powers, Quality, Recipe
 from lightcube.errors import InputError
 from lightcube.optics.material import Material
-from lightcube.optics.rig import power_bounds
+from lightcube.optics.tables import power_bounds
 from lightcube.optics.transfer import Transfer
 from lightcube.pictures.fitting import Fit
 from lightcube.planning.plan import Arrangement

@@ -17,7 +17,8 @@ from lightcube.backward.needs import MEMORY, fewest_units
 from lightcube.backward.recipe import QUALITIES, Recipe, recipe_of
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
-from lightcube.optics.rig import POWER_MAX, turntable
+from lightcube.optics.rig import turntable
+from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets

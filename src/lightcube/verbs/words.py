@@ -7,7 +7,7 @@ import numpy as np
 
 from lightcube.backward.problem import held
 from lightcube.jobs.cubes import Published
-from lightcube.optics.rig import POWER_MOST
+from lightcube.optics.tables import POWER_MOST
 from lightcube.pictures.fitting import fit_report
 from lightcube.pictures.targets import Targets
 from lightcube.planning.consistency import advice, check
