@@ -28,7 +28,7 @@ def block(n: int) -> lc.Grid:
 
 def photographs(grid: lc.Grid) -> lc.Targets:
     pictures = samples.photographs()
-    return lc.fit(pictures, lc.turntable_for(pictures, grid, elevation_deg=35.0, picture_width=0.5))
+    return lc.fit(pictures, lc.Turntable(elevation_deg=35.0).rig(pictures, grid, picture_width=0.5))
 
 
 def juggler(grid: lc.Grid, count: int) -> lc.Targets:

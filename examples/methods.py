@@ -4,7 +4,6 @@ python examples/methods.py
 """
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -12,9 +11,9 @@ import lightcube as lc
 from lightcube.pictures import samples
 
 
-def photographs(grid: lc.Grid, **table: Any) -> lc.Targets:
+def photographs(grid: lc.Grid, elevation_deg: float, picture_width: float = 1.0) -> lc.Targets:
     pictures = samples.photographs()
-    return lc.fit(pictures, lc.turntable_for(pictures, grid, **table))
+    return lc.fit(pictures, lc.Turntable(elevation_deg=elevation_deg).rig(pictures, grid, picture_width=picture_width))
 
 
 def main() -> None:

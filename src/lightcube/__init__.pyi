@@ -7,16 +7,17 @@ from lightcube.cores import threads
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
 from lightcube.io import read_pictures, read_scene, read_stage, read_stage_targets, save
-from lightcube.jobs.cubes import load, publish
+from lightcube.jobs.publishing import load, publish
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import Views, spread_angles
-from lightcube.pictures.fitting import fit, turntable_for
+from lightcube.pictures.fitting import fit
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
+from lightcube.pictures.turntable import Turntable
 from lightcube.planning.consistency import check
 from lightcube.planning.order import best_order
 from lightcube.planning.plan import Plan, plan
@@ -50,6 +51,7 @@ __all__ = [
     "Solution",
     "Stage",
     "Targets",
+    "Turntable",
     "Views",
     "best_order",
     "cast",
@@ -76,5 +78,4 @@ __all__ = [
     "spread_angles",
     "threads",
     "turntable",
-    "turntable_for",
 ]

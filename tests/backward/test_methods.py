@@ -10,8 +10,8 @@ import pytest
 from lightcube.backward.solving import make_job, run
 from lightcube.backward.store import MemoryStore
 from lightcube.errors import InputError
-from lightcube.jobs.cubes import load
 from lightcube.jobs.partial import load_job, open_partial
+from lightcube.jobs.publishing import load
 from lightcube.optics.grid import Grid
 from lightcube.solvers.method import Method
 from tests.backward.test_job import LEVEL, SHAPE, same, some_targets

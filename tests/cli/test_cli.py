@@ -17,7 +17,7 @@ from lightcube import load
 from lightcube.cli import main
 from lightcube.forward.casting import play
 from lightcube.io import save
-from lightcube.jobs.cubes import UnfinishedCube
+from lightcube.jobs.publishing import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable

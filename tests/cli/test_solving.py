@@ -11,7 +11,6 @@ from lightcube import load, score
 from lightcube.backward.recipe import QUALITIES
 from lightcube.errors import InputError
 from lightcube.forward.casting import play
-from lightcube.verbs import solving
 from lightcube.verbs.options import Options
 from tests.cli.test_cli import pictures, run
 
@@ -154,10 +153,10 @@ def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, qual
 
 def test_options_are_settled_before_anything_is_read() -> None:
     with pytest.raises(InputError, match="--paper"):
-        solving.settled(Options(paper=True, hold_deg=1.0))
-    assert solving.settled(Options(method="cgls")).lamp == {"power": 1}
-    assert solving.settled(Options()).lamp == {}
-    assert solving.settled(Options(paper=True)).lamp == {"power": 1}
+        Options(paper=True, hold_deg=1.0).as_in_the_paper()
+    assert Options(method="cgls").turntable.power == 1
+    assert Options().turntable.power is None
+    assert Options(paper=True).as_in_the_paper().turntable.power == 1
 
 
 @pytest.mark.parametrize(

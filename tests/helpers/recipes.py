@@ -9,9 +9,10 @@ from lightcube.backward.recipe import Recipe
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
 from lightcube.optics.tables import power_bounds
-from lightcube.pictures.fitting import Fit, fit, turntable_for
+from lightcube.pictures.fitting import Fit, fit
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
+from lightcube.pictures.turntable import Turntable
 from lightcube.solvers import find_method
 
 _OWN = {each.name for each in fields(Recipe)}
@@ -44,6 +45,8 @@ def lit(
     return replace(targets, rig=replace(rig, lamps=lamps, screens=screens))
 
 
-def fitted(pictures: Pictures, grid: Grid, *, fit_mode: Fit = "crop", **more: Any) -> Targets:
+def fitted(
+    pictures: Pictures, grid: Grid, *, fit_mode: Fit = "crop", picture_width: float = 1.0, **said: Any
+) -> Targets:
     """Pictures fitted to a turntable that is made for them."""
-    return fit(pictures, turntable_for(pictures, grid, **more), fit_mode)
+    return fit(pictures, Turntable(**said).rig(pictures, grid, picture_width=picture_width), fit_mode)

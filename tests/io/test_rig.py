@@ -16,8 +16,8 @@ from lightcube.backward.solving import make_job
 from lightcube.backward.solving import run as solved
 from lightcube.errors import InputError
 from lightcube.io._rig import RigJson, rig_to_json
-from lightcube.jobs.cubes import UnfinishedCube
 from lightcube.jobs.partial import DiskStore, load_job, open_partial
+from lightcube.jobs.publishing import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.rig import Rig, turntable
 from lightcube.pictures.fitting import as_levels

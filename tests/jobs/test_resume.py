@@ -22,8 +22,9 @@ from lightcube.backward.pieces import solve_piece
 from lightcube.backward.solution import merged
 from lightcube.backward.solving import run as solved
 from lightcube.errors import InputError
-from lightcube.jobs.cubes import UnfinishedCube, publish
+from lightcube.jobs import publishing
 from lightcube.jobs.partial import DiskStore, load_job, open_partial
+from lightcube.jobs.publishing import UnfinishedCube, publish
 from tests.backward.test_job import LEVEL, RAISED, job, same
 from tests.cli.test_cli import pressed, run
 from tests.conftest import INTERPRETED
@@ -241,7 +242,7 @@ def test_publishing_what_is_there(tmp_path: Path) -> None:
     made = job(**LEVEL)
     out = tmp_path / "a.zarr"
     begun(out, made, "level-1", "unit-1")
-    publish(partial_path(out))
+    assert not publish(partial_path(out)).is_whole
     whole = solved(made).cube
     with pytest.warns(UnfinishedCube):
         cube = load(out)
@@ -251,6 +252,12 @@ def test_publishing_what_is_there(tmp_path: Path) -> None:
     assert np.array_equal(cube.powers, whole.powers)
     assert cube.extinction.min(axis=(2, 3)).shape == cube.extinction.max(axis=(2, 3)).shape
     assert np.all(cube.extinction.max(axis=(0, 2, 3)) > 0)
+    store = open_partial(out, made)
+    assert store.names() == {"level-1", "unit-1"}  # so that its solving can go on
+    for name in made.pieces:
+        assert solve_piece(made, name, store)
+    assert_same(replace(publishing.finish(made, store, out, overwrite=True).solution.cube, scores={}), whole)
+    assert not partial_path(out).exists()
     begun(tmp_path / "b.zarr", made, *made.pieces)
     publish(partial_path(tmp_path / "b.zarr"))
     assert_same(replace(load(tmp_path / "b.zarr"), scores={}), whole)

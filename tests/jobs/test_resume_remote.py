@@ -12,8 +12,8 @@ from lightcube.backward.pieces import solve_piece
 from lightcube.backward.solution import merged
 from lightcube.backward.solving import run as solved
 from lightcube.errors import InputError
-from lightcube.jobs.cubes import UnfinishedCube, load, publish
 from lightcube.jobs.partial import DiskStore, begun_units, check_partial, load_job, open_partial
+from lightcube.jobs.publishing import UnfinishedCube, load, publish
 from tests.backward.test_job import LEVEL, job, same
 from tests.cli.test_cli import pressed, run
 from tests.io.test_cubes import assert_same

@@ -14,7 +14,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.stage import Stage
 from lightcube.pictures.targets import Targets
-from lightcube.planning.placement import doubtful, impossible
+from lightcube.planning.feasibility import doubtful, impossible
 from lightcube.scoring.metrics import score
 from tests.conftest import INTERPRETED
 

@@ -1,15 +1,19 @@
 """How large the pictures are made, the cube's proportions, and hold: laws, with a prediction that is a formula."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
+from lightcube.pictures.turntable import Turntable
 from lightcube.planning import plan as planning
-from lightcube.planning.plan import WIDTHS, plan, proportions
+from lightcube.planning.plan import WIDTHS, plan, plan_stage, proportions
 from lightcube.planning.prediction import Prediction
 from lightcube.scoring.metrics import GOOD_DB
 
@@ -96,7 +100,7 @@ def test_the_cube_follows_the_pictures(aspect: float, width: float, level: bool,
 
 
 def test_a_level_cube_is_as_high_as_its_pictures(formula: list[float]) -> None:
-    planned = plan(pictures(4, 30, 20), 32, elevation_deg=0.0, picture_width=0.5)
+    planned = plan(pictures(4, 30, 20), 32, turntable=Turntable(elevation_deg=0.0), picture_width=0.5)
     assert planned.targets.rig.picture_shape[0] == planned.grid.shape[0]
     assert max(planned.grid.shape) == 32
     assert max(planned.grid.size_mm) == pytest.approx(100)
@@ -113,3 +117,36 @@ def test_the_real_prediction_and_no_pictures() -> None:
     assert planned.targets.rig.views.elevations_deg[0] == 35
     with pytest.raises(InputError, match="at least two"):
         plan(Pictures((), ()), 8)
+
+
+def test_a_stage_is_told_what_the_same_turntable_is() -> None:
+    """The room of a plan written as a stage, pixel by pixel: the same prediction, hold and all."""
+    planned = plan(pictures(), 24, Recipe(hold_deg=1.0), turntable=Turntable(elevation_deg=20.0), picture_width=0.5)
+    rig, grid = planned.targets.rig, planned.grid
+    side = grid.voxel_mm
+    far = grid.size_mm[0] + grid.size_mm[2]
+    light = np.cos(np.radians(20.0)), 0.0, -np.sin(np.radians(20.0))
+    wall = Screen(
+        "wall",
+        centre_mm=(far * light[0], 0.0, far * light[2]),
+        size_mm=(rig.picture_shape[1] * side, rig.picture_shape[0] * side),
+        pitch_mm=side,
+        normal=(-1.0, 0.0, 0.0),
+    )
+    shots = tuple(Shot(name, "wall", ("lamp",), stop) for stop, name in enumerate(planned.targets.names))
+    stage = Stage(grid, (Lamp("lamp", light),), (wall,), shots, tuple(rig.stops.angle_deg.tolist()))
+    staged = plan_stage(stage, planned.pictures, "crop", planned.recipe, rig=stage.rig())
+    assert staged.prediction.is_known
+    np.testing.assert_allclose(staged.prediction.psnr, planned.prediction.psnr, atol=1e-3)
+    np.testing.assert_array_equal(staged.targets.pictures, planned.targets.pictures)
+    assert staged.impossible == staged.doubtful == []
+
+    bulb = replace(stage, lamps=(Lamp("lamp", position_mm=(-far, 0.0, 0.0)),))
+    unknown = plan_stage(bulb, planned.pictures, rig=bulb.rig()).prediction
+    assert not unknown.is_known
+    assert np.isnan([unknown.psnr_mean, unknown.psnr_min]).all()
+
+    inside = replace(stage, screens=(replace(wall, centre_mm=(0.0, 0.0, 0.0)),))
+    wrong = plan_stage(inside, planned.pictures, rig=inside.rig())
+    assert wrong.impossible
+    assert not wrong.prediction.is_known

@@ -4,7 +4,6 @@ from typing import Annotated
 
 import typer
 
-from lightcube import io
 from lightcube.cli.console import compiling, err, json_document, out
 from lightcube.cli.fields import one_by_one
 from lightcube.cli.options import JSON, PICTURES, threaded
@@ -19,14 +18,9 @@ def check(pictures: PICTURES, options: Options, as_json: Annotated[bool, JSON] =
 
     The exit code is 2 where anything on a stage is impossible.
     """
-    stage = io.is_stage(pictures)
-    if stage:
-        found = checking.of_stage(pictures, options.transfer)
-    else:
-        options = solving.settled(options)
-        read = solving.read(pictures, options)
-        with err.status("rehearsing"), compiling(as_json=as_json):
-            found = checking.of_pictures(read, options)
+    planning = solving.read(pictures, options)
+    with err.status("rehearsing"), compiling(as_json=as_json):
+        found = checking.check(planning(), advise=not options.paper)  # all that would help contradicts the paper
     if as_json:
         json_document(found.facts)
     else:
@@ -34,7 +28,5 @@ def check(pictures: PICTURES, options: Options, as_json: Annotated[bool, JSON] =
             out.print(line)
         for sentence in found.impossible:
             err.print(f"impossible: {sentence}")
-        if stage and not found.impossible:
-            out.print("nothing here is impossible")
     if found.impossible:
         raise typer.Exit(2)

@@ -13,8 +13,8 @@ from lightcube.cli.console import done, err, progress
 from lightcube.cli.fields import flag
 from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, threaded
 from lightcube.errors import InputError
-from lightcube.jobs.cubes import load
-from lightcube.verbs import playing, staging
+from lightcube.jobs.publishing import load
+from lightcube.verbs import playing, words
 
 
 @threaded
@@ -71,7 +71,7 @@ def play(
         show = playing.of_stops(loaded, target=target, whole_shadow=whole_shadow)
     else:
         show = playing.of_turn(loaded, turned, target=target, whole_shadow=whole_shadow)
-    for sentence in staging.unsampled(loaded.rig):
+    for sentence in words.unsampled(loaded.rig):
         if not as_json:
             err.print(sentence)
     with progress("playing", as_json=as_json) as advance:

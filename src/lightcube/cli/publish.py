@@ -7,7 +7,7 @@ import typer
 from lightcube.cli import printing
 from lightcube.cli.console import json_line, out
 from lightcube.cli.options import JSON, OVERWRITE
-from lightcube.jobs import cubes
+from lightcube.jobs import publishing
 from lightcube.verbs import words
 
 
@@ -17,7 +17,7 @@ def publish(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Make a cube of what there is of an unfinished one, and say whether it is whole."""
-    made = cubes.publish(partial, overwrite=overwrite)
+    made = publishing.publish(partial, overwrite=overwrite)
     if as_json:
         facts = printing.facts(made.solution) if made.is_whole else {}
         units = {"whole": made.is_whole, "units_done": made.done, "units": made.units}

@@ -10,9 +10,9 @@ from lightcube.cli import printing
 from lightcube.cli.console import json_document, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.errors import InputError
-from lightcube.jobs.cubes import load
+from lightcube.jobs.publishing import load
 from lightcube.verbs import scoring
-from lightcube.verbs.wanted import wanted_of
+from lightcube.verbs.refitting import wanted_of
 
 
 @threaded

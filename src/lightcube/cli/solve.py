@@ -15,9 +15,9 @@ from lightcube.cli.console import Stopped, compiling, done, err, json_line, list
 from lightcube.cli.fields import one_by_one
 from lightcube.cli.options import JSON, OUT, OVERWRITE, PICTURES, threaded
 from lightcube.errors import InputError
-from lightcube.jobs import cluster, cubes, running
+from lightcube.jobs import cluster, publishing, running
 from lightcube.jobs.partial import check_partial, open_partial
-from lightcube.verbs import solving, staging, words
+from lightcube.verbs import solving, words
 from lightcube.verbs.options import Options
 
 
@@ -80,7 +80,7 @@ def solve(
         )
     if which is None:
         with compiling(as_json=as_json):
-            solution = cubes.finish(job, store, output, overwrite=overwrite).solution
+            solution = publishing.finish(job, store, output, overwrite=overwrite).solution
         _solved(solution, output, time.monotonic() - began, as_json=as_json)
     else:
         done(as_json, f"unit {which} of {units} is in {store.folder}", out=str(store.folder), unit=which, units=units)
@@ -98,13 +98,9 @@ def _asked(
     pictures: str, options: Options, memory: int | None, units: int | None, *, as_json: bool
 ) -> tuple[Job, Callable[[], list[str]]]:
     """The job that `solve` is asked for, and a function that makes what is to be said of it."""
-    if io.is_stage(pictures):
-        stage, wanted = staging.read(pictures, options)
-        return staging.job(stage, wanted, options, memory=memory, units=units), lambda: staging.in_short(stage, wanted)
-    options = solving.settled(options)
-    read = solving.read(pictures, options)
+    planning = solving.read(pictures, options)
     with err.status("rehearsing"), compiling(as_json=as_json):
-        planned = solving.prepare(read, options)
+        planned = planning()
         order = solving.another_order(planned)
-    job = solving.job(planned, memory=memory, units=units)
+    job = solving.job(planned, options, memory=memory, units=units)
     return job, lambda: [*words.in_short(planned, order), *([] if options.paper else words.what_to_change(planned))]

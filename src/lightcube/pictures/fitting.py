@@ -1,4 +1,4 @@
-"""From pictures of any sizes to what is wanted on a screen: angles, cropping, resampling in linear light."""
+"""From pictures of any sizes to what is wanted on a screen: cropping, resampling in linear light."""
 
 import math
 from collections import Counter
@@ -6,24 +6,18 @@ from collections.abc import Sequence
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
-from lightcube.optics.grid import Grid, check_elevation, picture_shape
-from lightcube.optics.rig import Rig, turntable
-from lightcube.optics.tables import POWER_MAX
-from lightcube.optics.transfer import BLACK, from_uint8, to_uint8
-from lightcube.optics.views import distinct_angles, spread_angles
+from lightcube.optics.rig import Rig
+from lightcube.optics.transfer import from_uint8, to_uint8
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 
 Fit = Literal["crop", "pad", "stretch"]
 Picture = NDArray[np.float32]
-
-#: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
-RAISED = 35.0
 
 
 def check_fit(name: str) -> Fit:
@@ -32,55 +26,6 @@ def check_fit(name: str) -> Fit:
         if name == known:
             return known
     raise InputError(f"unknown fit {name!r}: use one of {', '.join(get_args(Fit))}")
-
-
-def turntable_for(
-    pictures: Pictures,
-    grid: Grid,
-    *,
-    angles_deg: ArrayLike | None = None,
-    span_deg: float | None = None,
-    elevation_deg: float | None = None,
-    picture_width: float = 1.0,
-    power: float | None = None,
-    power_max: float = POWER_MAX,
-    black: float = BLACK,
-) -> Rig:
-    """The turntable on which pictures shall be shown, each at a stop of its own, with the aspect of the first.
-
-    Parameters
-    ----------
-    angles_deg
-        Turntable angles in degrees, one per picture; default those that came with the pictures, and where
-        none did, spread evenly.
-    span_deg
-        Degrees over which angles are spread evenly, instead of those that came with the pictures.
-    elevation_deg
-        Of the lamp, in degrees; default the one that came with the pictures, else 35.
-    picture_width
-        Width of the pictures as a fraction of the cube's width; their aspect is the first picture's as closely as
-        `lightcube.optics.grid.picture_shape` can.
-    power, power_max, black
-        Of the lamp and the screen, as `lightcube.turntable` takes them.
-
-    Raises
-    ------
-    InputError
-        Where there are fewer than two pictures, the angles do not fit, or they would be wider than
-        the cube's screen.
-    """
-    if len(pictures) < 2:
-        raise InputError(
-            f"{len(pictures)} picture{'s' if not pictures.images else ''} cannot fill a cube: give at least two"
-        )
-    lamp = elevation_deg if elevation_deg is not None else pictures.elevation_deg
-    lamp = check_elevation(RAISED if lamp is None else lamp)
-    turned = _angles(pictures, angles_deg, span_deg, lamp)
-    rows, columns = pictures.images[0].shape[:2]
-    shape = picture_shape(grid, picture_width, columns / rows, lamp)
-    return turntable(
-        grid, turned, elevation_deg=lamp, picture_shape=shape, power=power, power_max=power_max, black=black
-    )
 
 
 def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Targets:
@@ -116,7 +61,7 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
     return Targets(fitted, rig, weights, pictures.names, pictures.transfer)
 
 
-def fit_report(pictures: Pictures, targets: Targets, fit: Fit = "crop") -> str:
+def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] = "crop") -> str:
     """Say in one line, without a full stop, what `fit` did to the pictures; sizes are width x height."""
     target = targets.rig.picture_shape
     sizes = Counter((image.shape[0], image.shape[1]) for image in pictures.images)
@@ -126,7 +71,9 @@ def fit_report(pictures: Pictures, targets: Targets, fit: Fit = "crop") -> str:
         return f"{count} of {_size(target)}, not resampled"
     rows, columns = target
     other_aspect = any(size[0] * columns != size[1] * rows for size in sizes)
-    done = {"crop": "cropped", "pad": "padded", "stretch": "stretched"}[check_fit(fit)] if other_aspect else "scaled"
+    words = {"crop": "cropped", "pad": "padded", "stretch": "stretched"}
+    did = {words[check_fit(way)] for way in ([ways] if isinstance(ways, str) else ways)} if other_aspect else {"scaled"}
+    done = " or ".join(sorted(did))
     others = len(sizes) - 1
     more = f" and {others} other size{'s' if others > 1 else ''}" if others else ""
     rule = f", the aspect of {pictures.names[0]}" if other_aspect else ""
@@ -155,22 +102,6 @@ def targets_of(cube: Cube) -> Targets:
     pictures = from_uint8(cube.targets[..., :-1], cube.transfer)
     weights = cube.targets[..., -1].astype(np.float32) / np.float32(255)
     return Targets(pictures, cube.rig, weights, cube.names, cube.transfer)
-
-
-def _angles(
-    pictures: Pictures, angles_deg: ArrayLike | None, span_deg: float | None, elevation_deg: float
-) -> NDArray[np.float64]:
-    """One angle per picture: those asked for, else those that came along, else spread evenly."""
-    if angles_deg is not None and span_deg is not None:
-        raise InputError("angles and a span of angles are both given: use one of the two")
-    if angles_deg is None and span_deg is None:
-        angles_deg = pictures.angles_deg
-    if angles_deg is None:
-        return distinct_angles(spread_angles(len(pictures), span_deg, elevation_deg=elevation_deg))
-    chosen = distinct_angles(angles_deg)
-    if len(chosen) != len(pictures):
-        raise InputError(f"{len(chosen)} angles for {len(pictures)} pictures: give one angle per picture")
-    return chosen
 
 
 def _source_box(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[float, float, float, float]:

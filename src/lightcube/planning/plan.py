@@ -3,21 +3,24 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
-
-from numpy.typing import ArrayLike
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
 
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, dense_step_deg
-from lightcube.optics.tables import POWER_MAX
-from lightcube.optics.transfer import BLACK
+from lightcube.optics.rig import Rig
+from lightcube.optics.stage import Stage
 from lightcube.pictures.arranging import spread_over_screen
-from lightcube.pictures.fitting import RAISED, Fit, turntable_for
+from lightcube.pictures.fitting import Fit
 from lightcube.pictures.fitting import fit as fitted
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
+from lightcube.pictures.turntable import Turntable
+from lightcube.planning.feasibility import doubtful, impossible
+from lightcube.planning.measured import is_measured
 from lightcube.planning.prediction import Prediction, predict
+from lightcube.planning.reachable import sentences
 from lightcube.scoring.metrics import GOOD_DB
 
 if TYPE_CHECKING:
@@ -45,26 +48,39 @@ class Plan:
     targets, grid, recipe
         The pictures, fitted and where they shall stand, the cube, and how it is solved.
     fit
-        What happened to pictures of another aspect.
+        What happened to pictures of another aspect, of all or of each.
     prediction
-        What to expect.
+        What to expect; it is not known of all rooms (`lightcube.planning.measured`).
     shift
         By how many pixels at most pictures stand higher, lower or aside.
     order
         Which picture stands at which stop; None = as given.
+    stage
+        The description of the room, where there is one.
     """
 
     pictures: Pictures
     targets: Targets
     grid: Grid
     recipe: Recipe
-    fit: Fit
+    fit: Fit | tuple[Fit, ...]
     prediction: Prediction
     shift: int = 0
     order: "Order | None" = None
+    stage: Stage | None = None
 
     def __repr__(self) -> str:
         return f"<plan of {self.targets!r} for {self.grid!r}: {self.prediction!r}>"
+
+    @cached_property
+    def impossible(self) -> list[str]:
+        """What cannot be in the room, a sentence each."""
+        return [] if self.stage is None else impossible(self.stage)
+
+    @cached_property
+    def doubtful(self) -> list[str]:
+        """What is probably not meant, and which pictures are out of reach, a sentence each."""
+        return [*([] if self.stage is None else doubtful(self.stage)), *sentences(self.targets)]
 
     def to_solve(self, targets: Targets) -> "Plan":
         """The same plan for targets that stand, or follow each other, in another way: predicted anew."""
@@ -79,12 +95,7 @@ def plan(
     size_mm: float = 100.0,
     shape: tuple[int, int, int] | None = None,
     picture_width: float | None = None,
-    angles_deg: ArrayLike | None = None,
-    span_deg: float | None = None,
-    elevation_deg: float | None = None,
-    power: float | None = None,
-    power_max: float = POWER_MAX,
-    black: float = BLACK,
+    turntable: Turntable | None = None,
     fit: Fit = "crop",
     longest_hold: bool = False,
     shift: int = 0,
@@ -106,8 +117,8 @@ def plan(
     picture_width
         Width of the pictures as a fraction of the cube's; default the largest in `WIDTHS` with a predicted mean PSNR
         of at least 40 dB, or the smallest.
-    angles_deg, span_deg, elevation_deg, power, power_max, black
-        As `lightcube.pictures.fitting.turntable_for` takes them.
+    turntable
+        Angles, lamp and screen, as far as they are said; None = ``Turntable()``.
     fit
         What happens to pictures of another aspect, as `lightcube.fit` takes it.
     longest_hold
@@ -130,32 +141,11 @@ def plan(
             f"a cube of {n} voxels with pictures {picture_width} of its width: give at least 1 voxel, and a width "
             "above 0 and at most 1.41"
         )
-    asked = recipe or Recipe()
-    lamp: dict[str, Any] = {"power": power, "power_max": power_max, "black": black}
-    rows, columns = pictures.images[0].shape[:2]
-    height = pictures.elevation_deg if elevation_deg is None else elevation_deg
-    level = (RAISED if height is None else height) == 0
-
-    def at(width: float) -> tuple[Targets, Grid]:
-        voxels = shape or proportions(n, columns / rows, width, level=level)
-        while True:
-            grid = Grid(voxels, size_mm / max(voxels))
-            rig = turntable_for(
-                pictures,
-                grid,
-                angles_deg=angles_deg,
-                span_deg=span_deg,
-                elevation_deg=elevation_deg,
-                picture_width=width,
-                **lamp,
-            )
-            high = rig.picture_shape[0]
-            if shape is not None or not level or high == voxels[0] or max(voxels[1:]) < n:
-                return fitted(pictures, rig, fit), grid
-            voxels = (high, *voxels[1:])  # no slices above and below the pictures
+    asked, table = recipe or Recipe(), turntable or Turntable()
 
     def predicted(width: float) -> Plan:
-        targets, grid = at(width)
+        grid, rig = _cube_for(pictures, shape or n, size_mm, table, width)
+        targets = fitted(pictures, rig, fit)
         return Plan(pictures, targets, grid, asked, fit, predict(targets, grid, asked))
 
     best = _widest(predicted) if picture_width is None else predicted(picture_width)
@@ -168,6 +158,42 @@ def plan(
         found = best_order(best.targets, best.grid, best.recipe)
         best = replace(best, order=found).to_solve(found(best.targets))
     return best
+
+
+def plan_stage(
+    stage: Stage, pictures: Pictures, ways: Fit | tuple[Fit, ...] = "crop", recipe: Recipe | None = None, *, rig: Rig
+) -> Plan:
+    """The plan of a room that says all there is, so that nothing is chosen.
+
+    Parameters
+    ----------
+    stage, pictures, ways
+        As `lightcube.read_stage` gives them.
+    recipe
+        How it will be solved; None = ``Recipe()``.
+    rig
+        The stage's, or that with samples of its lamps and pixels.
+    """
+    asked, targets = recipe or Recipe(), fitted(pictures, rig, ways)
+    told = is_measured(rig) and not impossible(stage)
+    prediction = predict(targets, stage.grid, asked) if told else Prediction.unknown(len(targets))
+    return Plan(pictures, targets, stage.grid, asked, ways, prediction, stage=stage)
+
+
+def _cube_for(
+    pictures: Pictures, size: int | tuple[int, int, int], size_mm: float, turntable: Turntable, width: float
+) -> tuple[Grid, Rig]:
+    """A cube of a shape, or of so many voxels, for pictures of a width, and the rig that shows them."""
+    rows, columns = pictures.images[0].shape[:2]
+    level = turntable.elevation_of(pictures) == 0
+    voxels = proportions(size, columns / rows, width, level=level) if isinstance(size, int) else size
+    while True:
+        grid = Grid(voxels, size_mm / max(voxels))
+        rig = turntable.rig(pictures, grid, picture_width=width)
+        high = rig.picture_shape[0]
+        if not isinstance(size, int) or not level or high == voxels[0] or max(voxels[1:]) < size:
+            return grid, rig
+        voxels = (high, *voxels[1:])  # no slices above and below the pictures
 
 
 def spread(planned: Plan, targets: Targets, shift: int) -> Targets:
@@ -221,13 +247,8 @@ def held_longest(without: Plan) -> Plan:
 def narrower(planned: Plan, width: float) -> Targets:
     """The targets of a plan as they would be at another width, at the same stops."""
     rig = planned.targets.rig
-    narrow = turntable_for(
-        planned.pictures,
-        planned.grid,
-        angles_deg=rig.stops.angle_deg,
-        elevation_deg=rig.elevation_deg,
-        picture_width=width,
-    )
+    said = Turntable(angles_deg=rig.stops.angle_deg, elevation_deg=rig.elevation_deg)
+    narrow = said.rig(planned.pictures, planned.grid, picture_width=width)
     targets = fitted(planned.pictures, replace(narrow, lamps=rig.lamps, screens=rig.screens), planned.fit)
     if planned.shift:
         targets = spread(planned, targets, planned.shift)

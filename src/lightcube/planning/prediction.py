@@ -62,26 +62,38 @@ class Prediction:
     Parameters
     ----------
     psnr
-        ``(views,)``, in the order of the targets, 0 to 100.
+        ``(views,)``, in the order of the targets, 0 to 100; NaN where nobody knows.
     rehearsed
-        Width in voxels of the small cube.
+        Width in voxels of the small cube; 0 where there was none.
     """
 
     psnr: Array
     rehearsed: int
 
+    @classmethod
+    def unknown(cls, views: int) -> "Prediction":
+        """What is told of a room in which nothing was measured."""
+        return cls(np.full(views, np.nan), 0)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether anything is told."""
+        return self.rehearsed > 0
+
     def __repr__(self) -> str:
+        if not self.is_known:
+            return f"<who knows what is to be expected of {len(self.psnr)} pictures>"
         return f"<{self.psnr_mean:.1f} dB expected, {self.psnr_min:.1f} dB of the worst of {len(self.psnr)} pictures>"
 
     @property
     def psnr_mean(self) -> float:
-        """Mean over the pictures, dB, at most 50."""
-        return min(float(np.mean(self.psnr)), MOST_DB)
+        """Mean over the pictures, dB, at most 50; NaN where it is not known."""
+        return min(float(np.mean(self.psnr)), MOST_DB) if self.is_known else math.nan
 
     @property
     def psnr_min(self) -> float:
-        """The worst picture's, dB, at most 50."""
-        return min(float(np.min(self.psnr)), MOST_DB)
+        """The worst picture's, dB, at most 50; NaN where it is not known."""
+        return min(float(np.min(self.psnr)), MOST_DB) if self.is_known else math.nan
 
 
 def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Prediction:
@@ -212,7 +224,9 @@ def _ranked(values: Array, ascending: NDArray[np.float32]) -> Array:
     return result
 
 
-def as_json(prediction: Prediction) -> dict[str, Any]:
-    """A prediction for JSON."""
+def as_json(prediction: Prediction) -> dict[str, Any] | None:
+    """A prediction for JSON, None where nothing is known."""
+    if not prediction.is_known:
+        return None
     each = [round(float(value), 2) for value in prediction.psnr]
     return {"psnr_mean": prediction.psnr_mean, "psnr_min": prediction.psnr_min, "views": each}

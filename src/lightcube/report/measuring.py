@@ -15,7 +15,7 @@ from lightcube.optics.stage import Stage
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets
 from lightcube.planning.consistency import advice, check
-from lightcube.planning.placement import doubtful
+from lightcube.planning.feasibility import doubtful
 from lightcube.planning.reachable import sentences
 from lightcube.scoring.between import Curve, curve
 from lightcube.scoring.metrics import check_same_views, score_pictures

@@ -11,7 +11,7 @@ from lightcube.drawing import charts
 from lightcube.drawing.stage import drawing
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES
-from lightcube.planning.placement import facts
+from lightcube.planning.feasibility import facts
 from lightcube.planning.prediction import MOST_DB
 from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
 from lightcube.report.measuring import EXACT, Findings

@@ -3,13 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from lightcube import io
-from lightcube.optics.transfer import Transfer
-from lightcube.pictures.pictures import Pictures
-from lightcube.planning.placement import doubtful, facts, impossible
-from lightcube.planning.reachable import sentences
-from lightcube.verbs import solving, staging, words
-from lightcube.verbs.options import Options
+from lightcube.planning.plan import Plan
+from lightcube.verbs import solving, words
 
 
 @dataclass(frozen=True)
@@ -31,19 +26,11 @@ class Checked:
     impossible: list[str]
 
 
-def of_pictures(pictures: Pictures, options: Options) -> Checked:
-    """What contradicts itself, how full the cube is, how good it will be, what would help; `options` are settled."""
-    planned = solving.prepare(pictures, options)
+def check(planned: Plan, *, advise: bool = True) -> Checked:
+    """What contradicts itself or cannot be, how full the cube is, how good it will be, what would help if asked."""
     order = solving.another_order(planned)
-    advice = [] if options.paper else words.what_to_change(planned)  # all that would help contradicts it
-    known = words.facts(planned, order)
-    lines = [*words.in_short(planned, order), "", *words.table(known), "", *advice]
-    return Checked({**known, "advice": advice}, lines, [])
-
-
-def of_stage(path: str, transfer: Transfer) -> Checked:
-    """What is impossible on a stage, or probably not meant."""
-    stage, targets = io.read_stage_targets(path, transfer=transfer)
-    wrong, odd = impossible(stage), [*doubtful(stage), *sentences(targets)]
-    known = {**facts(stage), "impossible": wrong, "doubtful": odd}
-    return Checked(known, [*staging.table(stage), "", *odd], wrong)
+    advice = words.what_to_change(planned) if advise else []
+    lines = [*words.in_short(planned, order), "", *words.table(planned), "", *advice]
+    if planned.stage is not None and not planned.impossible:
+        lines.append("nothing here is impossible")
+    return Checked({**words.facts(planned, order), "advice": advice}, lines, planned.impossible)

@@ -1,6 +1,6 @@
 """What may be said of a cube before it is solved."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from lightcube.optics.material import Material
 from lightcube.optics.tables import power_bounds
 from lightcube.optics.transfer import Transfer
 from lightcube.pictures.fitting import Fit
+from lightcube.pictures.turntable import Turntable
 from lightcube.planning.plan import Arrangement
 from lightcube.solvers import METHODS
 
@@ -87,24 +88,47 @@ class Options:
         return nz, ny, nx
 
     @property
-    def lamp(self) -> dict[str, float]:
-        """Power of a turntable's lamp and black of its screen as `lightcube.plan` takes them, where they are said.
+    def turntable(self) -> Turntable:
+        """The turntable as far as it is said; `InputError` where options contradict each other.
 
-        Methods that cannot choose powers take 1 where nothing is. `InputError` where options contradict each other.
+        The lamp of methods that cannot choose powers has 1 where nothing is said.
         """
         if self.lamp_power is not None and self.lamp_max is not None:
             raise InputError("a lamp of one given power has no largest one: leave --lamp-power or --lamp-max out")
         if self.lamp_power is not None and self.powers not in (None, "per-picture"):
             raise InputError(f"a lamp of one given power has none that are {self.powers}: leave out one of the two")
-        if not self.recipe.solver.chooses_lamps and self.lamp_max is not None:
+        chooses = self.recipe.solver.chooses_lamps
+        if not chooses and self.lamp_max is not None:
             raise InputError(
                 f"method {self.method} cannot choose lamp powers: give --lamp-power, or use method display"
             )
         power_bounds(self.lamp_power, self.lamp_max)
-        said = {"power": self.lamp_power, "power_max": self.lamp_max, "black": self.black}
-        if not self.recipe.solver.chooses_lamps:
-            said["power"] = self.lamp_power or 1.0
-        return {name: value for name, value in said.items() if value is not None}
+        power = self.lamp_power if chooses or self.lamp_power is not None else 1.0
+        said = {"angles_deg": self.angles_deg, "power": power, "power_max": self.lamp_max, "black": self.black}
+        said |= {"span_deg": self.span_deg, "elevation_deg": self.elevation_deg}
+        return Turntable(**{name: value for name, value in said.items() if value is not None})  # type: ignore[arg-type]
+
+    def as_in_the_paper(self) -> "Options":
+        """The paper's own set-up; `InputError` where options contradict it."""
+        said = {
+            "--picture-width": self.picture_width,
+            "--angles-deg": self.angles_deg,
+            "--span-deg": self.span_deg,
+            "--elevation-deg": self.elevation_deg,
+            "--powers": self.powers,
+            "--lamp-power": self.lamp_power,
+            "--lamp-max": self.lamp_max,
+            "--hold-deg": self.hold_deg,
+            "--shift": self.shift or None,
+        }
+        contradiction = [name for name, value in said.items() if value is not None]
+        if contradiction:
+            raise InputError(
+                f"--paper says what {contradiction[0]} says too (lamp level and of power 1, half a turn, pictures as "
+                "wide as the cube, no hold): leave out one of the two"
+            )
+        level = replace(self, elevation_deg=0.0, span_deg=180.0, hold_deg=0.0, lamp_power=1.0, picture_width=1.0)
+        return replace(level, shape=self.voxels, n=None)
 
     @property
     def recipe(self) -> Recipe:

@@ -9,8 +9,8 @@ from lightcube.events import Tell, counting
 from lightcube.optics.cube import Cube
 from lightcube.report.measuring import Findings, measure
 from lightcube.report.page import page
+from lightcube.verbs.refitting import wanted_of
 from lightcube.verbs.reproducing import origins, reproducing
-from lightcube.verbs.wanted import wanted_of
 
 
 @dataclass(frozen=True, eq=False)

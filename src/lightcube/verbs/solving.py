@@ -1,6 +1,8 @@
-"""What `check` and `solve` share: from the options of the command line to a plan, and what is said of it."""
+"""What `check` and `solve` share: from pictures or a stage, and options, to a plan and a job."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from lightcube import io
@@ -11,10 +13,8 @@ from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.jobs.partial import begun_units
 from lightcube.optics.grid import Grid
-from lightcube.pictures.pictures import Pictures
-from lightcube.planning.plan import Plan, plan
+from lightcube.planning.plan import Plan, plan, plan_stage
 from lightcube.planning.prediction import as_json
-from lightcube.solvers import find_method
 from lightcube.verbs.options import Options
 
 if TYPE_CHECKING:
@@ -24,64 +24,52 @@ if TYPE_CHECKING:
 _QUICK = 40
 
 
-def settled(options: Options) -> Options:
-    """Fill in the paper's own set-up; `InputError` where options contradict it or each other."""
-    if options.paper:
-        options = _as_in_the_paper(options)
+#: Options that a stage file leaves no room for.
+_SAID_BY_STAGE = (
+    *("n", "shape", "size_mm", "picture_width", "fit", "angles_deg", "span_deg", "elevation_deg", "paper", "order"),
+    *("shift", "lamp_power", "lamp_max", "black"),
+)
+
+
+def read(source: str, options: Options) -> Callable[[], Plan]:
+    """Read a stage, or pictures for a turntable; what is returned plans the cube, which takes a while.
+
+    Raises
+    ------
+    InputError
+        For all that is said and cannot be; planning, too, for what is found only then.
+    """
+    return _read_stage(source, options) if io.is_stage(source) else _read_pictures(source, options)
+
+
+def _read_stage(source: str, options: Options) -> Callable[[], Plan]:
+    """Read a stage file, which says all there is."""
+    recipe, nothing = options.recipe, Options()
+    for name in _SAID_BY_STAGE:
+        if getattr(options, name) != getattr(nothing, name):
+            option = name.replace("_", "-")
+            raise InputError(f"--{option} is not for a stage, and {source} is one that says all there is: leave it out")
+    stage, pictures, ways = io.read_stage(source, transfer=options.transfer)
+    rig = stage.rig().sampled(lamp=options.lamp_samples, pixel=options.pixel_samples)
+    return partial(plan_stage, stage, pictures, ways, recipe, rig=rig)
+
+
+def _read_pictures(source: str, options: Options) -> Callable[[], Plan]:
+    """Read pictures, which become as wide and are held as long as is good for them where nothing else is said."""
+    options = options.as_in_the_paper() if options.paper else options
     if max(options.lamp_samples, options.pixel_samples) > 1:
         raise InputError("--lamp-samples and --pixel-samples are for a stage: describe lamp and screen in a stage file")
-    _ = options.lamp  # refuses what cannot be
-    return options
-
-
-def _as_in_the_paper(options: Options) -> Options:
-    said = {
-        "--picture-width": options.picture_width,
-        "--angles-deg": options.angles_deg,
-        "--span-deg": options.span_deg,
-        "--elevation-deg": options.elevation_deg,
-        "--powers": options.powers,
-        "--lamp-power": options.lamp_power,
-        "--lamp-max": options.lamp_max,
-        "--hold-deg": options.hold_deg,
-        "--shift": options.shift or None,
-    }
-    contradiction = [name for name, value in said.items() if value is not None]
-    if contradiction:
-        raise InputError(
-            f"--paper says what {contradiction[0]} says too (lamp level and of power 1, half a turn, pictures as wide "
-            "as the cube, no hold): leave out one of the two"
-        )
-    white: dict[str, Any] = {
-        "elevation_deg": 0.0,
-        "span_deg": 180.0,
-        "picture_width": 1.0,
-        "lamp_power": 1.0,
-        "hold_deg": 0.0,
-    }
-    return replace(options, **white, shape=options.voxels, n=None)
-
-
-def read(path: str, options: Options) -> Pictures:
-    """Read the pictures, for options that are settled; `InputError` where they or the cube cannot be."""
-    check_memory(memory_needed(find_method(options.method), Grid(options.voxels), (1, 1), 1, units=3))
-    return io.read_pictures(path, transfer=options.transfer)
-
-
-def prepare(pictures: Pictures, options: Options) -> Plan:
-    """Plan the cube, for options that are settled; `InputError` for all that cannot be."""
-    shape, recipe = options.voxels, options.recipe
-    return plan(
-        pictures,
+    recipe, shape, turntable = options.recipe, options.voxels, options.turntable
+    check_memory(memory_needed(recipe.solver, Grid(shape), (1, 1), 1, units=3))
+    return partial(
+        plan,
+        io.read_pictures(source, transfer=options.transfer),
         max(shape),
         recipe,
         size_mm=options.size_mm,
         shape=None if options.shape is None else shape,
         picture_width=options.picture_width,
-        angles_deg=options.angles_deg,
-        span_deg=options.span_deg,
-        elevation_deg=options.elevation_deg,
-        **options.lamp,
+        turntable=turntable,
         fit=options.fit,
         longest_hold=options.hold_deg is None and recipe.solver.chooses_lamps,
         shift=options.shift,
@@ -90,34 +78,46 @@ def prepare(pictures: Pictures, options: Options) -> Plan:
 
 
 def another_order(planned: Plan) -> "Order | None":
-    """The best order of a plan: its own, or one that is looked for where that does not take long."""
-    if planned.order is not None or len(planned.pictures) > _QUICK:
+    """The best order of a plan: its own, or one that is looked for where that does not take long; none of a stage."""
+    if planned.order is not None or planned.stage is not None or len(planned.pictures) > _QUICK:
         return planned.order
     from lightcube.planning.order import best_order  # here: the compiler comes with it
 
     return best_order(planned.targets, planned.grid, planned.recipe)
 
 
-def job(planned: Plan, *, memory: int | None = None, units: int | None = None) -> Job:
-    """Settle all that decides the cube; `InputError` where it does not fit into `memory` bytes."""
-    provenance: dict[str, Any] = {"fit": planned.fit, "predicted": as_json(planned.prediction)}
-    if planned.shift:
-        provenance["shift"] = planned.shift
-    if planned.order is not None:
-        provenance["order"] = [int(picture) for picture in planned.order.pictures]
+def job(planned: Plan, options: Options, *, memory: int | None = None, units: int | None = None) -> Job:
+    """Settle all that decides the cube; `InputError` where it cannot be, or does not fit into `memory` bytes."""
+    if planned.impossible:
+        raise InputError(f"on this stage {planned.impossible[0]}")
+    provenance = {**_origin(planned), **_samples(options)}
     made = make_job(planned.targets, planned.grid, planned.recipe, units=units, memory=memory, provenance=provenance)
     needed = job_memory(made)
     if memory is not None and needed > memory:
-        raise too_much(needed, memory)
+        raise InputError(
+            f"this needs {needed / 1e9:.3g} GB of memory at least, more than --memory {memory / 1e9:.3g}GB allows: "
+            "allow more, or use a smaller cube, or fewer or smaller pictures"
+        )
     return made
 
 
-def too_much(needed: int, memory: int) -> InputError:
-    """The error of a job that needs more bytes than --memory allows."""
-    return InputError(
-        f"this needs {needed / 1e9:.3g} GB of memory at least, more than --memory {memory / 1e9:.3g}GB allows: "
-        "allow more, or use a smaller cube, or fewer or smaller pictures"
-    )
+def _origin(planned: Plan) -> dict[str, Any]:
+    """What a cube remembers of its plan."""
+    known: dict[str, Any] = {}
+    if planned.stage is None:
+        known["fit"] = planned.fit
+    if planned.prediction.is_known:
+        known["predicted"] = as_json(planned.prediction)
+    if planned.shift:
+        known["shift"] = planned.shift
+    if planned.order is not None:
+        known["order"] = [int(picture) for picture in planned.order.pictures]
+    return known
+
+
+def _samples(options: Options) -> dict[str, int]:
+    """How finely lamps and pixels were sampled, where they were."""
+    return {name: value for name in ("lamp_samples", "pixel_samples") if (value := getattr(options, name)) > 1}
 
 
 def divided(made: Job, output: str, workers: int, memory: int | None = None) -> Job:

@@ -6,11 +6,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lightcube.backward.problem import held
-from lightcube.jobs.cubes import Published
+from lightcube.jobs.publishing import Published
+from lightcube.optics.rig import Rig
+from lightcube.optics.stage import Stage
 from lightcube.optics.tables import POWER_MOST
 from lightcube.pictures.fitting import fit_report
 from lightcube.pictures.targets import Targets
+from lightcube.planning import feasibility
 from lightcube.planning.consistency import advice, check
+from lightcube.planning.measured import is_measured
 from lightcube.planning.plan import Plan, narrower
 from lightcube.planning.prediction import as_json, predict
 
@@ -21,8 +25,13 @@ if TYPE_CHECKING:
 POOR_DB = 25.0
 
 
-def table(facts: dict[str, Any]) -> list[str]:
-    """Facts as aligned lines: how full the cube is, and what contradicts itself."""
+def table(planned: Plan) -> list[str]:
+    """Aligned lines: how full the cube is, what contradicts itself, and where all stands on a stage."""
+    full = _contradictions(check(planned.targets, planned.grid)) if is_measured(planned.targets.rig) else []
+    return full if planned.stage is None else [*full, *([""] if full else []), *_places(planned.stage)]
+
+
+def _contradictions(facts: dict[str, Any]) -> list[str]:
     totals = facts["moments"]
     off = f"{totals['across']:.1%} of the width" + f", {totals['down']:.1%} of the height" * (
         facts["elevation_deg"] != 0
@@ -40,44 +49,81 @@ def table(facts: dict[str, Any]) -> list[str]:
     return [f"{name:<16}{value}" for name, value in rows.items()]
 
 
+def _places(stage: Stage) -> list[str]:
+    """A line for each picture of a stage."""
+    heads = f"{'picture':>20} {'screen':>12} {'stop':>5} {'angle':>8} {'pixels':>11} {'through cube':>13}"
+    lines = [f"{heads} {'voxels a pixel':>15}  lamps"]
+    for each in feasibility.facts(stage)["per_picture"]:
+        where = f"{each['name'][:20]:>20} {each['screen'][:12]:>12} {each['stop']:>5} {each['angle_deg']:>8.2f}"
+        seen = f"{each['beams_in_cube']:>13.0%} {each['pixel_in_voxels']:>15.2f}"
+        lines.append(f"{where} {each['columns']:>4} x {each['rows']:<4} {seen}  {', '.join(each['lamps'])}")
+    return lines
+
+
 def facts(planned: Plan, order: "Order | None") -> dict[str, Any]:
     """What can be known before solving, for JSON; `order` is the best one, if it was looked for."""
-    found = check(planned.targets, planned.grid)
-    return {
-        "names": list(planned.targets.names),
-        "angles_deg": [float(angle_deg) for angle_deg in planned.targets.angles_deg],
+    targets = planned.targets
+    known: dict[str, Any] = {
+        "names": list(targets.names),
+        "angles_deg": [float(angle_deg) for angle_deg in targets.angles_deg],
         "voxels": list(planned.grid.shape),
-        "picture_width": planned.targets.rig.picture_shape[1] / planned.grid.shape[1],
+        "picture_width": targets.rig.picture_shape[1] / planned.grid.shape[1],
         "hold_deg": planned.recipe.hold_deg,
-        **found,
         "predicted": as_json(planned.prediction),
         "shift": planned.shift,
         "order": None
         if order is None
         else {"best": [int(picture) for picture in order.pictures], "gain_db": order.best_db - order.given_db},
+        "impossible": planned.impossible,
+        "doubtful": planned.doubtful,
     }
+    if is_measured(targets.rig):
+        known |= check(targets, planned.grid)
+    return known if planned.stage is None else known | feasibility.facts(planned.stage)
 
 
 def in_short(planned: Plan, order: "Order | None") -> list[str]:
     """Lines that `solve` says before it starts; `order` is the best one, if it was looked for."""
     nz, ny, nx = planned.grid.shape
     hold_deg = planned.recipe.hold_deg
-    lines = [
-        fit_report(planned.pictures, planned.targets, planned.fit),
-        f"cube of {nx} x {ny} x {nz} voxels, {expected(planned)}"
-        + " by method display" * (planned.recipe.method != "display"),
-    ]
+    lines = [_wanted(planned), f"cube of {nx} x {ny} x {nz} voxels{expected(planned)}"]
     if hold_deg:
-        angles_deg = len(held(planned.targets.rig, planned.recipe, planned.grid)) // len(planned.targets)
-        lines.append(f"held {hold_deg:g} degrees either way: {angles_deg} angles a picture, and as many times the work")
-    return lines + gain(planned, order)
+        angles = len(held(planned.targets.rig, planned.recipe, planned.grid)) // len(planned.targets)
+        lines.append(f"held {hold_deg:g} degrees either way: {angles} angles a picture, and as many times the work")
+    return [*lines, *gain(planned, order), *planned.doubtful, *unsampled(planned.targets.rig)]
+
+
+def _wanted(planned: Plan) -> str:
+    """What happens to the pictures; in a room that is described, on how many screens they are, and so on."""
+    if planned.stage is None:
+        return fit_report(planned.pictures, planned.targets, planned.fit)
+    rig = planned.targets.rig
+    counts = {
+        "picture": len(rig),
+        "screen": len(rig.screens.names),
+        "lamp": len(rig.lamps.names),
+        "stop": len(planned.stage.stops_deg),
+    }
+    views = f", {len(rig.views)} views" if len(rig.views) != len(rig) else ""
+    return ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items()) + views
+
+
+def unsampled(rig: Rig) -> list[str]:
+    """A sentence where lamps have a size that is not minded."""
+    if not np.any(rig.sums.disc_deg):
+        return []
+    names = dict.fromkeys(rig.lamps.names[lamp] for lamp in rig.sums.lamp[rig.sums.disc_deg > 0])
+    return [f"the size of lamp {', '.join(map(repr, names))} is not minded: --lamp-samples 16 does"]
 
 
 def expected(planned: Plan) -> str:
-    """What is predicted, in words."""
+    """What is predicted, in words that go on with a sentence."""
     prediction = planned.prediction
+    if not prediction.is_known:
+        return "" if planned.impossible else "; how good they become was not measured in rooms like this"
     more = " or more" if prediction.psnr_mean >= 50 else ""
-    return f"PSNR of {prediction.psnr_mean:.0f} dB{more} expected (worst {prediction.psnr_min:.0f})"
+    by = " by method display" * (planned.recipe.method != "display")
+    return f", PSNR of {prediction.psnr_mean:.0f} dB{more} expected (worst {prediction.psnr_min:.0f}){by}"
 
 
 def gain(planned: Plan, order: "Order | None") -> list[str]:
@@ -92,10 +138,12 @@ def gain(planned: Plan, order: "Order | None") -> list[str]:
 
 def what_to_change(planned: Plan) -> list[str]:
     """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much."""
+    if not planned.prediction.is_known:
+        return []
     found = advice(check(planned.targets, planned.grid))
     if planned.prediction.psnr_mean >= POOR_DB:
         return [sentence for sentence in found if not sentence.startswith("The load")]
-    return [*found, *_remedies(planned)]
+    return [*found, *(_remedies(planned) if planned.stage is None else [])]
 
 
 def _remedies(planned: Plan) -> list[str]:
@@ -130,7 +178,7 @@ def needed(needs: dict[str, Any]) -> str:
 
 def holds(made: Published) -> str:
     """How much of a published cube is finished, and what the rest is."""
-    rest = "the rest is as far as it was solved, or what it would start from"
+    rest = "the rest is as far as it was solved, or what it would start from; solve --overwrite goes on with it"
     return f"{made.path} holds {made.done} of {made.units} units, {rest}"
 
 

@@ -87,8 +87,8 @@ class Published:
 def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
     """Make a cube of what there is of ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``).
 
-    It is saved as NAME, as `load` puts it together: scored where all is finished, with the status ``"interrupted"``
-    where not. Then the partial folder is removed.
+    It is saved as NAME, as `load` puts it together. Where all is finished it is scored, and the partial folder is
+    removed; where not its status is ``"interrupted"``, and the folder stays, so that its solving can go on.
 
     Raises
     ------
@@ -103,13 +103,14 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
 
 
 def finish(job: Job, store: DiskStore, out: str | Path, *, overwrite: bool = False) -> Published:
-    """Save what a store has of the job of a cube, scored where that is all, and remove the cube's partial folder."""
+    """Save what a store has of the job of a cube; where that is all it is scored, and the partial folder removed."""
     solution = merged(job, store)
     done = len(store.names().intersection(job.unit_names))
     if done == job.units:
         scored = replace(solution.cube, scores=metrics.score(solution.cube, job.targets))
         solution = replace(solution, cube=scored)
-    at = place(out)
-    Output(at, "cube", overwrite).write(solution.cube)
-    discard_partial(at)
-    return Published(at, solution, done, job.units)
+    made = Published(place(out), solution, done, job.units)
+    Output(made.path, "cube", overwrite).write(solution.cube)
+    if made.is_whole:
+        discard_partial(made.path)
+    return made

@@ -10,7 +10,7 @@ import pytest
 
 from lightcube.optics.grid import Grid
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
-from lightcube.planning.placement import doubtful, facts, impossible
+from lightcube.planning.feasibility import doubtful, facts, impossible
 from lightcube.projection.projector import Projector
 
 SHAPES = [(3, 5, 7), (6, 4, 5)]

@@ -1,0 +1,101 @@
+"""What is said of a turntable before its pictures and its cube are known."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lightcube.errors import InputError
+from lightcube.optics.grid import Grid, check_elevation, picture_shape
+from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.tables import POWER_MAX
+from lightcube.optics.transfer import BLACK
+from lightcube.optics.views import distinct_angles, spread_angles
+from lightcube.pictures.pictures import Pictures
+
+#: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
+RAISED_DEG = 35.0
+
+
+@dataclass(frozen=True, eq=False)
+class Turntable:
+    """A turntable, as far as it is said; the rest is as its pictures say, or as usual.
+
+    Parameters
+    ----------
+    angles_deg
+        Turntable angles in degrees, one per picture; default those that came with the pictures, and where none did,
+        spread evenly.
+    span_deg
+        Degrees over which angles are spread evenly, instead of those that came with the pictures.
+    elevation_deg
+        Of the lamp, in degrees; default the one that came with the pictures, else 35.
+    power, power_max
+        Power of the lamp where it is fixed, and its largest where it is not, as `lightcube.optics.rig.Rig.of` has them.
+    black
+        Display value, in [0, 1), that the screen cannot be darker than.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> level = lc.Turntable(elevation_deg=0)
+    >>> level.power_max
+    16.0
+    """
+
+    angles_deg: ArrayLike | None = None
+    span_deg: float | None = None
+    elevation_deg: float | None = None
+    power: float | None = None
+    power_max: float = POWER_MAX
+    black: float = BLACK
+
+    def __post_init__(self) -> None:
+        if self.angles_deg is not None and self.span_deg is not None:
+            raise InputError("angles and a span of angles are both given: use one of the two")
+
+    def elevation_of(self, pictures: Pictures) -> float:
+        """Elevation of the lamp that pictures are shown with, degrees."""
+        said = pictures.elevation_deg if self.elevation_deg is None else self.elevation_deg
+        return check_elevation(RAISED_DEG if said is None else said)
+
+    def rig(self, pictures: Pictures, grid: Grid, *, picture_width: float = 1.0) -> Rig:
+        """The turntable on which pictures shall be shown, each at a stop of its own, with the aspect of the first.
+
+        Parameters
+        ----------
+        picture_width
+            Width of the pictures as a fraction of the cube's; their aspect is the first one's as closely as
+            `lightcube.optics.grid.picture_shape` can.
+
+        Raises
+        ------
+        InputError
+            Where there are fewer than two pictures, the angles do not fit, or they would be wider than the cube's
+            screen.
+        """
+        if len(pictures) < 2:
+            raise InputError(
+                f"{len(pictures)} picture{'s' if not pictures.images else ''} cannot fill a cube: give at least two"
+            )
+        elevation_deg = self.elevation_of(pictures)
+        rows, columns = pictures.images[0].shape[:2]
+        return turntable(
+            grid,
+            self._angles(pictures, elevation_deg),
+            elevation_deg=elevation_deg,
+            picture_shape=picture_shape(grid, picture_width, columns / rows, elevation_deg),
+            power=self.power,
+            power_max=self.power_max,
+            black=self.black,
+        )
+
+    def _angles(self, pictures: Pictures, elevation_deg: float) -> NDArray[np.float64]:
+        """One angle per picture: those asked for, else those that came along, else spread evenly."""
+        angles_deg = pictures.angles_deg if self.angles_deg is None and self.span_deg is None else self.angles_deg
+        if angles_deg is None:
+            return distinct_angles(spread_angles(len(pictures), self.span_deg, elevation_deg=elevation_deg))
+        chosen = distinct_angles(angles_deg)
+        if len(chosen) != len(pictures):
+            raise InputError(f"{len(chosen)} angles for {len(pictures)} pictures: give one angle per picture")
+        return chosen
