@@ -13,7 +13,7 @@ from lightcube.backward.job import Job, differences, fingerprint
 from lightcube.backward.pieces import solve_piece
 from lightcube.backward.solution import merged
 from lightcube.backward.solving import make_job
-from lightcube.backward.solving import run as solved
+from lightcube.backward.solving import solve_job as solved
 from lightcube.errors import InputError
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.jobs.partial import DiskStore, load_job, open_partial

@@ -17,7 +17,7 @@ from lightcube import load
 from lightcube.backward.job import Job
 from lightcube.backward.solution import merged
 from lightcube.backward.solving import make_job
-from lightcube.backward.solving import run as solved
+from lightcube.backward.solving import solve_job as solved
 from lightcube.cli.console import listening
 from lightcube.errors import InputError
 from lightcube.events import Progress, Said

@@ -20,7 +20,7 @@ from lightcube.backward import needs
 from lightcube.backward.job import Job, fingerprint
 from lightcube.backward.pieces import solve_piece
 from lightcube.backward.solution import merged
-from lightcube.backward.solving import run as solved
+from lightcube.backward.solving import solve_job as solved
 from lightcube.errors import InputError
 from lightcube.jobs import publishing
 from lightcube.jobs.partial import DiskStore, load_job, open_partial

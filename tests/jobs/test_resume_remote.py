@@ -10,7 +10,7 @@ from lightcube import io
 from lightcube.backward.job import fingerprint
 from lightcube.backward.pieces import solve_piece
 from lightcube.backward.solution import merged
-from lightcube.backward.solving import run as solved
+from lightcube.backward.solving import solve_job as solved
 from lightcube.errors import InputError
 from lightcube.jobs.partial import DiskStore, begun_units, check_partial, load_job, open_partial
 from lightcube.jobs.publishing import UnfinishedCube, load, publish

@@ -65,10 +65,12 @@ def solve(
     InputError
         For targets that do not belong to the grid, or a recipe that cannot be followed there.
     """
-    return run(make_job(targets, grid, recipe, units=units, memory=memory, provenance=provenance), store, callback)
+    return solve_job(
+        make_job(targets, grid, recipe, units=units, memory=memory, provenance=provenance), store, callback
+    )
 
 
-def run(job: Job, store: Store | None = None, callback: Watching | None = None) -> Solution:
+def solve_job(job: Job, store: Store | None = None, callback: Watching | None = None) -> Solution:
     """Solve what is not finished of a job, and put the cube together; `store` and `callback` as `solve` takes them."""
     shelf = MemoryStore() if store is None else store
     solve_pieces(job, job.pieces, shelf, callback, checkpoints=store is not None)

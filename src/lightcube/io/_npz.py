@@ -1,14 +1,14 @@
 """A cube as NumPy's own archive."""
 
 import json
-import zipfile
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from lightcube.errors import InputError
 from lightcube.io import _metadata
+from lightcube.io._archives import archive
 from lightcube.io._files import system_errors
 from lightcube.optics.cube import Cube
 
@@ -24,23 +24,15 @@ def write_npz(path: Path, cube: Cube) -> None:
 
 def read_npz(path: Path) -> Cube:
     """Read a cube from NumPy's archive."""
-    try:
-        with (
-            system_errors(path, "reading"),
-            path.open("rb") as file,
-            np.lib.npyio.NpzFile(file, allow_pickle=False) as arrays,
-        ):
-            document = json.loads(str(arrays["lightcube"])) if "lightcube" in arrays else None
-            _metadata.check_version(path, document)
-            if "extinction" not in arrays:
-                raise _metadata.damaged(path, "its array 'extinction' is missing")
-            extinction = arrays["extinction"]
-            targets = arrays["targets"] if "targets" in arrays else None  # noqa: SIM401 - not a mapping with get
-    except InputError:
-        raise
-    except MemoryError as error:
-        raise InputError(f"{path} does not fit into this machine's memory: open it on a larger one") from error
-    # NotImplementedError is what zipfile raises for a way of compression that it does not know
-    except (ValueError, EOFError, zipfile.BadZipFile, KeyError, RecursionError, NotImplementedError) as error:
-        raise _metadata.damaged(path, " ".join(str(error).split())[:100]) from error
+    with (
+        system_errors(path, "reading"),
+        path.open("rb") as file,
+        archive(file, path, partial(_metadata.damaged, path)) as arrays,
+    ):
+        document = json.loads(str(arrays["lightcube"])) if "lightcube" in arrays else None
+        _metadata.check_version(path, document)
+        if "extinction" not in arrays:
+            raise _metadata.damaged(path, "its array 'extinction' is missing")
+        extinction = arrays["extinction"]
+        targets = arrays["targets"] if "targets" in arrays else None  # noqa: SIM401 - not a mapping with get
     return _metadata.from_json(path, document, extinction, targets)

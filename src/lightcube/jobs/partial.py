@@ -10,7 +10,6 @@ import io
 import json
 import re
 import time
-import zipfile
 from collections.abc import Mapping
 from contextlib import suppress
 from importlib.metadata import version
@@ -25,6 +24,7 @@ from lightcube.backward.job import Fingerprint, Job, differences, fingerprint
 from lightcube.backward.recipe import from_plain
 from lightcube.backward.store import Arrays
 from lightcube.errors import InputError
+from lightcube.io._archives import archive
 from lightcube.io._files import PARTIAL_SUFFIX, system_errors
 from lightcube.io._metadata import plain
 from lightcube.io._places import (
@@ -333,17 +333,13 @@ def _write_arrays(path: Place, arrays: Mapping[str, NDArray[Any]]) -> None:
 
 def _read_arrays(path: Place) -> dict[str, NDArray[Any]] | None:
     """All arrays of a file, or None where there is none."""
-    try:
-        with (
-            system_errors(path, "reading"),
-            suppress(FileNotFoundError),
-            _opened(path) as file,
-            np.load(file, allow_pickle=False) as archive,
-        ):
-            return {name: archive[name] for name in archive.files}
-    # NotImplementedError is what zipfile raises for a way of compression that it does not know
-    except (ValueError, EOFError, zipfile.BadZipFile, KeyError, NotImplementedError, TypeError) as error:
-        raise _damaged(path, " ".join(str(error).split())[:100]) from error
+    with (
+        system_errors(path, "reading"),
+        suppress(FileNotFoundError),
+        _opened(path) as file,
+        archive(file, path, lambda what: _damaged(path, what)) as arrays,
+    ):
+        return {name: arrays[name] for name in arrays.files}
     return None
 
 

@@ -1,0 +1,44 @@
+"""NumPy's archives of arrays (.npz), read without trust."""
+
+import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import IO
+
+from numpy.lib.npyio import NpzFile
+
+from lightcube.errors import InputError
+
+#: What NumPy, zipfile and readers of what they return raise where a file is not what it should be.
+_WRONG = ValueError, TypeError, EOFError, zipfile.BadZipFile, KeyError, RecursionError
+
+
+@contextmanager
+def archive(file: IO[bytes], where: object, damaged: Callable[[str], InputError]) -> Iterator[NpzFile]:
+    """Open an archive, whose arrays are read when they are asked for; nothing in it is ever unpickled.
+
+    Parameters
+    ----------
+    where
+        The file, for the sentence where its arrays do not fit into memory.
+    damaged
+        Makes the error of what else is wrong.
+    """
+    try:
+        with NpzFile(file, allow_pickle=False) as arrays:
+            yield arrays
+    except InputError:
+        raise
+    except MemoryError as error:
+        raise InputError(f"{where} does not fit into this machine's memory: open it on a larger one") from error
+    # NotImplementedError is what zipfile raises for a way of compression that it does not know
+    except (
+        ValueError,
+        TypeError,
+        EOFError,
+        zipfile.BadZipFile,
+        KeyError,
+        RecursionError,
+        NotImplementedError,
+    ) as error:
+        raise damaged(" ".join(str(error).split())[:100]) from error
