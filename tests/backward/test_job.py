@@ -17,7 +17,7 @@ from lightcube.backward.pieces import Step, solve_piece
 from lightcube.backward.problem import is_level, pose
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution, merged
-from lightcube.backward.solving import make_job, run, solve
+from lightcube.backward.solving import make_job, solve, solve_job
 from lightcube.backward.store import Arrays, MemoryStore
 from lightcube.backward.units import coarser, split
 from lightcube.errors import InputError
@@ -183,7 +183,7 @@ def test_what_was_killed_goes_on_to_the_same_bits(options: dict[str, Any], monke
     monkeypatch.setattr("lightcube.backward.pieces._PATIENCE", 0.0)
     monkeypatch.setattr("lightcube.backward.job.COARSE_PASSES", 9)
     made = job(**options)
-    straight = run(made)
+    straight = solve_job(made)
     store, kills = Forgetful(lambda name, iteration: iteration % 3 != 1), 0
     for _ in range(100):
         calls = 0
@@ -195,7 +195,7 @@ def test_what_was_killed_goes_on_to_the_same_bits(options: dict[str, Any], monke
                 raise Killed
 
         try:
-            finished = run(made, store, killed)
+            finished = solve_job(made, store, killed)
             break
         except Killed:
             kills += 1
@@ -208,7 +208,7 @@ def test_what_was_killed_goes_on_to_the_same_bits(options: dict[str, Any], monke
 def test_what_was_stopped_goes_on_to_the_same_bits(options: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lightcube.backward.job.COARSE_PASSES", 9)
     made, store = job(**options), MemoryStore()
-    straight = run(made)
+    straight = solve_job(made)
     for _ in range(40):
         calls = 0
 
@@ -217,7 +217,7 @@ def test_what_was_stopped_goes_on_to_the_same_bits(options: dict[str, Any], monk
             calls += 1
             return calls == 3
 
-        stopped = run(made, store, third)
+        stopped = solve_job(made, store, third)
         if stopped.cube.status == "complete":
             break
         assert stopped.stop_reason == "callback"
@@ -228,17 +228,17 @@ def test_what_was_stopped_goes_on_to_the_same_bits(options: dict[str, Any], monk
 def test_enough_is_enough_though_it_is_stopped_there() -> None:
     """Stopped at the very pass that was enough: the unit is finished, and the next one is not begun."""
     made = job(**RAISED, enough_db=20.0, lamp_power=1.0)
-    straight = run(made)
+    straight = solve_job(made)
     assert straight.stop_reason == "enough"
     alone = MemoryStore()
     assert solve_piece(made, "unit-0", alone)
     found = alone.finished("unit-0")
     assert found is not None
     store = MemoryStore()
-    stopped = run(made, store, lambda step: step.iteration == len(found["history"]))
+    stopped = solve_job(made, store, lambda step: step.iteration == len(found["history"]))
     assert stopped.cube.status == "interrupted"
     assert store.names() == {"unit-0"}
-    assert same(run(made, store), straight)
+    assert same(solve_job(made, store), straight)
 
 
 def test_units_in_any_order_are_the_run_in_one_go() -> None:
@@ -250,14 +250,14 @@ def test_units_in_any_order_are_the_run_in_one_go() -> None:
     assert missing.cube.status == "interrupted"
     assert np.any(missing.cube.extinction > 0, axis=(0, 2, 3)).all()  # the rest is the coarse start
     assert solve_piece(made, "unit-1", store)
-    assert same(merged(made, store), run(made))
+    assert same(merged(made, store), solve_job(made))
 
 
 def test_a_finished_piece_is_not_solved_again() -> None:
     made, store = job(**RAISED), MemoryStore()
     calls: list[Step] = []
-    run(made, store)
-    run(made, store, calls.append)
+    solve_job(made, store)
+    solve_job(made, store, calls.append)
     assert calls == []
 
 
@@ -272,7 +272,7 @@ def test_progress_runs_over_all_units_and_shows_each_ones_own() -> None:
         assert step.shown().shape == made.targets.pictures[:, step.window[0], :, step.window[1]].shape
         windows.append(step.window)
 
-    run(made, callback=look)
+    solve_job(made, callback=look)
     assert done == sorted(done)
     assert done[-1] == pytest.approx(1)
     rows = np.zeros(4, int)
@@ -307,7 +307,7 @@ def test_memory_grows_with_the_cube_the_pictures_and_the_matrix() -> None:
 @pytest.mark.parametrize("kind", [LEVEL, RAISED], ids=["level", "raised"])
 def test_a_cube_is_cast_from_where_it_lies(kind: dict[str, Any]) -> None:
     """Scoring a large cube must not take the memory of a second one."""
-    extinction = run(job(**kind)).cube.extinction
+    extinction = solve_job(job(**kind)).cube.extinction
     assert np.shares_memory(columns_from_volume(extinction), extinction)
 
 
@@ -340,11 +340,11 @@ def test_memory_is_as_much_as_is_said(
     small = replace(
         made, targets=asked(some_targets(SHAPE, (rows, 2), elevation_deg), grid, **options)["targets"], grid=grid
     )
-    run(small, open_partial(tmp_path / "small.zarr", small))  # numba compiles
+    solve_job(small, open_partial(tmp_path / "small.zarr", small))  # numba compiles
     store = open_partial(tmp_path / "a.zarr", made)
     tracemalloc.start()
     try:
-        run(made, store)
+        solve_job(made, store)
         peak = tracemalloc.get_traced_memory()[1] + made.targets.pictures.nbytes + made.targets.weight.nbytes
     finally:
         tracemalloc.stop()
@@ -399,16 +399,16 @@ def test_what_there_is_of_a_stopped_job_is_a_cube(method: str) -> None:
     targets, grid = some_targets(size=(4, 5), elevation_deg=0.0), Grid(SHAPE, 0.7)
     made = make_job(**asked(targets, grid, method=method, lamp_power=1.0, units=2, passes=3))
     store = MemoryStore()
-    stopped = run(made, store, lambda step: True)
+    stopped = solve_job(made, store, lambda step: True)
     assert stopped.cube.status == "interrupted"
     assert stopped.rejected.shape == (0, 4)
-    assert same(run(made, store), run(made))
+    assert same(solve_job(made, store), solve_job(made))
 
 
 def test_a_finished_piece_is_a_volume() -> None:
     """Of a slab of the cube, and of all of it at half the size."""
     made, store = job(**LEVEL), MemoryStore()
-    cube = run(made, store).cube
+    cube = solve_job(made, store).cube
     half, slab = (store.finished(name) for name in ("level-1", "unit-1"))
     assert half is not None
     assert half["extinction"].shape == (3, 2, 4, 3)

@@ -16,7 +16,7 @@ from lightcube.solvers.method import Method
 from tests.helpers.solver_problems import plain_descent
 
 PLACE = "tests.helpers.solver_problems:plain_descent"
-OWN = ["display", "gauss-seidel", "row-reduction", "sirt", "cgls"]
+OWN = list(solvers.OWN)
 MODULE = """
 from lightcube.solvers.method import Method
 from tests.helpers.solver_problems import plain_descent
