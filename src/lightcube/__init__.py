@@ -20,7 +20,7 @@ __getattr__, __dir__, __all__ = when_used(
         "read_stage": "io",
         "read_stage_targets": "io",
         "save": "io",
-        "load": "jobs.publishing",
+        "load": "jobs.reading",
         "publish": "jobs.publishing",
         "Cube": "optics.cube",
         "Grid": "optics.grid",

@@ -7,7 +7,8 @@ from lightcube.cores import threads
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
 from lightcube.io import read_pictures, read_scene, read_stage, read_stage_targets, save
-from lightcube.jobs.publishing import load, publish
+from lightcube.jobs.publishing import publish
+from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material

@@ -11,7 +11,7 @@ from lightcube.backward.solving import make_job, solve_job
 from lightcube.backward.store import MemoryStore
 from lightcube.errors import InputError
 from lightcube.jobs.partial import load_job, open_partial
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.optics.grid import Grid
 from lightcube.solvers.method import Method
 from tests.backward.test_job import LEVEL, SHAPE, same, some_targets

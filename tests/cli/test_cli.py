@@ -17,10 +17,11 @@ from lightcube import load
 from lightcube.cli import main
 from lightcube.forward.casting import play
 from lightcube.io import save
-from lightcube.jobs.publishing import UnfinishedCube
+from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
+from lightcube.planning import order  # noqa: F401 - it keeps the function that `pressed` takes the place of
 
 SCENE = """
 camera = {type = "shadow", cube_width = 4.0}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from tests.cli.test_cli import run
 
 __all__ = ["run"]

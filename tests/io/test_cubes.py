@@ -25,7 +25,8 @@ from lightcube.errors import InputError
 from lightcube.io import _zarr, save
 from lightcube.jobs import partial
 from lightcube.jobs.partial import DiskStore, discard_partial, open_partial
-from lightcube.jobs.publishing import UnfinishedCube, load, publish
+from lightcube.jobs.publishing import publish
+from lightcube.jobs.reading import UnfinishedCube, load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable

@@ -21,7 +21,7 @@ from lightcube.io import (
     read_pictures,
     save,
 )
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable

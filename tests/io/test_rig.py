@@ -17,7 +17,7 @@ from lightcube.backward.solving import solve_job as solved
 from lightcube.errors import InputError
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.jobs.partial import DiskStore, load_job, open_partial
-from lightcube.jobs.publishing import UnfinishedCube
+from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.rig import Rig, turntable
 from lightcube.pictures.fitting import as_levels

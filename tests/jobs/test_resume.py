@@ -24,7 +24,8 @@ from lightcube.backward.solving import solve_job as solved
 from lightcube.errors import InputError
 from lightcube.jobs import publishing
 from lightcube.jobs.partial import DiskStore, load_job, open_partial
-from lightcube.jobs.publishing import UnfinishedCube, publish
+from lightcube.jobs.publishing import publish
+from lightcube.jobs.reading import UnfinishedCube
 from tests.backward.test_job import LEVEL, RAISED, job, same
 from tests.cli.test_cli import pressed, run
 from tests.conftest import INTERPRETED

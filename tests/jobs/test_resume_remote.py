@@ -13,7 +13,8 @@ from lightcube.backward.solution import merged
 from lightcube.backward.solving import solve_job as solved
 from lightcube.errors import InputError
 from lightcube.jobs.partial import DiskStore, begun_units, check_partial, load_job, open_partial
-from lightcube.jobs.publishing import UnfinishedCube, load, publish
+from lightcube.jobs.publishing import publish
+from lightcube.jobs.reading import UnfinishedCube, load
 from tests.backward.test_job import LEVEL, job, same
 from tests.cli.test_cli import pressed, run
 from tests.io.test_cubes import assert_same

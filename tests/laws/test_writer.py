@@ -23,7 +23,7 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.io import Output, read_pictures, save
 from lightcube.io.outputs import KINDS, Kind
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable

@@ -21,7 +21,7 @@ from PIL import Image
 from lightcube.cli import main
 from lightcube.drawing.charts import lamp_powers
 from lightcube.io import save
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable

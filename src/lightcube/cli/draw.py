@@ -8,7 +8,7 @@ from lightcube import io
 from lightcube.cli.console import done
 from lightcube.cli.options import JSON, OVERWRITE
 from lightcube.errors import InputError
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.verbs import drawing
 
 

@@ -7,7 +7,7 @@ import typer
 from lightcube.cli import arguments
 from lightcube.cli.console import json_document, out
 from lightcube.cli.options import JSON
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.scoring.facts import facts
 
 

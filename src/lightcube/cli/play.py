@@ -13,7 +13,7 @@ from lightcube.cli.console import done, err, progress
 from lightcube.cli.fields import flag
 from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, threaded
 from lightcube.errors import InputError
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.verbs import playing, words
 
 

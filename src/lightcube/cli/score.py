@@ -10,7 +10,7 @@ from lightcube.cli import printing
 from lightcube.cli.console import json_document, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.errors import InputError
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.verbs import scoring
 from lightcube.verbs.refitting import wanted_of
 

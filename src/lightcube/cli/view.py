@@ -9,7 +9,7 @@ import typer
 from lightcube import io
 from lightcube.cli.console import done, err, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
-from lightcube.jobs.publishing import load
+from lightcube.jobs.reading import load
 from lightcube.verbs import viewing
 
 

@@ -196,6 +196,14 @@ def _make(folder: Path) -> None:
                     item.unlink()
 
 
+def begun_store(at: Place) -> DiskStore:
+    """The store of an unfinished cube; `InputError` where there is nothing in it."""
+    store = DiskStore(at)
+    if store.is_empty():
+        raise InputError(f"{at} has nothing of a cube in it yet: start again without it")
+    return store
+
+
 def begun_units(out: str | Path, job: Job) -> int | None:
     """Return into how many units the job in the partial folder of `out` is split; None where it is another job."""
     try:

@@ -1,62 +1,14 @@
-"""Cubes that are still being made: loading and publishing them."""
+"""Making a cube file of what is there of an unfinished one."""
 
-import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from lightcube.backward.job import Job
 from lightcube.backward.solution import Solution, merged
-from lightcube.errors import InputError
-from lightcube.io._files import PARTIAL_SUFFIX
-from lightcube.io._places import Place, name_of, place
-from lightcube.io.cubes import read_cube
+from lightcube.io._places import Place, place
 from lightcube.io.outputs import Output
-from lightcube.jobs.partial import DiskStore, discard_partial, load_job, published_path
-from lightcube.optics.cube import Cube
+from lightcube.jobs.partial import DiskStore, begun_store, discard_partial, load_job, published_path
 from lightcube.scoring import metrics
-
-
-class UnfinishedCube(UserWarning):
-    """A cube that was loaded is a partial one, or its solver was stopped early."""
-
-
-def load(path: str | Path) -> Cube:
-    """Load a cube from a file that `lightcube.io.save` wrote, or from a ``.partial`` folder of one that is being made.
-
-    Of the latter there is what is finished, the state of the unit that is being solved, and for the rest what it
-    would start from.
-
-    Warns
-    -----
-    UnfinishedCube
-        Where the cube is a partial one, or its solver was stopped early.
-
-    Raises
-    ------
-    InputError
-        Where there is no such file, it is no light cube, it is damaged, or a newer version wrote it.
-    """
-    at = place(path)
-    partial = name_of(at).lower().endswith(PARTIAL_SUFFIX)
-    cube = _load_partial(at) if partial else read_cube(path)
-    if partial or cube.status != "complete":
-        why = "it is still being made" if partial else "its solver was stopped early"
-        warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=2)
-    return cube
-
-
-def _load_partial(at: Place) -> Cube:
-    """The cube of what there is of an unfinished one."""
-    store = _begun(at)
-    return merged(load_job(at), store).cube
-
-
-def _begun(at: Place) -> DiskStore:
-    """The store of an unfinished cube; `InputError` where there is nothing in it."""
-    store = DiskStore(at)
-    if store.is_empty():
-        raise InputError(f"{at} has nothing of a cube in it yet: start again without it")
-    return store
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +50,7 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
     """
     out = published_path(partial)
     Output(out, "cube", overwrite).check()
-    store = _begun(place(partial))
+    store = begun_store(place(partial))
     return finish(load_job(partial), store, out, overwrite=overwrite)
 
 
