@@ -16,7 +16,6 @@ from lightcube.kernels.layout import (
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import turntable_views
 from lightcube.projection.projector import Projector, dot_test
-from tests.helpers import plain
 from tests.projection.test_rays import lamps_for, lit, screens_for
 
 KINDS = ["level", "raised", "point", "any direction", "some pixels"]
@@ -35,26 +34,6 @@ def operator(kind: str, shape: tuple[int, int, int] = (3, 5, 7)) -> Projector:
 
 def some(shape: tuple[int, ...], seed: int = 1) -> Any:
     return np.random.default_rng(seed).random(shape)
-
-
-@pytest.mark.parametrize("channels", [1, 2, 3, 5])
-@pytest.mark.parametrize("kind", KINDS[:-1])
-def test_a_volume_casts_the_pictures_of_plain_boxes(kind: str, channels: int) -> None:
-    A = operator(kind)
-    volume = some((channels, *A.domain_shape))
-    pictures = A(volume)
-    assert pictures.shape == (*A.range_shape, channels)
-    assert np.allclose(pictures, plain.absorbance_pictures(A.grid, A.views, volume), rtol=1e-9, atol=1e-9)
-
-
-@pytest.mark.parametrize("channels", [1, 2, 3, 5])
-@pytest.mark.parametrize("kind", KINDS[:-1])
-def test_pictures_are_thrown_back_along_plain_boxes(kind: str, channels: int) -> None:
-    A = operator(kind)
-    pictures = some((*A.range_shape, channels))
-    volume = A.T(pictures)
-    assert volume.shape == (channels, *A.domain_shape)
-    assert np.allclose(volume, plain.back_projection(A.grid, A.views, pictures), rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.parametrize(("dtype", "bound"), [(np.float32, 1e-5), (np.float64, 1e-12)])
