@@ -99,6 +99,21 @@ def back_projection(grid: Grid, views: Views, pictures: Array) -> Array:
     return volume
 
 
+def shown_light(starts: NDArray[Any], powers: Array, light: Array, shadow: Array, absorbance: Array) -> Array:
+    """``(pictures, entries)`` by the law of light: P is ``(views, channels)``, g and a are ``(views, pixels)``.
+
+    The views of picture p are those from ``starts[p]`` to before ``starts[p + 1]``; absorbance is ``(views, entries)``.
+    """
+    shown = np.zeros((len(starts) - 1, absorbance.shape[1]))
+    for picture, entry in np.ndindex(*shown.shape):
+        pixel, channel = divmod(entry, powers.shape[1])
+        for view in range(starts[picture], starts[picture + 1]):
+            strength, through = shadow[view, pixel], math.exp(-absorbance[view, entry])
+            kept = (1 - strength) + strength * through  # 1 - strength * (1 - through), which loses the darkest
+            shown[picture, entry] += powers[view, channel] * light[view, pixel] * kept
+    return shown
+
+
 def srgb_decode(value: float) -> float:
     """IEC 61966-2-1, one number at a time."""
     return value / 12.92 if value <= 0.04045 else math.pow((value + 0.055) / 1.055, 2.4)

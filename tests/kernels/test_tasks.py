@@ -25,13 +25,14 @@ from lightcube.errors import InputError
 from lightcube.kernels import tasks
 from lightcube.kernels.compiled import compiled
 from lightcube.optics.grid import Grid
+from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
 from lightcube.projection.rays import Rays
 from lightcube.scene.tracer import scene_rig, scene_targets
-from lightcube.solvers.contract import Lighting, Mixture, Wanted
+from lightcube.solvers.contract import Lighting, Wanted
 from lightcube.solvers.display import display_values
 from tests.conftest import INTERPRETED
 from tests.helpers.recipes import asked
@@ -103,6 +104,13 @@ def of_mixture() -> list[Any]:
     return [result.x, result.lamp_powers, result.residuals]
 
 
+def of_light() -> list[Any]:
+    random = np.random.default_rng(0)
+    lit = random.random((2, 60, 1300), dtype=np.float32)
+    mixture = Mixture(np.array([0, 50, 59, 60]), random.random((60, 3)), *lit)
+    return [shown_light(mixture, random.random((60, 3)), random.random((60, 3900), dtype=np.float32), (26, 50))]
+
+
 def of_scene() -> list[Any]:
     scene = lightcube.read_scene("gems")
     grid, views = scene_rig(scene, 2, (12, 9), None, None)
@@ -117,6 +125,7 @@ OPERATIONS: dict[str, Callable[[], list[Any]]] = {
     "matrix": of_matrix,
     "rays": of_rays,
     "mixture": of_mixture,
+    "light": of_light,
     "scene": of_scene,
     "display, raised": lambda: of_solver("display", 35.0),
     "display, level, held": lambda: of_solver("display", 0.0, hold_deg=3.0),

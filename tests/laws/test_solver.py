@@ -17,11 +17,12 @@ from scipy.sparse import csr_array
 
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
+from lightcube.optics.law import Mixture
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.projection.projector import Projector
 from lightcube.solvers import METHODS
-from lightcube.solvers.contract import Floats, Lighting, Mixture, Progress, Result, Solver, Wanted
+from lightcube.solvers.contract import Floats, Lighting, Progress, Result, Solver, Wanted
 from lightcube.solvers.method import Method
 from tests.helpers.solver_problems import DenseOperator, full_rank, light, plain_descent, random_system
 

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 
 from lightcube.kernels import objective as kernels
+from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.transfer import encode
 from lightcube.solvers._convex import ConvexObjective as PlainScreen
-from lightcube.solvers._objective import Objective, for_kernels, mixed_light
-from lightcube.solvers.contract import Lighting, Mixture, Wanted
+from lightcube.solvers._objective import Objective
+from lightcube.solvers.contract import Lighting, Wanted
 from lightcube.solvers.display import display_values
 from tests.conftest import INTERPRETED
+from tests.helpers import plain
 from tests.helpers.solver_problems import DenseOperator
 
 #: Rows, columns and channels of a view's block, its entries, and its pixels.
@@ -49,14 +51,9 @@ def some_screen(given: tuple[Lighting, Mixture], **more: Any) -> tuple[Objective
 def plain_objective(screen: Objective, absorbance: np.ndarray, lamp: np.ndarray) -> np.ndarray:
     """Half the weighted squared two-sided residual of the sums, entry by entry, of each column."""
     mixture, total = screen.mixture, np.zeros(COLUMNS)
-    absorbed = absorbance.reshape(-1, ENTRIES)
-    for picture, entry in np.ndindex(*screen.wanted.shape):
-        pixel, channel = divmod(entry, CHANNELS)
-        light = 0.0
-        for view in range(mixture.starts[picture], mixture.starts[picture + 1]):
-            power = np.exp(lamp[screen.lamp_of_view[view], channel]) * mixture.share[view, channel]
-            through = 1 - mixture.shadow[view, pixel] * (1 - np.exp(-absorbed[view, entry]))
-            light += power * mixture.light[view, pixel] * through
+    powers = np.exp(lamp)[screen.lamp_of_view] * mixture.share
+    data = mixture.starts, powers, mixture.light, mixture.shadow, absorbance.reshape(-1, ENTRIES)
+    for (picture, entry), light in np.ndenumerate(plain.shown_light(*data)):
         goal = screen.wanted[picture, entry]
         step = 1e-6
         pair = encode(np.exp(np.array([goal - step, goal + step])))
@@ -77,20 +74,6 @@ def test_the_objective_is_that_of_the_plain_sum() -> None:
     found, least = screen.arrive(last, absorbance, lamp)
     np.testing.assert_allclose(found, plain_objective(screen, absorbance, lamp), rtol=1e-6)
     np.testing.assert_allclose(least, np.min((2 * absorbance - last).reshape(-1, COLUMNS), axis=0))
-
-
-def test_light_is_the_plain_sum_from_darkness_to_beyond_the_lamp() -> None:
-    sums, mixture = random_sums()
-    absorbance = np.random.default_rng(3).choice([-0.5, 0.0, 0.3, 5.0, 40.0, 90.0], (7 * ROWS, COLUMNS))
-    powers = np.random.default_rng(4).uniform(0.1, 9, (4, CHANNELS))[sums.lamp]
-    absorbed = absorbance.reshape(7, PIXELS, CHANNELS)
-    cast_off = mixture.shadow[..., None] * np.expm1(-absorbed)
-    each = (powers * mixture.share)[:, None] * mixture.light[..., None] * (1 + cast_off)
-    expected = np.add.reduceat(each, mixture.starts[:-1]).reshape(3, ENTRIES)
-    np.testing.assert_allclose(mixed_light(mixture, powers, absorbance), expected, rtol=1e-6)
-    single = mixed_light(mixture, powers, absorbance.astype(np.float32))
-    assert single.dtype == np.float32
-    np.testing.assert_allclose(single, expected, rtol=1e-4)
 
 
 def test_slopes_are_those_of_the_objective() -> None:
@@ -131,7 +114,7 @@ def test_no_second_derivative_exceeds_its_bound(room: float | None) -> None:
     if room is None:
         bounds = screen.curved(bounds, absorbance, lamp)
     else:
-        mixed = for_kernels(screen.mixture, np.exp(lamp)[screen.lamp_of_view], absorbance.dtype)
+        mixed = screen.mixture.under(np.exp(lamp)[screen.lamp_of_view], absorbance.dtype)
         data = screen._data(absorbance)
         kernels.curvatures(mixed, *data, room, bounds.reshape(-1, ENTRIES))
     above, least = 0, np.inf
@@ -153,9 +136,7 @@ def test_lamps_are_pulled_as_the_objective_falls() -> None:
     groups = np.array([0, 1, 2, 3, 4, 4, 5])  # of views of a picture and a lamp
     each = lamp[[0, 1, 1, 0, 2, 3]]
     sums = np.zeros((2, 16, 6, CHANNELS))
-    kernels.pulls(
-        for_kernels(screen.mixture, np.exp(each)[groups], absorbance.dtype), groups, *screen._data(absorbance), sums
-    )
+    kernels.pulls(screen.mixture.under(np.exp(each)[groups], absorbance.dtype), groups, *screen._data(absorbance), sums)
     first, second = sums.sum(axis=1)
     mixed = replace(screen, lamp_of_view=groups, low=np.full((6, 2), -9.0), high=np.full((6, 2), 9.0))
     step = 1e-4
@@ -205,6 +186,21 @@ def test_of_one_whole_shadow_each_it_is_the_screen_of_plain_pictures() -> None:
     np.testing.assert_allclose(lamps[0], lamps[1], atol=1e-3)
 
 
+def test_pixels_that_are_alike_may_be_one() -> None:
+    """The same bits of all that a solver asks."""
+    sums, mixture = random_sums()
+    mixture.light[:], mixture.shadow[:] = mixture.light[:, :1], mixture.shadow[:, :1]
+    one = Mixture(mixture.starts, mixture.share, mixture.light[:, :1], mixture.shadow[:, :1])
+    screens = [some_screen(given) for given in ((sums, mixture), (Lighting(sums.lamp, one), one))]
+    found = []
+    for screen, absorbance, lamp in screens:
+        curved = screen.curved(np.ones_like(absorbance), absorbance, lamp)
+        arrived = screen.arrive(0.5 * absorbance, absorbance, lamp)
+        found.append([curved, *arrived, screen.best_lamp(absorbance, lamp), screen.descend(absorbance.copy(), lamp)])
+    for many, few in zip(*found, strict=True):
+        assert np.array_equal(many, few)
+
+
 def test_pictures_of_many_views_and_pixels_leave_no_seam() -> None:
     """So many that a task takes some of the pixels at a time."""
     views, pixels = (3, 40) if INTERPRETED else (150, 700)
@@ -219,7 +215,8 @@ def test_pictures_of_many_views_and_pixels_leave_no_seam() -> None:
     through = 1 + shadow[..., None] * np.expm1(-absorbance.reshape(views, pixels, 3))
     parts = powers[lamp][:, None] * light[..., None] * through
     expected = np.add.reduceat(parts, starts[:-1])
-    np.testing.assert_allclose(mixed_light(mixture, powers[lamp], absorbance), expected.reshape(2, -1), rtol=1e-6)
+    shown = shown_light(mixture, powers[lamp], absorbance, (1, pixels))
+    np.testing.assert_allclose(shown.reshape(expected.shape), expected, rtol=1e-6)
     off = expected - wanted.reshape(expected.shape)
     too_dark = wanted.reshape(expected.shape) * np.log(expected / wanted.reshape(expected.shape))
     value = np.where(off > 0, off, too_dark)
@@ -258,8 +255,8 @@ def test_a_sum_that_is_much_too_dark_comes_back(dtype: str, start: float) -> Non
     A = DenseOperator(np.random.default_rng(9).random((6 * ROWS, 4)))
     powers = np.full((6, CHANNELS), 1.5)
     truth = np.random.default_rng(10).exponential(0.5, (4, COLUMNS))
-    wanted = mixed_light(mixture, powers, A.forward(truth)).reshape(-1, COLUMNS)
+    wanted = shown_light(mixture, powers, A.forward(truth), (1, PIXELS)).reshape(-1, COLUMNS)
     goal = Wanted(wanted.astype(dtype), None, sums, (powers, powers))
     result = display_values(A, goal, x0=np.full((4, COLUMNS), start), iterations=400)
-    shown = mixed_light(mixture, powers, A.forward(result.x)).reshape(-1, COLUMNS)
+    shown = shown_light(mixture, powers, A.forward(result.x), (1, PIXELS)).reshape(-1, COLUMNS)
     assert np.max(np.abs(encode(shown) - encode(wanted))) < 0.01

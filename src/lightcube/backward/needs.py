@@ -24,7 +24,7 @@ _EQUATION = 36
 _ENTRY = 40
 #: Degrees of elevation that stand for beams that are not level in other ways.
 _ANY = 35.0
-#: Bytes for each pixel of a view where light adds up: what falls on it, and how strong its shadow is (measured).
+#: Bytes for each pixel of a view where light or shadows fade: what falls on it, and its shadow's strength (measured).
 _MIXED = 16
 #: The time of a pass is measured where it has about so many multiply-adds, over so many passes.
 _REHEARSED, _TIMED = 1e9, 12
@@ -104,7 +104,7 @@ def job_memory(job: Job) -> int:
     views = rig.views
     steepest = float(np.max(np.abs(views.elevations_deg)))
     per_stop = len(held(rig, job.recipe, job.grid)) // len(rig)
-    mixed = 0 if rig.is_thin else _MIXED * per_stop * len(views) * math.prod(views.picture_shape)
+    mixed = 0 if rig.fading.is_none else _MIXED * per_stop * len(views) * math.prod(views.picture_shape)
     return mixed + memory_needed(
         job.recipe.solver,
         job.grid,

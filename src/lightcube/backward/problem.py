@@ -11,17 +11,16 @@ from lightcube.backward.units import Part
 from lightcube.kernels.layout import (
     columns_from_pictures,
     columns_from_volume,
-    pictures_from_columns,
     volume_from_columns,
 )
 from lightcube.optics.grid import Grid, dense_step_deg
-from lightcube.optics.law import falling_light
+from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer, decode
 from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
-from lightcube.solvers.contract import Lighting, Mixture, Wanted
+from lightcube.solvers.contract import Lighting, Wanted
 
 Floats = NDArray[np.floating[Any]]
 
@@ -88,21 +87,11 @@ class Problem:
 
         ``(stop, row, column, channel)`` of the part: `rows` and colours only.
         """
-        from lightcube.solvers._objective import mixed_light  # here: the compiler comes with it
-
         shape = self.rows.stop - self.rows.start, self.matrix.views.picture_shape[1]
-
-        def at_stops(values: Floats) -> Floats:
-            return values.reshape(self.stops, self.per_stop, shape[1], -1)[:, self.per_stop // 2]
-
         of_views = powers[self.lighting.lamp]
-        if self.lighting.mixture is None:
-            light = np.exp(-at_stops(absorbance))
-            light *= np.tile(of_views[self.per_stop // 2 :: self.per_stop], shape[0])[:, None, :]
-        else:
-            light = at_stops(mixed_light(self.lighting.mixture, of_views, absorbance))
-        pictures = pictures_from_columns(light.reshape(self.stops * shape[1], -1), shape, self.channels)
-        return pictures.astype(np.float32)
+        mixture = self.lighting.mixture or Mixture.of_whole_views(*of_views.shape)
+        at_stops = np.arange(self.stops) * self.per_stop + self.per_stop // 2
+        return shown_light(mixture, of_views, absorbance, shape, at_stops).astype(np.float32, copy=False)
 
     def pixels(self, rejected: NDArray[np.int64]) -> NDArray[np.int64]:
         """(stop, row, column, channel) of rejected (equation, column) pairs, each once."""
@@ -154,7 +143,7 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
         importance[[0, -1]] = 2
     weights = block(np.repeat(targets.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
     weights *= np.repeat(np.tile(importance, len(targets)), len(weights) // (len(targets) * per_stop))[:, None]
-    mixture = None if rig.is_thin else mixture_of(rig, channels, part.colours, rows)
+    mixture = None if rig.is_thin else Mixture.of(rig, channels, part.colours, rows)
     return Problem(
         matrix=matrix,
         light=block(np.maximum(targets.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
@@ -181,16 +170,3 @@ def lamp_numbers(rig: Rig, held_rig: Rig, powers: Powers) -> NDArray[np.intp]:
     lamps = len(rig.lamps.names)
     keys = rig.pairs[:, 0] * lamps + rig.pairs[:, 1]
     return np.searchsorted(keys, held_rig.sums.picture // per_stop * lamps + held_rig.sums.lamp)
-
-
-def mixture_of(
-    rig: Rig,
-    channels: int,
-    colours: slice = slice(None),
-    rows: slice = slice(None),
-) -> Mixture:
-    """How views add up, for solvers: pixels in the order of the matrix's equations and columns; some colours, rows."""
-    light, shadow = (
-        columns_from_pictures(each[:, rows, :, None]).reshape(len(rig.views), -1) for each in falling_light(rig)
-    )
-    return Mixture(rig.starts, rig.sums.of_colours(channels)[:, colours], light, shadow)

@@ -1,14 +1,15 @@
 """Program 3, the forward computation: what the screen shows at any turntable angle."""
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lightcube.forward.turning import moment
-from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
+from lightcube.kernels.layout import columns_from_volume
 from lightcube.optics.cube import Cube
-from lightcube.optics.law import falling_light
+from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.rig import Rig
 from lightcube.projection.projector import Projector
 
@@ -73,44 +74,28 @@ def player(cube: Cube, *, whole_shadow: bool = False) -> Callable[[ArrayLike | N
 def _cast(
     columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: NDArray[np.float64]
 ) -> Iterator[NDArray[np.float32]]:
-    """Yield what `cast` does, of the cube's extinction as `columns_from_volume` lays it out."""
-    yield from (_thin if rig.is_thin else _summed)(columns, cube, rig, lamp_powers)
-
-
-def _thin(
-    columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: NDArray[np.float64]
-) -> Iterator[NDArray[np.float32]]:
-    """Yield the unfaded shadows of single beams, a few views at a time: ``P T``."""
-    rows, width = rig.picture_shape
-    inside = rig.inside
+    """Yield what `cast` does, of the cube's extinction as `columns_from_volume` lays it out, a few views at a time."""
+    inside, channels = rig.inside, lamp_powers.shape[1]
     all_inside = bool(np.all(inside))
-    for start in range(0, len(rig), _BATCH):
-        batch = slice(start, start + _BATCH)
-        matrix = Projector(cube.grid, rig.views.take(batch), None if all_inside else inside[batch])
+    powers, picture = lamp_powers[rig.pair], rig.sums.picture
+    begun = None
+    for batch in _batches(rig):
+        own = picture[batch]
+        matrix = Projector(cube.grid, rig.views.take(batch), None if all_inside else inside[own])
         absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
-        light = absorbance.reshape(-1, width, rows * lamp_powers.shape[1])
-        np.exp(np.negative(light, out=light), out=light)
-        light *= np.tile(lamp_powers[batch].astype(np.float32), rows)[:, None, :]
-        shown = pictures_from_columns(light.reshape(-1, light.shape[2]), rig.picture_shape, lamp_powers.shape[1])
-        yield from shown if all_inside else shown * inside[batch][..., None]
+        light = shown_light(Mixture.of(rig, channels, views=batch), powers[batch], absorbance, rig.picture_shape)
+        if begun is not None:
+            light[0] += begun
+        if batch.stop < len(picture) and picture[batch.stop] == own[-1]:  # more views of the same picture follow
+            begun = light[0]
+            continue
+        begun = None
+        yield from light if all_inside else light * inside[own[0] : own[-1] + 1, ..., None]
 
 
-def _summed(
-    columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: NDArray[np.float64]
-) -> Iterator[NDArray[np.float32]]:
-    """Yield sums of views, ``P g (1 - a (1 - T))`` each, picture by picture and a few views of it at a time."""
-    light, shadow = falling_light(rig)
-    powers = (lamp_powers[rig.pair] * rig.sums.share).astype(np.float32)
-    inside, starts, shape = rig.inside, rig.starts, rig.picture_shape
-    for picture in range(len(rig)):
-        total = np.zeros((*shape, powers.shape[1]), np.float32)
-        for first in range(starts[picture], starts[picture + 1], _BATCH):
-            batch = range(first, min(first + _BATCH, starts[picture + 1]))
-            heard = np.repeat(inside[picture][None], len(batch), axis=0)
-            matrix = Projector(cube.grid, rig.views.take(batch), heard)
-            absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
-            lines = absorbance.reshape(len(batch) * shape[1], -1)
-            absorbed = pictures_from_columns(lines, shape, powers.shape[1])
-            for view, each in zip(batch, absorbed, strict=True):
-                total += powers[view] * light[view][..., None] * (1 + shadow[view][..., None] * np.expm1(-each))
-        yield total * inside[picture][..., None]
+def _batches(rig: Rig) -> Iterator[slice]:
+    """A few views at a time: of pictures of one view each, or of one picture."""
+    starts = [0, len(rig)] if len(rig) == len(rig.views) else rig.starts.tolist()
+    for start, end in pairwise(starts):
+        for first in range(start, end, _BATCH):
+            yield slice(first, min(first + _BATCH, end))

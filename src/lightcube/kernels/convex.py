@@ -43,17 +43,34 @@ def _flatten(weights: Array, row: int, end: int, heavy: Array) -> None:
 
 
 @compiled
-def _next_run(lamp: Array, view_of_row: Array, weights: Array, row: int, last: int, bright: Array, heavy: Array) -> int:
-    """Prepare the run of rows from `row` on, of one view and before `last`, that fits; return the row after it.
+def _stretches(first: int, last: int, view_of_row: Array, columns: int) -> list[tuple[int, int, int]]:
+    """What parts `first` to before `last` walk: the part, a run's first row, and one after its last, of one view."""
+    rows, found = len(view_of_row), []
+    most = _run(rows // _PARTS + 1, columns)
+    for part in range(first, last):
+        row, stop = part * rows // _PARTS, (part + 1) * rows // _PARTS
+        while row < stop:
+            end = row + 1
+            while end < min(stop, row + most) and view_of_row[end] == view_of_row[row]:
+                end += 1
+            found.append((part, row, end))
+            row = end
+    return found
 
-    Its ln P goes to `bright` and its weights to `heavy`, a number for each entry.
-    """
-    end, last = row + 1, min(last, row + len(bright) // weights.shape[1])
-    while end < last and view_of_row[end] == view_of_row[row]:
-        end += 1
-    _repeat(lamp[view_of_row[row]], bright)
+
+@compiled
+def _room(absorbance: Array) -> tuple[Array, Array]:
+    """Room for `bright` and `heavy` of the longest run."""
+    rows, columns = absorbance.shape
+    room = _run(rows // _PARTS + 1, columns) * columns
+    return np.empty(room, absorbance.dtype), np.empty(room, absorbance.dtype)
+
+
+@compiled
+def _prepare(lamp: Array, weights: Array, row: int, end: int, bright: Array, heavy: Array) -> None:
+    """Write the ln P and the weight of each entry of a run of rows."""
+    _repeat(lamp, bright)
     _flatten(weights, row, end, heavy)
-    return end
 
 
 @compiled
@@ -87,18 +104,14 @@ def _descend(
     curve: Curve,
     slopes: Array,
 ) -> None:
-    rows, columns = absorbance.shape
+    columns = absorbance.shape[1]
     now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), slopes.reshape(-1)
-    run = _run(rows // _PARTS + 1, columns)
-    for part in range(first_part, last_part):
-        bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
-        row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
-        while row < last:
-            end = _next_run(lamp, view_of_row, weights, row, last, bright, heavy)
-            here = slice(row * columns, end * columns)
-            _descend_run(bright, now[here], aim[here], heavy, curve)
-            out[here] = bright[: (end - row) * columns]
-            row = end
+    bright, heavy = _room(absorbance)
+    for _, row, end in _stretches(first_part, last_part, view_of_row, columns):
+        here = slice(row * columns, end * columns)
+        _prepare(lamp[view_of_row[row]], weights, row, end, bright, heavy)
+        _descend_run(bright, now[here], aim[here], heavy, curve)
+        out[here] = bright[: (end - row) * columns]
 
 
 @compiled
@@ -142,17 +155,13 @@ def _arrive(
     sums: Array,
     least: Array,
 ) -> None:
-    rows, columns = now.shape
+    columns = now.shape[1]
     before, after, aim = last.reshape(-1), now.reshape(-1), wanted.reshape(-1)
-    run = _run(rows // _PARTS + 1, columns)
-    for part in range(first_part, last_part):
-        bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
-        row, stop = part * rows // _PARTS, (part + 1) * rows // _PARTS
-        while row < stop:
-            end = _next_run(lamp, view_of_row, weights, row, stop, bright, heavy)
-            here = slice(row * columns, end * columns)
-            _arrive_run(bright, before[here], after[here], aim[here], heavy, curve, sums[part], least[part])
-            row = end
+    bright, heavy = _room(now)
+    for part, row, end in _stretches(first_part, last_part, view_of_row, columns):
+        here = slice(row * columns, end * columns)
+        _prepare(lamp[view_of_row[row]], weights, row, end, bright, heavy)
+        _arrive_run(bright, before[here], after[here], aim[here], heavy, curve, sums[part], least[part])
 
 
 @compiled
@@ -202,17 +211,13 @@ def _curvatures(
     room: Any,
     values: Array,
 ) -> None:
-    rows, columns = absorbance.shape
+    columns = absorbance.shape[1]
     now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), values.reshape(-1)
-    run = _run(rows // _PARTS + 1, columns)
-    for part in range(first_part, last_part):
-        bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
-        row, last = part * rows // _PARTS, (part + 1) * rows // _PARTS
-        while row < last:
-            end = _next_run(lamp, view_of_row, weights, row, last, bright, heavy)
-            here = slice(row * columns, end * columns)
-            _curve_run(bright, now[here], aim[here], heavy, curve, room, out[here])
-            row = end
+    bright, heavy = _room(absorbance)
+    for _, row, end in _stretches(first_part, last_part, view_of_row, columns):
+        here = slice(row * columns, end * columns)
+        _prepare(lamp[view_of_row[row]], weights, row, end, bright, heavy)
+        _curve_run(bright, now[here], aim[here], heavy, curve, room, out[here])
 
 
 @compiled

@@ -1,8 +1,7 @@
 """Light of several views that adds up on the screen, and the two-sided residual of the sum.
 
-``absorbance`` is ``(views, entries)``: picture p is made by views ``starts[p]`` to before ``starts[p + 1]``. Entry i
-of view v shows ``l = P g (1 - a + a e^-absorbance)``, with ``P = powers[v, i % channels]``, ``g = light[v, k]`` and
-``a = shadow[v, k]`` for ``k = i // channels``; the screen shows ``e^u``, the sum. So ``du/d absorbance = -s`` with
+Views, their entries, and the light ``P g (1 - a + a e^-absorbance)`` that each of them shows are as in
+`lightcube.kernels.light`; the screen shows ``e^u``, the sum. So ``du/d absorbance = -s`` with
 ``s`` the part of all light that P g a e^-absorbance makes up, and the second derivatives of u are ``diag(s) - s s'``. A
 convex function f of u has then, by absorbance, a second derivative of at most ``diag(s (f'' sum(s) + max(f', 0)))``,
 and where f' pulls, ``min(s, 2 s (1 - s))`` takes the place of s (sums of rows of the matrix). Results do not depend on
@@ -10,7 +9,7 @@ the number of threads.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from lightcube.kernels.compiled import compiled
 from lightcube.kernels.descent import added
 from lightcube.kernels.display import Curve, curvature, pull, residual
 from lightcube.kernels.exponential import exp
+from lightcube.kernels.light import Mixture, divide, falling, of_pixels
 
 Array = NDArray[Any]
 
@@ -29,15 +29,6 @@ _KEPT, PARTS = 16384, 16
 _MOST = 60.0
 #: The least part of all light that a view counts as in bounds on curvature, relative to its part without a cube.
 _LEAST_PART = 0.2
-
-
-class Mixture(NamedTuple):
-    """Which views make which picture, and how strong; see the module."""
-
-    starts: Array
-    powers: Array
-    light: Array
-    shadow: Array
 
 
 @compiled
@@ -52,29 +43,34 @@ def _runs(mixture: Mixture, entries: int, columns: int) -> tuple[int, int, int]:
 
 
 @compiled
-def _part(part: int, parts: int, entries: int, columns: int) -> tuple[int, int]:
-    """First entry of a part of a picture, and one after its last; parts are whole rows."""
-    rows = entries // columns
-    return part * rows // parts * columns, (part + 1) * rows // parts * columns
+def _stretches(first: int, last: int, mixture: Mixture, entries: int, columns: int) -> list[tuple[int, int, int, int]]:
+    """What tasks `first` to before `last` walk: the task, its picture, a run's first entry, and one after its last."""
+    _, run, parts = _runs(mixture, entries, columns)
+    rows, found = entries // columns, []
+    for task in range(first, last):
+        part = task % parts
+        begin, stop = part * rows // parts * columns, (part + 1) * rows // parts * columns
+        for start in range(begin, stop, run):
+            found.append((task, task // parts, start, min(start + run, stop)))  # noqa: PERF401 - numba compiles it
+    return found
 
 
 @compiled
-def _split(mixture: Mixture, view: int, start: int, count: int, clear: Array, dark: Array) -> None:
-    """Write the light of a view, without a cube, that no cube absorbs (`clear`), and that which one can (`dark`)."""
-    channels = mixture.powers.shape[1]
-    for k in range(count // channels):
-        at = start // channels + k
-        for c in range(channels):
-            full = mixture.powers[view, c] * mixture.light[view, at]
-            dark[k * channels + c] = full * mixture.shadow[view, at]
-            clear[k * channels + c] = full - dark[k * channels + c]
+def _room(mixture: Mixture, wanted: Array, columns: int) -> tuple[Array, Array, Array]:
+    """Room for `lit`, `through` and `u` of `_shine`, of the longest run."""
+    most, run, _ = _runs(mixture, wanted.shape[1], columns)
+    lit, through = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
+    return lit, through, np.empty(run, wanted.dtype)
 
 
 @compiled
 def _shine(
-    mixture: Mixture, picture: int, absorbance: Array, start: int, end: int, lit: Array, cast: Array, u: Array
+    mixture: Mixture, picture: int, absorbance: Array, start: int, end: int, lit: Array, through: Array, u: Array
 ) -> None:
-    """Write the parts of all light that each view makes (`lit`), those that absorb (`cast`), and ln light (`u`)."""
+    """Write what each view makes of all light (`lit`), what of that came `through` the cube, and ln light (`u`).
+
+    Both are parts of the whole: those `lit` add up to 1, and `through` is what changes with the absorbance.
+    """
     first, last = mixture.starts[picture], mixture.starts[picture + 1]
     count = end - start
     least = np.full(count, absorbance.dtype.type(np.inf))
@@ -84,7 +80,7 @@ def _shine(
             least[i] = min(least[i], absorbance[v, start + i])
     for v in range(first, last):
         clear = lit[v - first]
-        _split(mixture, v, start, count, clear, cast[v - first])
+        divide(mixture, v, start, count, clear, through[v - first])
         for i in range(count):
             whole[i] += clear[i]
     most = absorbance.dtype.type(_MOST)
@@ -92,7 +88,7 @@ def _shine(
         least[i] = min(least[i], most) if whole[i] > 0 else least[i]
         whole[i] = 0
     for v in range(first, last):
-        clear, dark = lit[v - first], cast[v - first]
+        clear, dark = lit[v - first], through[v - first]
         for i in range(count):
             dark[i] *= exp(least[i] - absorbance[v, start + i])
             clear[i] = clear[i] * exp(min(least[i], most)) + dark[i]
@@ -105,7 +101,7 @@ def _shine(
     for j in range(last - first):
         for i in range(count):
             lit[j, i] *= whole[i]
-            cast[j, i] *= whole[i]
+            through[j, i] *= whole[i]
 
 
 @compiled
@@ -114,8 +110,9 @@ def _bare(mixture: Mixture, picture: int, start: int, end: int, inverse: Array) 
     channels = mixture.powers.shape[1]
     inverse[:] = 0
     for v in range(mixture.starts[picture], mixture.starts[picture + 1]):
+        light = of_pixels(mixture.light[v], start // channels, (end - start) // channels)
         for i in range(end - start):
-            inverse[i] += mixture.powers[v, i % channels] * mixture.light[v, (start + i) // channels]
+            inverse[i] += falling(mixture.powers[v, i % channels], light[i // channels])
     for i in range(end - start):
         inverse[i] = 1 / max(inverse[i], inverse.dtype.type(1e-30))
 
@@ -125,30 +122,6 @@ def _run(kernel: Any, mixture: Mixture, shape: tuple[int, ...], columns: int, *a
     pictures, entries = shape
     parts = _runs(mixture, entries, columns)[2]
     tasks.run(kernel, pictures * parts, 8 * len(mixture.light) * entries, *arguments)
-
-
-def shine(mixture: Mixture, absorbance: Array, columns: int, logs: Array) -> None:
-    """Write ln of the light that the screen shows to `logs`, ``(pictures, entries)``."""
-    _run(_shine_all, mixture, logs.shape, columns, mixture, absorbance, columns, logs)
-
-
-@compiled
-def _shine_all(
-    first_task: int,
-    last_task: int,
-    mixture: Mixture,
-    absorbance: Array,
-    columns: int,
-    logs: Array,
-) -> None:
-    entries = logs.shape[1]
-    most, run, parts = _runs(mixture, entries, columns)
-    for task in range(first_task, last_task):
-        lit, cast = np.empty((most, run), logs.dtype), np.empty((most, run), logs.dtype)
-        begin, stop = _part(task % parts, parts, entries, columns)
-        for start in range(begin, stop, run):
-            end = min(start + run, stop)
-            _shine(mixture, task // parts, absorbance, start, end, lit, cast, logs[task // parts, start:end])
 
 
 def descend(
@@ -171,22 +144,15 @@ def _descend(
     curve: Curve,
     slopes: Array,
 ) -> None:
-    entries = wanted.shape[1]
-    most, run, parts = _runs(mixture, entries, columns)
-    for task in range(first_task, last_task):
-        p = task // parts
-        lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
-        u = np.empty(run, wanted.dtype)
-        begin, stop = _part(task % parts, parts, entries, columns)
-        for start in range(begin, stop, run):
-            end = min(start + run, stop)
-            _shine(mixture, p, absorbance, start, end, lit, cast, u)
+    lit, through, u = _room(mixture, wanted, columns)
+    for _, p, start, end in _stretches(first_task, last_task, mixture, wanted.shape[1], columns):
+        _shine(mixture, p, absorbance, start, end, lit, through, u)
+        for i in range(end - start):
+            value, slope = residual(u[i], wanted[p, start + i], curve)
+            u[i] = weights[p, start + i] * value * slope
+        for v in range(mixture.starts[p], mixture.starts[p + 1]):
             for i in range(end - start):
-                value, slope = residual(u[i], wanted[p, start + i], curve)
-                u[i] = weights[p, start + i] * value * slope
-            for v in range(mixture.starts[p], mixture.starts[p + 1]):
-                for i in range(end - start):
-                    slopes[v, start + i] = -u[i] * cast[v - mixture.starts[p], i]
+                slopes[v, start + i] = -u[i] * through[v - mixture.starts[p], i]
 
 
 def arrive(
@@ -215,23 +181,16 @@ def _arrive(
     sums: Array,
     least: Array,
 ) -> None:
-    entries = wanted.shape[1]
-    most, run, parts = _runs(mixture, entries, columns)
-    for task in range(first_task, last_task):
-        p = task // parts
-        lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
-        u = np.empty(run, wanted.dtype)
-        begin, stop = _part(task % parts, parts, entries, columns)
-        for start in range(begin, stop, run):
-            end = min(start + run, stop)
-            _shine(mixture, p, now, start, end, lit, cast, u)
+    lit, through, u = _room(mixture, wanted, columns)
+    for task, p, start, end in _stretches(first_task, last_task, mixture, wanted.shape[1], columns):
+        _shine(mixture, p, now, start, end, lit, through, u)
+        for i in range(end - start):
+            value, _ = residual(u[i], wanted[p, start + i], curve)
+            sums[task, i % columns] += weights[p, start + i] * value * value
+        for v in range(mixture.starts[p], mixture.starts[p + 1]):
             for i in range(end - start):
-                value, _ = residual(u[i], wanted[p, start + i], curve)
-                sums[task, i % columns] += weights[p, start + i] * value * value
-            for v in range(mixture.starts[p], mixture.starts[p + 1]):
-                for i in range(end - start):
-                    ahead = now[v, start + i] + (now[v, start + i] - last[v, start + i])
-                    least[task, i % columns] = min(least[task, i % columns], float(ahead))
+                ahead = now[v, start + i] + (now[v, start + i] - last[v, start + i])
+                least[task, i % columns] = min(least[task, i % columns], float(ahead))
 
 
 def curvatures(
@@ -266,35 +225,28 @@ def _curvatures(
     room: Any,
     values: Array,
 ) -> None:
-    entries = wanted.shape[1]
-    channels, least = mixture.powers.shape[1], wanted.dtype.type(_LEAST_PART)
-    most, run, parts = _runs(mixture, entries, columns)
-    for task in range(first_task, last_task):
-        p = task // parts
-        lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
-        u, bare = np.empty(run, wanted.dtype), np.empty(run, wanted.dtype)
-        bend = np.empty(run, wanted.dtype)
-        begin, stop = _part(task % parts, parts, entries, columns)
-        for start in range(begin, stop, run):
-            end = min(start + run, stop)
-            _shine(mixture, p, absorbance, start, end, lit, cast, u)
-            _bare(mixture, p, start, end, bare)
-            bend[:] = 0
-            for v in range(mixture.starts[p], mixture.starts[p + 1]):
-                for i in range(end - start):
-                    k, c = (start + i) // channels, i % channels
-                    part = mixture.powers[v, c] * mixture.light[v, k] * mixture.shadow[v, k] * bare[i]
-                    bend[i] += max(cast[v - mixture.starts[p], i], least * part)
-                    cast[v - mixture.starts[p], i] = max(cast[v - mixture.starts[p], i], least * part)
+    floor = wanted.dtype.type(_LEAST_PART)
+    lit, through, u = _room(mixture, wanted, columns)
+    bare, bend, clear, dark = np.empty_like(u), np.empty_like(u), np.empty_like(u), np.empty_like(u)
+    for _, p, start, end in _stretches(first_task, last_task, mixture, wanted.shape[1], columns):
+        _shine(mixture, p, absorbance, start, end, lit, through, u)
+        _bare(mixture, p, start, end, bare)
+        bend[:] = 0
+        for v in range(mixture.starts[p], mixture.starts[p + 1]):
+            s = through[v - mixture.starts[p]]
+            divide(mixture, v, start, end - start, clear, dark)
             for i in range(end - start):
-                at, weight = wanted[p, start + i], weights[p, start + i]
-                brighter = u[i] + room
-                bend[i] *= weight * curvature(brighter, at, curve)
-                u[i] = weight * max(pull(brighter, at, curve)[0], 0)
-            for v in range(mixture.starts[p], mixture.starts[p + 1]):
-                for i in range(end - start):
-                    s = cast[v - mixture.starts[p], i]
-                    values[v, start + i] *= s * bend[i] + min(s, abs(2 * s * (1 - s))) * u[i]
+                s[i] = max(s[i], floor * (dark[i] * bare[i]))
+                bend[i] += s[i]
+        for i in range(end - start):
+            at, weight = wanted[p, start + i], weights[p, start + i]
+            brighter = u[i] + room
+            bend[i] *= weight * curvature(brighter, at, curve)
+            u[i] = weight * max(pull(brighter, at, curve)[0], 0)
+        for v in range(mixture.starts[p], mixture.starts[p + 1]):
+            for i in range(end - start):
+                s_i = through[v - mixture.starts[p], i]
+                values[v, start + i] *= s_i * bend[i] + min(s_i, abs(2 * s_i * (1 - s_i))) * u[i]
 
 
 def pulls(
@@ -329,27 +281,21 @@ def _pulls(
     curve: Curve,
     sums: Array,
 ) -> None:
-    entries = wanted.shape[1]
-    channels = mixture.powers.shape[1]
-    most, run, parts = _runs(mixture, entries, columns)
-    for task in range(first_task, last_task):
-        p, part = task // parts, task % parts
-        lit, cast = np.empty((most, run), wanted.dtype), np.empty((most, run), wanted.dtype)
-        u, bends, share = np.empty(run, wanted.dtype), np.empty(run, wanted.dtype), np.empty(run, wanted.dtype)
-        begin, stop = _part(part, parts, entries, columns)
-        for start in range(begin, stop, run):
-            end = min(start + run, stop)
-            _shine(mixture, p, absorbance, start, end, lit, cast, u)
+    channels, parts = mixture.powers.shape[1], _runs(mixture, wanted.shape[1], columns)[2]
+    lit, through, u = _room(mixture, wanted, columns)
+    bends, share = np.empty_like(u), np.empty_like(u)
+    for task, p, start, end in _stretches(first_task, last_task, mixture, wanted.shape[1], columns):
+        _shine(mixture, p, absorbance, start, end, lit, through, u)
+        for i in range(end - start):
+            first, second = pull(u[i], wanted[p, start + i], curve)
+            u[i], bends[i] = weights[p, start + i] * first, weights[p, start + i] * second
+        share[:] = 0
+        for v in range(mixture.starts[p], mixture.starts[p + 1]):
+            share += lit[v - mixture.starts[p]]
+            if v + 1 < mixture.starts[p + 1] and groups[v + 1] == groups[v]:
+                continue
             for i in range(end - start):
-                first, second = pull(u[i], wanted[p, start + i], curve)
-                u[i], bends[i] = weights[p, start + i] * first, weights[p, start + i] * second
+                s, c, part = min(share[i], 1), i % channels, task % parts
+                sums[0, part, groups[v], c] += s * u[i]
+                sums[1, part, groups[v], c] += s * bends[i] + min(s, 2 * s * (1 - s)) * max(u[i], 0)
             share[:] = 0
-            for v in range(mixture.starts[p], mixture.starts[p + 1]):
-                share += lit[v - mixture.starts[p]]
-                if v + 1 < mixture.starts[p + 1] and groups[v + 1] == groups[v]:
-                    continue
-                for i in range(end - start):
-                    s, c = min(share[i], 1), i % channels
-                    sums[0, part, groups[v], c] += s * u[i]
-                    sums[1, part, groups[v], c] += s * bends[i] + min(s, 2 * s * (1 - s)) * max(u[i], 0)
-                share[:] = 0

@@ -5,11 +5,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
-from lightcube.kernels import display, objective
+from lightcube.kernels import display, light, objective
+from lightcube.optics.law import Mixture
 from lightcube.solvers._convex import ROOM
-from lightcube.solvers.contract import Floats, Mixture, Operator, Wanted
+from lightcube.solvers.contract import Floats, Operator, Wanted
 
 #: Newton's steps for the lamps' powers in each pass, at most; the longest one, and one so short that it is the last.
 _STEPS, _LONGEST, _SHORT = 10, 1.0, 1e-3
@@ -39,7 +40,7 @@ class Objective:
         low, high = wanted.lamp_bounds
         pictures = wanted.lighting.pictures
         logs = np.log(wanted.light).reshape(pictures, -1)
-        heavy = np.ascontiguousarray(wanted.weights).reshape(pictures, -1) * _lit(mixture)
+        heavy = np.ascontiguousarray(wanted.weights).reshape(pictures, -1) * _lit(mixture, logs.shape[1])
         curve = display.curve(wanted.transfer == "srgb", wanted.light.dtype.type)
         columns = wanted.light.shape[1]
         return cls(mixture, wanted.lighting.lamp, logs, heavy, np.log(low), np.log(high), (low, high), curve, columns)
@@ -94,34 +95,15 @@ class Objective:
     def _picture(self) -> NDArray[np.intp]:
         return np.repeat(np.arange(len(self.wanted)), np.diff(self.mixture.starts))
 
-    def _mixed(self, lamp: NDArray[np.float64], ax: Floats) -> objective.Mixture:
-        return for_kernels(self.mixture, np.exp(lamp)[self.lamp_of_view], ax.dtype)
+    def _mixed(self, lamp: NDArray[np.float64], ax: Floats) -> light.Mixture:
+        return self.mixture.under(np.exp(lamp)[self.lamp_of_view], ax.dtype)
 
     def _data(self, ax: Floats) -> tuple[Floats, int, Floats, Floats, display.Curve]:
         return ax.reshape(len(self.lamp_of_view), -1), self.columns, self.wanted, self.weights, self.curve
 
 
-def _lit(mixture: Mixture) -> NDArray[np.bool_]:
+def _lit(mixture: Mixture, entries: int) -> NDArray[np.bool_]:
     """``(pictures, entries)``: where any light falls. Elsewhere no cube changes anything, so nothing is asked for."""
     falls = [mixture.light[first:last].T @ mixture.share[first:last] > 0 for first, last in pairwise(mixture.starts)]
-    return np.stack(falls).reshape(len(falls), -1)
-
-
-def mixed_light(mixture: Mixture, powers: NDArray[np.floating[Any]], absorbance: Floats) -> Floats:
-    """What the screen shows at the absorbance of all views, whose lamps have powers ``(views, channels)``.
-
-    Returns
-    -------
-    ``(pictures, entries)``, linear light, the entries of a picture in the order of a view's in `absorbance`.
-    """
-    absorbed = absorbance.reshape(len(powers), -1)
-    logs = np.empty((len(mixture.starts) - 1, absorbed.shape[1]), absorbance.dtype)
-    objective.shine(for_kernels(mixture, powers, absorbance.dtype), absorbed, absorbance.shape[1], logs)
-    return np.exp(logs, out=logs)
-
-
-def for_kernels(mixture: Mixture, powers: NDArray[np.floating[Any]], dtype: DTypeLike) -> objective.Mixture:
-    """What the kernels want to know of the views and the power of each one's lamp."""
-    strength = (powers * mixture.share).astype(dtype)
-    light, shadow = (each.astype(dtype, copy=False) for each in (mixture.light, mixture.shadow))
-    return objective.Mixture(mixture.starts, strength, light, shadow)
+    pixels = entries // mixture.share.shape[1]
+    return np.stack([np.broadcast_to(each, (pixels, each.shape[1])).ravel() for each in falls])

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics.absorption import absorbance
+from lightcube.optics.law import Mixture, within
 from lightcube.optics.transfer import Transfer
 
 if TYPE_CHECKING:
@@ -37,50 +38,6 @@ class Operator(Protocol):
 
     def to_sparse(self) -> "csr_array":
         """The same matrix, float64, for methods that need single rows."""
-
-
-@dataclass(frozen=True, eq=False)
-class Mixture:
-    """How views add up to pictures: those of a picture follow each other.
-
-    A picture shows the sum over its views of ``P share light (1 - shadow (1 - e^-(A x)))``, P the power of the lamp.
-
-    Parameters
-    ----------
-    starts
-        ``(pictures + 1,)``: the views of picture p are those from ``starts[p]`` to before ``starts[p + 1]``.
-    share
-        ``(views, channels)`` of at least 0.
-    light, shadow
-        ``(views, pixels)``, of at least 0 and in [0, 1]: a view's pixels in the order of its equations and columns.
-
-    Raises
-    ------
-    InputError
-        Where these are not of the same views, or out of range.
-    """
-
-    starts: NDArray[np.intp]
-    share: NDArray[np.float64]
-    light: Floats
-    shadow: Floats
-
-    def __post_init__(self) -> None:
-        views = self.light.shape[0]
-        if self.light.ndim != 2 or self.shadow.shape != self.light.shape or self.share.shape[:1] != (views,):
-            raise InputError(
-                f"light of shape {self.light.shape}, shadow of shape {self.shadow.shape} and share of shape "
-                f"{self.share.shape} are not of the same views"
-            )
-        if [*self.starts[:1], *self.starts[-1:]] != [0, views] or np.any(np.diff(self.starts) < 1):
-            raise InputError(f"pictures must begin at views from 0 up to {views}, each with one at least")
-        for name, values, most in (
-            ("share", self.share, np.inf),
-            ("light", self.light, np.inf),
-            ("shadow", self.shadow, 1),
-        ):
-            if not _within(values, 0, most):
-                raise InputError(f"{name} must be finite and {'at least 0' if most == np.inf else 'from 0 to 1'}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,8 +177,9 @@ def _check_mixture(lighting: Lighting, light: Floats, channels: int) -> None:
     mixture = lighting.mixture
     if mixture is None:
         return
-    pixels = mixture.light.shape[1]
-    if mixture.share.shape[1:] != (channels,) or pixels * channels * lighting.pictures != light.size:
+    pixels, entries = mixture.light.shape[1], light.size // lighting.pictures
+    fits = entries % channels == 0 if pixels == 1 else entries == pixels * channels
+    if mixture.share.shape[1:] != (channels,) or not fits:
         raise InputError(
             f"views of {pixels} pixels, and shares of shape {mixture.share.shape}, do not fit light of shape "
             f"{light.shape} in {lighting.pictures} pictures of {channels} channels"
@@ -234,7 +192,7 @@ def _weights(weights: Floats | None, light: Floats) -> Floats:
         whole = np.broadcast_to(given.astype(light.dtype, copy=False), light.shape)
     except ValueError as error:
         raise InputError(f"weights of shape {given.shape} do not fit light of shape {light.shape}") from error
-    if not _within(given, 0, np.inf):
+    if not within(given, 0, np.inf):
         raise InputError("weights must be finite and at least 0: use 0 for don't care")
     return whole
 
@@ -253,11 +211,6 @@ def _lamp_bounds(
     if np.any(low > high):
         raise InputError("a lower bound of the lamp powers is above the upper one: swap them")
     return low, high
-
-
-def _within(values: NDArray[Any], least: float, most: float) -> bool:
-    """Whether all numbers are finite and within bounds; False where one is NaN."""
-    return values.size == 0 or bool(values.min() >= least and values.max() <= most and values.max() < np.inf)
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ class Method:
     chooses_lamps
         Whether it finds lamp powers within bounds. If not it gets one power for each lamp.
     takes_sums
-        Whether it can do with views that add up to a picture (`lightcube.solvers.contract.Mixture`).
+        Whether it can do with views that add up to a picture (`lightcube.optics.law.Mixture`).
     coarse_to_fine
         Whether large cubes start from the solution at half the size.
     residual
