@@ -4,10 +4,15 @@ import os
 import signal
 
 import pytest
+from hypothesis import settings
 
 from tests.helpers.browser import bare_browser, browser, evaluate, launch
 
 __all__ = ["bare_browser", "browser", "evaluate", "launch"]
+
+# No test is about how long it takes on a machine that does other things too.
+settings.register_profile("patient", deadline=None)
+settings.load_profile("patient")
 
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 

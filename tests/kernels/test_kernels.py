@@ -28,7 +28,7 @@ def compiled_exp(numbers, out):  # type: ignore[no-untyped-def]
         out[i] = exponential.exp(numbers[i])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     columns=st.integers(1, 150),
     target_columns=st.integers(1, 150),

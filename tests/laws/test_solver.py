@@ -424,7 +424,7 @@ def test_bad_input_is_refused_with_a_sentence(name: str, match: str, changes: di
         METHODS[name].solve(A, **{"wanted": Wanted(B), **changes})
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     name=st.sampled_from(list(METHODS)),
     shape=st.tuples(st.integers(0, 16), st.integers(0, 3)).filter(lambda shape: shape != (15, 2)),

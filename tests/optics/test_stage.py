@@ -329,7 +329,7 @@ any_float = st.floats() | st.sampled_from([0.0, 1.0, -1.0, 1e-9, 1e300, -1e300, 
 vector = st.tuples(any_float, any_float, any_float)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.data())
 def test_any_numbers_make_a_stage_or_one_sentence(data: st.DataObject) -> None:
     """A few numbers of a good stage become any: what is left is finite, and lamps and screens have a direction."""

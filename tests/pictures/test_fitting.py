@@ -136,7 +136,7 @@ def test_pad_never_loses_a_picture_altogether() -> None:
         assert np.all(targets.weight.max(axis=(1, 2)) == 1)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     sizes=st.lists(st.tuples(st.integers(1, 20), st.integers(1, 20)), min_size=2, max_size=4),
     shape=st.tuples(*[st.integers(1, 9)] * 3),
@@ -211,7 +211,7 @@ class TestAngles:
         with pytest.raises(InputError, match=r"number 1 and 2 .* are the same view"):
             distinct_angles(angles_deg)
 
-    @settings(max_examples=100, deadline=None)
+    @settings(max_examples=100)
     @given(angles_deg=st.lists(st.integers(-2000, 2000), min_size=1, max_size=6))
     def test_distinct_angles_are_those_with_distinct_remainders(self, angles_deg: list[int]) -> None:
         if len({angle_deg % 360 for angle_deg in angles_deg}) == len(angles_deg):
@@ -314,7 +314,7 @@ class TestTargets:
         with pytest.raises(InputError, match="picture 'b' has no pixel"):
             replace(self.targets(), weights=weights)
 
-    @settings(max_examples=30, deadline=None)
+    @settings(max_examples=30)
     @given(seed=st.integers(0, 2**32 - 1), transfer=st.sampled_from(["srgb", "linear"]))
     def test_a_cube_gives_its_targets_back(self, seed: int, transfer: str) -> None:
         grid = Grid((3, 5, 7))

@@ -101,7 +101,7 @@ def test_raising_the_lamp_looks_along_the_same_columns_shifted() -> None:
     assert row - (views.picture_shape[0] - 1) / 2 == -4
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     shape=st.tuples(*[st.integers(1, 4)] * 3),
     angle_deg=st.floats(-720, 720).filter(lambda a: abs((a + 45) % 90 - 45) > 1e-4 or a % 90 == 0),

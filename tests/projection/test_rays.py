@@ -150,7 +150,7 @@ def grids_and_views(draw: st.DrawFn) -> tuple[Grid, Views]:
     return grid, Views(turned, views.origins_mm @ turn, *steps, views.picture_shape)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(grids_and_views())
 def test_any_rays_agree_with_plain_boxes(case: tuple[Grid, Views]) -> None:
     check(*case)

@@ -222,7 +222,7 @@ anything = st.recursive(
     ),
     value=anything,
 )
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_any_rubbish_gives_a_scene_or_one_sentence(where: str, value: Any) -> None:
     shape: dict[str, Any] = {"type": "sphere", "radius": 1, "colour": "#fff"}
     data: dict[str, Any] = {"camera": {"type": "parallel", "position": [1, 2, 3], "height": 1}, "shapes": [shape]}

@@ -174,7 +174,7 @@ def star(radii: list[float], turn: float = 0.0) -> Array:
     turn=st.floats(0, 6),
     two=st.booleans(),
 )
-@settings(max_examples=20 if JIT_OFF else 100, deadline=None)
+@settings(max_examples=20 if JIT_OFF else 100)
 def test_a_polygon_is_cut_into_triangles_that_fill_it_once(
     outer: list[float], hole: list[float], turn: float, two: bool
 ) -> None:

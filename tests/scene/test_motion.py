@@ -24,7 +24,7 @@ def group(keys: list[dict[str, object]], **motion: object) -> Group:
     easing=st.sampled_from(EASINGS),
     loop=st.booleans(),
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_keyframes_are_hit_exactly(
     places: list[tuple[float, float, float]], turns: tuple[float, float, float], easing: str, loop: bool
 ) -> None:
@@ -42,7 +42,7 @@ def test_keyframes_are_hit_exactly(
 
 
 @given(places=st.lists(triple, min_size=1, max_size=5), easing=st.sampled_from(EASINGS[:-1]), phase=st.floats(0, 1))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_closed_loops_join_up(places: list[tuple[float, float, float]], easing: str, phase: float) -> None:
     keys = [{"time": 0.07 + 0.9 * i / len(places), "position": p} for i, p in enumerate(places)]
     thing = group(keys, easing=easing, loop=True, phase=phase)
@@ -150,7 +150,7 @@ def test_phase_shifts_time_and_channels_go_their_own_way() -> None:
 
 
 @given(angles_deg=degrees, point=triple)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_rotations_keep_lengths_and_handedness(
     angles_deg: tuple[float, float, float], point: tuple[float, float, float]
 ) -> None:
@@ -168,7 +168,7 @@ def test_rotation_is_about_x_then_y_then_z() -> None:
 
 
 @given(inner=st.tuples(triple, degrees), outer=st.tuples(triple, degrees), point=triple)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_parents_are_applied_after_the_child(
     inner: tuple[tuple[float, float, float], tuple[float, float, float]],
     outer: tuple[tuple[float, float, float], tuple[float, float, float]],

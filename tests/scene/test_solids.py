@@ -116,7 +116,7 @@ def test_normals_point_along_the_gradient_of_the_distance(
 
 @each_shape
 @given(scale=st.floats(1e-3, 1e3), away=st.floats(-50, 50))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_crossings_do_not_depend_on_where_the_line_starts_nor_on_its_speed(
     kind: int, size: list[float], distance: Callable[[Array, Array], Array], scale: float, away: float
 ) -> None:

@@ -160,7 +160,7 @@ def test_stops_half_a_turn_apart_take_the_whole_turn() -> None:
     assert curve(cube, cast_targets(cube, 0.1)).period_deg == 360
 
 
-@settings(deadline=None, max_examples=15)
+@settings(max_examples=15)
 @given(
     st.lists(st.integers(0, 35999), min_size=1, max_size=4, unique_by=lambda a: a % 36000),
     st.sampled_from([0.0, -20.0]),

@@ -44,14 +44,14 @@ def test_what_cannot_be_wanted_is_refused_with_a_sentence(match: str, changes: d
         Wanted(**{"light": np.full((77, 2), 0.5), **changes})
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.tuples(st.integers(0, 3), st.integers(0, 3)).filter(lambda shape: shape not in {(1, 1), (1, 2)}))
 def test_weights_of_any_other_shape_are_refused(shape: tuple[int, int]) -> None:
     with pytest.raises(InputError, match="weights"):
         Wanted(np.full((77, 2), 0.5), np.ones(shape))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     where=st.tuples(st.integers(0, 76), st.integers(0, 1)),
     value=st.sampled_from([np.nan, np.inf, -np.inf, 0.0, -1e-30, -5.0]),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import Bounds, minimize
 
@@ -35,7 +35,6 @@ def plain_objective(matrix: np.ndarray, x: np.ndarray, wanted: np.ndarray, power
     return total
 
 
-@settings(deadline=None)
 @given(st.floats(-9, 4), st.booleans())
 def test_display_of_log_is_the_curve_and_its_derivatives(u: float, srgb: bool) -> None:
     value, slope, bend = display_of_log(u, curve_of(srgb, np.float64))
@@ -51,7 +50,6 @@ def test_display_of_log_is_the_curve_and_its_derivatives(u: float, srgb: bool) -
         assert bend == pytest.approx((high[1] - low[1]) / (2 * step), rel=1e-4)
 
 
-@settings(deadline=None)
 @given(st.floats(-9, 3), st.floats(-9, 0), st.booleans())
 def test_the_bound_on_the_curvature_holds_below(u: float, wanted: float, srgb: bool) -> None:
     bound = curvature(u, wanted, curve_of(srgb, np.float64))
@@ -67,7 +65,6 @@ def test_the_bound_on_the_curvature_holds_below(u: float, wanted: float, srgb: b
         assert second <= bound + 1e-4
 
 
-@settings(deadline=None)
 @given(st.floats(-2, 2), st.floats(-9, 0), st.booleans())
 def test_the_conjugate_is_the_largest_of_all_differences(slope: float, wanted: float, srgb: bool) -> None:
     """Convex duality: slope u - f(u) never exceeds it, and comes near it somewhere."""

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from PIL import Image
@@ -183,7 +183,6 @@ def widget() -> Any:
     return notebook.show(turning())
 
 
-@settings(deadline=None)
 @given(angle_deg=st.floats(-1e9, 1e9))
 def test_the_widgets_angle_is_within_a_turn(widget: Any, angle_deg: float) -> None:
     widget.angle_deg = angle_deg

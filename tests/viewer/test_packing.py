@@ -70,7 +70,7 @@ def test_the_codes_come_back_from_the_bytes(channels: int, bits: int, monkeypatc
     assert decoded(packed.data(), packed.codes.size, bits) == packed.codes.ravel().tolist()
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(st.floats(1e-4, 3e3), st.integers(0, 100))
 def test_rounding_is_by_half_a_step_at_most(scale: float, seed: int) -> None:
     cube = random_cube(*TURNTABLES[0], seed=seed)
