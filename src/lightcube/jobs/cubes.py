@@ -1,5 +1,7 @@
 """Cubes that are still being made: loading and publishing them."""
 
+from __future__ import annotations
+
 import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +14,7 @@ from lightcube.io._places import Place, name_of, place
 from lightcube.io.cubes import read_cube
 from lightcube.io.outputs import Output
 from lightcube.jobs.partial import DiskStore, discard_partial, load_job, published_path
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.scoring import metrics
 
@@ -20,6 +23,7 @@ class UnfinishedCube(UserWarning):
     """A cube that was loaded is a partial one, or its solver was stopped early."""
 
 
+@checked
 def load(path: str | Path) -> Cube:
     """Load a cube from a file that `lightcube.io.save` wrote, or from a ``.partial`` folder of one that is being made.
 
@@ -41,7 +45,7 @@ def load(path: str | Path) -> Cube:
     cube = _load_partial(at) if partial else read_cube(path)
     if partial or cube.status != "complete":
         why = "it is still being made" if partial else "its solver was stopped early"
-        warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=2)
+        warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=3)
     return cube
 
 
@@ -84,6 +88,7 @@ class Published:
         return self.done == self.units
 
 
+@checked
 def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
     """Make a cube of what there is of ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``).
 

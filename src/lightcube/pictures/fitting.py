@@ -1,15 +1,18 @@
 """From pictures of any sizes to what is wanted on a screen: angles, cropping, resampling in linear light."""
 
+from __future__ import annotations
+
 import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Levels, Light, Numbers, Reals, locked
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import Rig, turntable
@@ -20,7 +23,7 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 
 Fit = Literal["crop", "pad", "stretch"]
-Picture = NDArray[np.float32]
+Picture = Light
 
 #: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
 RAISED = 35.0
@@ -34,11 +37,12 @@ def check_fit(name: str) -> Fit:
     raise InputError(f"unknown fit {name!r}: use one of {', '.join(get_args(Fit))}")
 
 
+@checked
 def turntable_for(
     pictures: Pictures,
     grid: Grid,
     *,
-    angles_deg: ArrayLike | None = None,
+    angles_deg: Numbers | None = None,
     span_deg: float | None = None,
     elevation_deg: float | None = None,
     picture_width: float = 1.0,
@@ -83,6 +87,7 @@ def turntable_for(
     )
 
 
+@checked
 def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Targets:
     """Fit pictures to the screens of a rig, one each.
 
@@ -113,7 +118,7 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
     weights = np.zeros(fitted.shape[:3], np.float32)
     for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, rig.stops.window, fits, strict=True)):
         _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way))
-    return Targets(fitted, rig, weights, pictures.names, pictures.transfer)
+    return Targets(locked(fitted), rig, locked(weights), pictures.names, pictures.transfer)
 
 
 def fit_report(pictures: Pictures, targets: Targets, fit: Fit = "crop") -> str:
@@ -133,7 +138,7 @@ def fit_report(pictures: Pictures, targets: Targets, fit: Fit = "crop") -> str:
     return f"{count}, {done} from {_size(first)}{more} to {_size(target)}{rule}"
 
 
-def as_levels(targets: Targets) -> NDArray[np.uint8]:
+def as_levels(targets: Targets) -> Levels:
     """Targets as 8-bit display levels ``(view, row, column, channel + 1)``, the last channel the weight.
 
     Weights are scaled so that the largest is 255; none that is above 0 becomes 0.
@@ -154,12 +159,10 @@ def targets_of(cube: Cube) -> Targets:
         raise InputError("this cube was not made from pictures, so it has no targets: give the pictures themselves")
     pictures = from_uint8(cube.targets[..., :-1], cube.transfer)
     weights = cube.targets[..., -1].astype(np.float32) / np.float32(255)
-    return Targets(pictures, cube.rig, weights, cube.names, cube.transfer)
+    return Targets(locked(pictures), cube.rig, locked(weights), cube.names, cube.transfer)
 
 
-def _angles(
-    pictures: Pictures, angles_deg: ArrayLike | None, span_deg: float | None, elevation_deg: float
-) -> NDArray[np.float64]:
+def _angles(pictures: Pictures, angles_deg: Numbers | None, span_deg: float | None, elevation_deg: float) -> Reals:
     """One angle per picture: those asked for, else those that came along, else spread evenly."""
     if angles_deg is not None and span_deg is not None:
         raise InputError("angles and a span of angles are both given: use one of the two")

@@ -1,14 +1,16 @@
 """How large pictures may be, how the cube follows them, how long each can stand: chosen by prediction."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from numpy.typing import ArrayLike
-
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Numbers
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, dense_step_deg
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK
@@ -61,16 +63,27 @@ class Plan:
     fit: Fit
     prediction: Prediction
     shift: int = 0
-    order: "Order | None" = None
+    order: Order | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if self.order is not None:
+            from lightcube.planning.order import Order  # here: the compiler comes with it
+
+            if not isinstance(self.order, Order):
+                raise InputError(
+                    f"Plan takes an Order as order, not {self.order!r}: find one with lightcube.best_order"
+                )
 
     def __repr__(self) -> str:
         return f"<plan of {self.targets!r} for {self.grid!r}: {self.prediction!r}>"
 
-    def to_solve(self, targets: Targets) -> "Plan":
+    def to_solve(self, targets: Targets) -> Plan:
         """The same plan for targets that stand, or follow each other, in another way: predicted anew."""
         return replace(self, targets=targets, prediction=predict(targets, self.grid, self.recipe))
 
 
+@checked
 def plan(
     pictures: Pictures,
     n: int = 128,
@@ -79,7 +92,7 @@ def plan(
     size_mm: float = 100.0,
     shape: tuple[int, int, int] | None = None,
     picture_width: float | None = None,
-    angles_deg: ArrayLike | None = None,
+    angles_deg: Numbers | None = None,
     span_deg: float | None = None,
     elevation_deg: float | None = None,
     power: float | None = None,

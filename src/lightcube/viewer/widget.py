@@ -34,9 +34,9 @@ class CubeWidget(anywidget.AnyWidget):
     _esm = joined("widget.js") + "\nexport default { render };\n"
     _css = source("style.css")
 
-    angle_deg = traitlets.Float(0.0).tag(sync=True)
-    scene = traitlets.Bytes().tag(sync=True)
-    voxels = traitlets.Bytes().tag(sync=True)
+    angle_deg: Any = traitlets.Float(0.0).tag(sync=True)
+    scene: Any = traitlets.Bytes().tag(sync=True)
+    voxels: Any = traitlets.Bytes().tag(sync=True)
 
     def __init__(self, cube: Cube, *, full: bool = False) -> None:
         description, voxels = contents(cube, "light cube", full=full)
