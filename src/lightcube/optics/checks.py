@@ -10,7 +10,7 @@ import inspect
 import sys
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from collections.abc import Set as AnySet
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
@@ -33,8 +33,17 @@ _SOURCES = {
     "Targets": "fit pictures to a rig with lightcube.fit",
     "Views": "take those of a rig, rig.views",
 }
+#: What has a length and parts, and still is no list of things.
+_NO_LISTS = (str, bytes, Mapping, AnySet)
 #: Kinds of numpy's numbers by what an array is to hold; whatever is left are real numbers.
-_NUMBERS = ((np.bool_, "b", "an array of True and False"), (np.integer, "iu", "an array of whole numbers"))
+_NUMBERS: tuple[tuple[type, str, str], ...] = (
+    (np.bool_, "b", "an array of True and False"),
+    (np.integer, "iu", "an array of whole numbers"),
+)
+
+
+def _is_number(value: Any, kind: type) -> bool:
+    return isinstance(value, kind) and not isinstance(value, bool)
 
 
 @dataclass(frozen=True)
@@ -56,8 +65,8 @@ class _Kind:
 _ANYTHING = _Kind("anything", lambda value: True)
 _SIMPLE = {
     bool: _Kind("True or False", lambda value: isinstance(value, bool | np.bool_)),
-    int: _Kind("a whole number", lambda value: isinstance(value, Integral) and not isinstance(value, bool)),
-    float: _Kind("a number", lambda value: isinstance(value, Real) and not isinstance(value, bool)),
+    int: _Kind("a whole number", lambda value: type(value) is int or _is_number(value, Integral)),
+    float: _Kind("a number", lambda value: type(value) is float or _is_number(value, Real)),
     str: _Kind("a text", lambda value: isinstance(value, str)),
     Any: _ANYTHING,
     object: _ANYTHING,
@@ -74,7 +83,11 @@ def checked(function: Function) -> Function:
 
     @functools.wraps(function)
     def checking(*given: Any, **named: Any) -> Any:
-        _check(where, _kinds(function), [*zip(names, given, strict=False), *named.items()])
+        kinds = _kinds(function)
+        for name, value in (*zip(names, given, strict=False), *named.items()):
+            kind = kinds.get(name, _ANYTHING)
+            if not kind.fits(value):
+                raise _refused(where, kind, name, value)
         return function(*given, **named)
 
     return typing.cast(Function, checking)
@@ -85,19 +98,24 @@ def check_fields(thing: Any, where: str = "") -> None:
 
     Lists and arrays become tuples where tuples belong. Sentences begin with `where`, or the name of the class.
     """
-    kinds = _kinds(thing.__class__)
-    given = [(each.name, getattr(thing, each.name)) for each in fields(thing) if each.init]
-    _check(where or type(thing).__name__, kinds, given)
-    for name, value in given:
-        if kinds[name].is_tuple and not isinstance(value, str | tuple) and isinstance(value, Iterable):
+    for name, kind in _field_kinds(thing.__class__):
+        value = getattr(thing, name)
+        if not kind.fits(value):
+            raise _refused(where or type(thing).__name__, kind, name, value)
+        if kind.is_tuple and not isinstance(value, str | tuple | None):
             object.__setattr__(thing, name, tuple(value.tolist() if isinstance(value, np.ndarray) else value))
 
 
-def _check(where: str, kinds: Mapping[str, _Kind], given: Iterable[tuple[str, Any]]) -> None:
-    for name, value in given:
-        kind = kinds.get(name, _ANYTHING)
-        if not kind.fits(value):
-            raise InputError(f"{where} takes {kind.called} as {name}, not {_said(value)}: {kind.advice}")
+def _refused(where: str, kind: _Kind, name: str, value: Any) -> InputError:
+    """What to raise where a value is of another kind."""
+    return InputError(f"{where} takes {kind.called} as {name}, not {_said(value)}: {kind.advice}")
+
+
+@functools.cache
+def _field_kinds(kind: Any) -> list[tuple[str, _Kind]]:
+    """The kinds of the fields that a dataclass is made of, by name."""
+    kinds = _kinds(kind)
+    return [(each.name, kinds[each.name]) for each in fields(kind) if each.init]
 
 
 def _said(value: Any) -> str:
@@ -177,7 +195,9 @@ def _array(dtype: Any) -> _Kind:
 
 def _holds(value: Any, kinds: str, axes: int = 0) -> bool:
     """Whether something is an array of numbers of these of numpy's kinds, or becomes one, of so many axes at least."""
-    if value is None or isinstance(value, str | bytes | Mapping | AnySet):
+    if isinstance(value, np.ndarray):  # as it mostly is: quickly
+        return value.ndim >= axes and (value.dtype.kind in kinds or value.size == 0)
+    if value is None or isinstance(value, _NO_LISTS):
         return False
     try:
         array = np.asarray(value)
@@ -194,12 +214,15 @@ def _sequence(parts: tuple[Any, ...], *, is_tuple: bool) -> _Kind:
     plural = alike if alike.endswith("s") or " of " in alike else f"{alike}s"
 
     def fits(value: Any) -> bool:
-        if isinstance(value, str | bytes | Mapping | AnySet) or not hasattr(value, "__getitem__"):
+        if type(value) is tuple:
+            items = value
+        elif isinstance(value, _NO_LISTS) or not hasattr(value, "__getitem__"):
             return False
-        try:
-            items = value.tolist() if isinstance(value, np.ndarray) else list(value)
-        except TypeError:  # an array of no axes is no list
-            return False
+        else:
+            try:
+                items = tuple(value.tolist() if isinstance(value, np.ndarray) else value)
+            except TypeError:  # an array of no axes is no list
+                return False
         if many:
             return all(kinds[0].fits(item) for item in items)
         return len(items) == len(kinds) and all(kind.fits(item) for kind, item in zip(kinds, items, strict=True))
