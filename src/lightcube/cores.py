@@ -1,5 +1,7 @@
 """How many threads this process may use: as many as there are cores that are free to it, unless told otherwise."""
 
+from __future__ import annotations
+
 import math
 import os
 from pathlib import Path, PurePosixPath

@@ -190,7 +190,7 @@ def test_transfer_and_opacity_are_as_of_other_pictures(folder: Path, tmp_path: P
     _, pictures, _ = read_stage(stage_file(tmp_path, MINIMAL | tables), transfer="linear")
     for image, size in zip(pictures.images, ((2, 3), (4, 1)), strict=True):
         np.testing.assert_array_equal(image, from_uint8(levels_of(*size), "linear"))
-    with pytest.raises(InputError, match="unknown transfer"):
+    with pytest.raises(InputError, match="transfer, not 'gamma': use one of srgb, linear"):
         read_stage(stage_file(folder, MINIMAL), transfer="gamma")  # type: ignore[arg-type]
 
 
@@ -224,7 +224,7 @@ def test_a_stage_wants_as_many_pictures_as_it_has(folder: Path) -> None:
         with pytest.raises(InputError, match="give one of each"):
             fit(given_pictures, rig, given_fits)
     wrong: tuple[Any, ...] = ("zoom",)
-    with pytest.raises(InputError, match="unknown fit 'zoom'"):
+    with pytest.raises(InputError, match=r"zoom.*use one of crop, pad, stretch"):
         fit(pictures, rig, wrong)
 
 

@@ -282,9 +282,9 @@ def test_some_pictures_of_many_keep_their_views() -> None:
     ("part", "changes", "message"),
     [
         ("sums", {"share": np.ones(8)}, "share of a rig has shape"),
-        ("sums", {"lamp": np.zeros(7)}, "lamp of a rig has shape"),
+        ("sums", {"lamp": np.zeros(7, int)}, "lamp of a rig has shape"),
         ("fading", {"reach_mm": np.ones(8)}, "reach_mm of a rig has shape"),
-        ("stops", {"window": np.ones((4, 3))}, "window of a rig has shape"),
+        ("stops", {"window": np.ones((4, 3), int)}, "window of a rig has shape"),
         ("turning", {"axis": np.ones(2)}, "axis of a rig has shape"),
         ("lamps", {"least": np.ones(2)}, "least of a rig has shape"),
         ("sums", {"picture": [0, 0, 1, 1, 2, 3, 3, 2]}, "in the order of their pictures"),

@@ -430,8 +430,9 @@ def test_a_browser_finds_nothing_to_mend(run: Run, pictures: Path, browser: Any)
 def test_single_dark_voxels_are_told(run: Run, pictures: Path, darkest: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lightcube.report.sections._COARSE_DB", -100)
     cube = made()
-    cube.extinction[:, 1, 2, 3] = darkest / cube.grid.voxel_mm
-    save(cube, "a.npz")
+    extinction = cube.extinction.copy()
+    extinction[:, 1, 2, 3] = darkest / cube.grid.voxel_mm
+    save(replace(cube, extinction=extinction), "a.npz")
     told = any("far darker" in words for words in reported(run, "a.npz").texts("p"))
     assert told == (darkest > 10)
 

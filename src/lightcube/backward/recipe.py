@@ -1,13 +1,16 @@
 """All that decides the bits of a cube beside pictures, grid and views."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 
 from lightcube.errors import InputError
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.material import Material
 from lightcube.solvers import find_method
@@ -63,23 +66,21 @@ class Recipe:
     dtype: str = "float32"
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "dtype", _precision(self.dtype))
+        check_fields(self)
         solver = self.solver
-        if self.powers not in get_args(Powers):
-            raise InputError(f"unknown lamp powers {self.powers!r}: use one of {', '.join(get_args(Powers))}")
         if not solver.chooses_lamps and self.powers != "per-picture":
             raise InputError(f"method {solver.name} cannot choose lamp powers: use method display")
         if not self.hold_deg >= 0:
             raise InputError(f"a hold must be a number of degrees of at least 0, not {self.hold_deg:g}")
         if self.passes is not None and self.passes < 1:
             raise InputError(f"a solver needs at least 1 pass, not {self.passes}")
-        if np.dtype(self.dtype) not in (np.float32, np.float64):
-            raise InputError(f"cubes are computed in float32 or float64, not in {self.dtype}")
         for name in ("hold_deg", "enough_db"):
             object.__setattr__(self, name, float(getattr(self, name)))
-        object.__setattr__(self, "dtype", np.dtype(self.dtype).name)
 
     @classmethod
-    def of_quality(cls, quality: Quality, **more: Any) -> "Recipe":
+    @checked
+    def of_quality(cls, quality: Quality, **more: Any) -> Recipe:
         """So many passes, or fewer where the pictures are good enough before; `more` are the other fields."""
         passes, enough = QUALITIES[quality]
         return cls(passes=passes, enough_db=enough, **more)
@@ -89,7 +90,7 @@ class Recipe:
         """The method that is meant, and what is to be known of it."""
         return find_method(self.method)
 
-    def by_display(self, passes: int) -> "Recipe":
+    def by_display(self, passes: int) -> Recipe:
         """The same powers, hold and material by so many passes of method display: what a rehearsal solves."""
         return replace(self, method="display", passes=passes, enough_db=math.inf, dtype=Recipe().dtype)
 
@@ -99,6 +100,17 @@ class Recipe:
         del flat["material"]
         flat |= {"method": self.solver.name, **asdict(self.material)}
         return {name: None if value in _NONE else value for name, value in flat.items()}
+
+
+def _precision(dtype: Any) -> str:
+    """The name of a dtype that cubes are computed in."""
+    try:
+        name = np.dtype(dtype).name if dtype is not None else ""
+    except (TypeError, ValueError):
+        name = ""
+    if name not in ("float32", "float64"):
+        raise InputError(f"cubes are computed in float32 or float64, not in {dtype}: give one of the two")
+    return name
 
 
 _NONE = (None, math.inf)

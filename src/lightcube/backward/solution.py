@@ -1,12 +1,13 @@
 """From the pieces of a job to a cube, finished or not."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.backward.job import Job, level_name
 from lightcube.backward.pieces import POWERS, VOXELS, known
@@ -14,11 +15,11 @@ from lightcube.backward.problem import held
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
 from lightcube.kernels.layout import clear_volume
+from lightcube.optics.arrays import Floats, Images, Integers, Reals, keep, locked
+from lightcube.optics.checks import check_fields
 from lightcube.optics.cube import Cube
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.resampling import enlarged
-
-Floats = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)
@@ -44,11 +45,15 @@ class Solution:
     """
 
     cube: Cube
-    residuals: NDArray[np.float64]
-    rejected: NDArray[np.int64]
+    residuals: Reals
+    rejected: Integers
     undetermined: int
     stop_reason: str
     lower_bound: float | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        keep(self, residuals=np.float64, rejected=np.int64)
 
     def __repr__(self) -> str:
         reached = f", {self.residuals[-1]:.4g} left" if len(self.residuals) else ""
@@ -78,11 +83,11 @@ def merged(job: Job, store: Store) -> Solution:
     bounds = [float(each["lower_bound"]) for each in facts if "lower_bound" in each]
     made = {"iterations": len(residuals), "stop_reason": stop_reason, "rejected": len(rejected)}
     cube = Cube(
-        extinction=extinction,
+        extinction=locked(extinction),
         grid=job.grid,
         rig=job.targets.rig,
         lamp_powers=_of_pictures(job, powers),
-        targets=as_levels(job.targets),
+        targets=locked(as_levels(job.targets)),
         names=job.targets.names,
         transfer=job.targets.transfer,
         status="complete" if complete else "interrupted",
@@ -94,16 +99,14 @@ def merged(job: Job, store: Store) -> Solution:
     return Solution(cube, residuals, rejected, undetermined, stop_reason, bound)
 
 
-def _of_pictures(job: Job, powers: NDArray[np.float64]) -> NDArray[np.float64]:
+def _of_pictures(job: Job, powers: Reals) -> Reals:
     """The powers of each picture's lamps, as a cube keeps them, from those that the job solves for."""
     if job.recipe.powers != "shared":
         return powers
     return powers[job.targets.rig.pairs[:, 1]]
 
 
-def _place(
-    job: Job, store: Store, name: str, part: Part, extinction: NDArray[np.float32], powers: NDArray[np.float64]
-) -> Arrays:
+def _place(job: Job, store: Store, name: str, part: Part, extinction: Images, powers: Reals) -> Arrays:
     """Write what there is of a unit into the cube and the lamp powers; returns what else is known of it."""
     found = known(job, store, name)
     if found is None:
@@ -129,7 +132,7 @@ def _newest_level(job: Job, store: Store) -> tuple[int, Arrays] | None:
     return None
 
 
-def _coarse_powers(job: Job, store: Store) -> NDArray[np.float64]:
+def _coarse_powers(job: Job, store: Store) -> Reals:
     """The lamp powers of the newest coarse cube, ``(lamps, channels)``; as strong as allowed where there is none."""
     newest = _newest_level(job, store)
     return np.array(job.lamp_bounds[1] if newest is None else newest[1][POWERS], np.float64)
@@ -143,7 +146,7 @@ def _enlarged(job: Job, level: int, found: Arrays, part: Part) -> Floats:
     return volume
 
 
-def _together(job: Job, histories: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+def _together(job: Job, histories: list[Reals]) -> Reals:
     """One history of several: objectives add up, norms as their squares do."""
     if not histories:
         return np.empty(0)

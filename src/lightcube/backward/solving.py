@@ -1,5 +1,7 @@
 """Program 2, the backward computation: from pictures to the cube that casts them."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -14,11 +16,13 @@ from lightcube.backward.solution import Solution, merged
 from lightcube.backward.store import MemoryStore, Store
 from lightcube.backward.units import most_units
 from lightcube.errors import InputError
+from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import Rig
 from lightcube.pictures.targets import Targets
 
 
+@checked
 def solve(
     targets: Targets,
     grid: Grid,

@@ -18,9 +18,9 @@ from lightcube import events
 from lightcube.events import Said, Tell
 
 #: Results go to standard output, all else to standard error.
-out = Console(soft_wrap=True, highlight=False, markup=False, emoji=False)
+out: Console = Console(soft_wrap=True, highlight=False, markup=False, emoji=False)
 
-err = Console(soft_wrap=True, highlight=False, markup=False, emoji=False, stderr=True)
+err: Console = Console(soft_wrap=True, highlight=False, markup=False, emoji=False, stderr=True)
 
 #: Seconds between two lines of progress.
 _BEAT = 0.5

@@ -89,6 +89,14 @@ class Canvas:
         ``(row, column)``: inverse depth at which the ray enters the cube; 0 = it does not.
     """
 
+    camera: Camera
+    axes: Reals
+    eye: Reals
+    focal: float
+    light: Floats
+    near: Floats
+    glass: Floats
+
     def __init__(self, camera: Camera) -> None:
         rows, columns = (FINE * count for count in camera.size)
         self.camera, self.axes, self.eye = camera, camera.axes, np.array(camera.eye)

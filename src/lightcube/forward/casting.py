@@ -1,13 +1,18 @@
 """Program 3, the forward computation: what the screen shows at any turntable angle."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from lightcube.errors import InputError
 from lightcube.forward.turning import moment
 from lightcube.kernels.layout import columns_from_volume
+from lightcube.optics.arrays import Images, Numbers, Reals
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.rig import Rig
@@ -17,9 +22,8 @@ from lightcube.projection.projector import Projector
 _BATCH = 16
 
 
-def cast(
-    cube: Cube, rig: Rig | None = None, lamp_powers: NDArray[np.float64] | None = None
-) -> Iterator[NDArray[np.float32]]:
+@checked
+def cast(cube: Cube, rig: Rig | None = None, lamp_powers: Reals | None = None) -> Iterator[Images]:
     """Yield what the screen shows in each picture, ``(row, column, channel)`` float32 linear light, never clipped.
 
     Pixels that are not on their screen are black; a beam that misses the cube shows the lamp's power.
@@ -31,11 +35,15 @@ def cast(
     lamp_powers
         ``(pairs, channels)``, of the rig's ``pairs``; None = the cube's.
     """
-    powers = cube.powers if lamp_powers is None else lamp_powers
-    yield from _cast(columns_from_volume(cube.extinction), cube, rig or cube.rig, powers)
+    powers = cube.powers if lamp_powers is None else np.asarray(lamp_powers, np.float64)
+    shape = len((rig or cube.rig).pairs), len(cube.extinction)
+    if powers.shape != shape:
+        raise InputError(f"lamp powers for this rig have shape {shape}, not {powers.shape}: give one for each pair")
+    return _cast(columns_from_volume(cube.extinction), cube, rig or cube.rig, powers)
 
 
-def play(cube: Cube, angles_deg: ArrayLike | None = None, *, whole_shadow: bool = False) -> NDArray[np.float32]:
+@checked
+def play(cube: Cube, angles_deg: Numbers | None = None, *, whole_shadow: bool = False) -> Images:
     """What the screen shows, ``(picture, row, column, channel)`` float32 linear light, lamp included, never clipped.
 
     Parameters
@@ -49,7 +57,8 @@ def play(cube: Cube, angles_deg: ArrayLike | None = None, *, whole_shadow: bool 
     return player(cube, whole_shadow=whole_shadow)(angles_deg)
 
 
-def player(cube: Cube, *, whole_shadow: bool = False) -> Callable[[ArrayLike | None], NDArray[np.float32]]:
+@checked
+def player(cube: Cube, *, whole_shadow: bool = False) -> Callable[[Numbers | None], Images]:
     """Make a function of the angles that shows what `play` does, fast enough for a cube that is turned by hand.
 
     The cube is laid out for casting once, which takes as much memory again.
@@ -61,7 +70,7 @@ def player(cube: Cube, *, whole_shadow: bool = False) -> Callable[[ArrayLike | N
     """
     columns = columns_from_volume(cube.extinction)
 
-    def show(angles_deg: ArrayLike | None) -> NDArray[np.float32]:
+    def show(angles_deg: Numbers | None) -> Images:
         if angles_deg is None:
             now, powers = cube.rig.whole(cube.grid) if whole_shadow else cube.rig, cube.powers
         else:
@@ -71,9 +80,7 @@ def player(cube: Cube, *, whole_shadow: bool = False) -> Callable[[ArrayLike | N
     return show
 
 
-def _cast(
-    columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: NDArray[np.float64]
-) -> Iterator[NDArray[np.float32]]:
+def _cast(columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: Reals) -> Iterator[Images]:
     """Yield what `cast` does, of the cube's extinction as `columns_from_volume` lays it out, a few views at a time."""
     inside, channels = rig.inside, lamp_powers.shape[1]
     all_inside = bool(np.all(inside))

@@ -10,6 +10,7 @@ import numpy as np
 from lightcube.io import _metadata
 from lightcube.io._archives import archive
 from lightcube.io._files import system_errors
+from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 
 
@@ -33,6 +34,6 @@ def read_npz(path: Path) -> Cube:
         _metadata.check_version(path, document)
         if "extinction" not in arrays:
             raise _metadata.damaged(path, "its array 'extinction' is missing")
-        extinction = arrays["extinction"]
-        targets = arrays["targets"] if "targets" in arrays else None  # noqa: SIM401 - not a mapping with get
+        extinction = locked(arrays["extinction"])
+        targets = locked(arrays["targets"]) if "targets" in arrays else None
     return _metadata.from_json(path, document, extinction, targets)

@@ -20,6 +20,7 @@ from zarr.storage import LocalStore, ZipStore
 from lightcube.errors import InputError
 from lightcube.io import _metadata
 from lightcube.io._files import system_errors
+from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 
 Value = TypeVar("Value")
@@ -150,7 +151,7 @@ async def _array(path: Path, group: zarr.AsyncGroup, name: str, dtype: np.dtype[
     wanted = math.prod(-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True))
     if await array.nchunks_initialized() != wanted:
         raise _metadata.damaged(path, f"parts of its array {name!r} are missing")
-    return np.asarray(await array.getitem(...))
+    return locked(np.asarray(await array.getitem(...)))
 
 
 def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:

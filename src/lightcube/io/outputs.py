@@ -1,5 +1,7 @@
 """What can be written: one table from kind and suffix to a writer, and outputs that are asked before long work."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -8,9 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
 
 import numpy as np
 
+from lightcube.errors import InputError
 from lightcube.io import cubes, documents, movies
 from lightcube.io._files import Writer, check_free, suffix_entry, written_whole
 from lightcube.io._places import Place, place
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 
 if TYPE_CHECKING:
@@ -97,13 +101,15 @@ class Output:
         row.writer(at)
         check_free(at, overwrite=self.overwrite, replaceable=row.replaceable)
 
+    @checked
     def write(self, thing: Thing, **options: Unpack[movies.Options]) -> None:
         """Write something of the kind; takes and raises what `save` does."""
         if not KINDS[self.kind].takes(thing):
-            raise TypeError(f"{KINDS[self.kind].called} is not made of {type(thing).__name__}")
+            raise InputError(f"{KINDS[self.kind].called} is not made of {type(thing).__name__}: give what `save` takes")
         _write(self, thing, options)
 
 
+@checked
 def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpack[movies.Options]) -> Given:
     """Save a thing by the suffix of `path`; the file appears when it is whole.
 
@@ -157,7 +163,9 @@ def _kind(thing: Thing, at: Place) -> Kind:
     """The kind that a thing is written as at a place; `InputError` where none of its kinds has such a suffix."""
     kinds: list[Kind] = [kind for kind, row in KINDS.items() if row.takes(thing)]
     if not kinds:
-        raise TypeError(f"nothing is known of writing {type(thing).__name__}")
+        raise InputError(
+            f"save has no way to write {type(thing).__name__}: give a Cube, pictures, text, a figure or a mapping"
+        )
     if len(kinds) == 1:
         return kinds[0]
     known: dict[str, Kind] = {}
@@ -174,4 +182,4 @@ def _write(output: Output, thing: Thing, options: movies.Options) -> None:
     with written_whole(at, overwrite=output.overwrite, replaceable=row.replaceable) as fresh:
         lost = write(fresh, thing, **options)
     if lost is not None:
-        warnings.warn(lost, stacklevel=3)
+        warnings.warn(lost, stacklevel=4)

@@ -1,5 +1,7 @@
 """Reading pictures: a folder of them, an animation, or a video."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +15,8 @@ from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._places import fetched, place
 from lightcube.io._video import read_video
 from lightcube.io.pictures_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
+from lightcube.optics.arrays import locked
+from lightcube.optics.checks import checked
 from lightcube.optics.transfer import Transfer, check_transfer, decode
 from lightcube.pictures.pictures import Pictures
 
@@ -28,6 +32,7 @@ class TransparentPictures(UserWarning):
     """Some pictures that were read are not opaque, and were put on white."""
 
 
+@checked
 def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int = 2) -> Pictures:
     """Read pictures in linear light.
 
@@ -65,7 +70,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
         warnings.warn(
             f"{transparent} of {len(pictures)} pictures in {path} are partly transparent: they were put on white",
             TransparentPictures,
-            stacklevel=2,
+            stacklevel=3,
         )
     return pictures
 
@@ -87,7 +92,7 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
     def take(levels: Levels) -> None:
         nonlocal transparent
         image, opaque = _linear_light(levels, transfer)
-        images.append(image)
+        images.append(locked(image))
         transparent += not opaque
 
     views = FolderViews()

@@ -1,5 +1,7 @@
 """Scene files, the meshes they name, and the scenes that ship with the package."""
 
+from __future__ import annotations
+
 import tomllib
 from importlib import resources
 from pathlib import Path
@@ -9,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.checks import checked
 from lightcube.scene.description import Mesh, parse
 from lightcube.scene.scene import Scene
 
@@ -21,6 +24,7 @@ def scene_names() -> list[str]:
     return sorted(Path(entry.name).stem for entry in library.iterdir() if entry.name.endswith(".toml"))
 
 
+@checked
 def read_scene(path_or_name: str | Path) -> Scene:
     """Read a scene file (TOML), or one of the shipped scenes by its name.
 

@@ -1,12 +1,14 @@
 """Stage files: a room with lamps, screens and a turntable, and the pictures that are wanted on the screens."""
 
+from __future__ import annotations
+
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from lightcube.errors import InputError
 from lightcube.io._files import system_errors
 from lightcube.io.pictures import read_pictures
+from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import Transfer, check_transfer, decode
@@ -40,7 +43,7 @@ Light = Annotated[Point, BeforeValidator(_light)]
 
 
 class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
     def said(self) -> dict[str, Any]:
         """The keys that the file gives; what it leaves out has the default of what is made of them."""
@@ -159,6 +162,7 @@ def is_stage(path: str | Path) -> bool:
         return file.suffix.lower() == ".toml" and file.is_file()
 
 
+@checked
 def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage, Pictures, tuple[Fit, ...]]:
     """Read a stage file (TOML) and the pictures that it names.
 
@@ -204,6 +208,7 @@ def stage_pictures(path: str | Path) -> list[Path]:
     return list(dict.fromkeys(file.parent / table.file for table in _parse(file).picture))
 
 
+@checked
 def read_stage_targets(
     path: str | Path, *, lamp_samples: int = 1, pixel_samples: int = 1, transfer: Transfer = "srgb"
 ) -> tuple[Stage, Targets]:

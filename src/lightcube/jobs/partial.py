@@ -93,6 +93,8 @@ class DiskStore:
         cannot be written, or the disk is full.
     """
 
+    folder: Place
+
     def __init__(self, partial: str | Path) -> None:
         self.folder = place(partial)
         self._key = np.array(_key(_read_job(self.folder).fingerprint))

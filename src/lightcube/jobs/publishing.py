@@ -1,5 +1,7 @@
 """Making a cube file of what is there of an unfinished one."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -8,6 +10,7 @@ from lightcube.backward.solution import Solution, merged
 from lightcube.io._places import Place, place
 from lightcube.io.outputs import Output
 from lightcube.jobs.partial import DiskStore, begun_store, discard_partial, load_job, published_path
+from lightcube.optics.checks import checked
 from lightcube.scoring import metrics
 
 
@@ -36,6 +39,7 @@ class Published:
         return self.done == self.units
 
 
+@checked
 def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
     """Make a cube of what there is of ``NAME.zarr.partial`` (or ``NAME.zarr.zip.partial``, ``NAME.npz.partial``).
 

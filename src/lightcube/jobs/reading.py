@@ -1,11 +1,14 @@
 """Loading a cube, whole or still being made."""
 
+from __future__ import annotations
+
 import warnings
 from pathlib import Path
 
 from lightcube.io._files import PARTIAL_SUFFIX
 from lightcube.io._places import Place, name_of, place
 from lightcube.io.cubes import read_cube
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 
 
@@ -13,6 +16,7 @@ class UnfinishedCube(UserWarning):
     """A cube that was loaded is a partial one, or its solver was stopped early."""
 
 
+@checked
 def load(path: str | Path) -> Cube:
     """Load a cube from a file that `lightcube.io.save` wrote, or from a ``.partial`` folder of one that is being made.
 
@@ -34,7 +38,7 @@ def load(path: str | Path) -> Cube:
     cube = _load_partial(at) if partial else read_cube(path)
     if partial or cube.status != "complete":
         why = "it is still being made" if partial else "its solver was stopped early"
-        warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=2)
+        warnings.warn(f"the cube {path} is unfinished: {why}", UnfinishedCube, stacklevel=3)
     return cube
 
 

@@ -33,6 +33,22 @@ def copied(array: NDArray[Any], dtype: DTypeLike | None = None) -> NDArray[Any]:
     return copy
 
 
+class _Shared:
+    """Memory of an array, called writable."""
+
+    def __init__(self, array: Floats) -> None:
+        self.array = array
+        self.__array_interface__ = {**array.__array_interface__, "data": (array.ctypes.data, False)}
+
+
+def as_writable(array: Floats) -> Floats:
+    """The same memory as an array that could be written to, for loops that read it.
+
+    Of those that cannot be written to numba makes another type, and compiles every loop anew for it.
+    """
+    return array if array.flags.writeable else np.asarray(_Shared(array))
+
+
 def is_worth_lines(row: float) -> bool:
     """Whether rows of so many bytes are quicker to add up from a copy in which each begins at a whole line."""
     return row % LINE != 0 and row >= _LEAST_LINES * LINE

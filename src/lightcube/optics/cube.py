@@ -1,14 +1,17 @@
 """The light cube: extinction of every voxel and colour, and what it was made for."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics import showing
+from lightcube.optics.arrays import Levels, Reals, Volume, keep, owned
+from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
@@ -53,11 +56,11 @@ class Cube:
         Where shapes disagree, or a number is negative, NaN or infinite.
     """
 
-    extinction: NDArray[np.float32]
+    extinction: Volume
     grid: Grid
     rig: Rig
-    lamp_powers: NDArray[np.float64] | None = None
-    targets: NDArray[np.uint8] | None = None
+    lamp_powers: Reals | None = None
+    targets: Levels | None = None
     names: tuple[str, ...] = ()
     transfer: Transfer = "srgb"
     scores: Mapping[str, Any] = field(default_factory=dict)
@@ -66,7 +69,8 @@ class Cube:
     hold_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        extinction = np.asarray(self.extinction, dtype=np.float32)
+        check_fields(self)
+        extinction = owned(self.extinction, np.float32)
         if extinction.ndim != 4 or extinction.shape[1:] != self.grid.shape or not extinction.shape[0]:
             raise InputError(
                 f"extinction has shape {extinction.shape}, not (channels, {', '.join(map(str, self.grid.shape))})"
@@ -79,32 +83,32 @@ class Cube:
         if self.rig.sums.share.shape[1] not in (1, channels):
             raise InputError(f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {channels}")
         shape = (len(self.rig.pairs), channels)
-        powers = np.ones(shape) if self.lamp_powers is None else np.array(self.lamp_powers, dtype=np.float64)
+        powers = owned(np.ones(shape) if self.lamp_powers is None else self.lamp_powers, np.float64)
         if powers.shape != shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):
             raise InputError(f"lamp powers must be positive finite numbers of shape {shape}, not {powers.shape}")
         if self.targets is not None:
             wanted = (pictures, *self.rig.picture_shape, channels + 1)
-            if self.targets.shape != wanted or self.targets.dtype != np.uint8:
-                raise InputError(f"targets must be 8-bit numbers of shape {wanted}, not {self.targets.shape}")
+            given = np.asarray(self.targets)
+            if given.shape != wanted or given.dtype != np.uint8:
+                raise InputError(f"targets must be 8-bit numbers of shape {wanted}, not {given.dtype} of {given.shape}")
+            keep(self, targets=np.uint8)
         names = self.names or tuple(str(i + 1) for i in range(pictures))
         if len(names) != pictures:
             raise InputError(f"{pictures} pictures have {len(names)} names: give one name per picture")
-        if self.status not in get_args(Status):
-            raise InputError(f"a cube's status is one of {', '.join(get_args(Status))}, not {self.status!r}")
         if not 0 <= self.hold_deg <= 180:
             raise InputError(f"a cube's hold lies between 0 and 180 degrees, not {self.hold_deg}")
         object.__setattr__(self, "extinction", extinction)
         object.__setattr__(self, "lamp_powers", powers)
-        object.__setattr__(self, "names", tuple(names))
+        object.__setattr__(self, "names", names)
 
     @property
-    def powers(self) -> NDArray[np.float64]:
+    def powers(self) -> Reals:
         """The lamp powers, never None."""
         assert self.lamp_powers is not None  # noqa: S101 - __post_init__ filled it
         return self.lamp_powers
 
     @property
-    def angles_deg(self) -> NDArray[np.float64]:
+    def angles_deg(self) -> Reals:
         """Turntable angle of each picture's stop, degrees."""
         return self.rig.stops.angle_deg
 

@@ -1,9 +1,12 @@
 """The block of voxels, and the raster of a screen that holds its shadow."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
 from lightcube.errors import InputError
+from lightcube.optics.checks import check_fields, checked
 
 #: A direction component smaller than this counts as zero (the tie rule of docs/conventions.md).
 PARALLEL = 1e-12
@@ -37,7 +40,8 @@ class Grid:
     voxel_mm: float = 1.0
 
     def __post_init__(self) -> None:
-        if len(self.shape) != 3 or any(int(n) != n or n < 1 for n in self.shape):
+        check_fields(self)
+        if min(self.shape) < 1:
             raise InputError(f"a grid's shape is three whole numbers of at least 1 (nz, ny, nx), not {self.shape}")
         if not 1e-6 <= self.voxel_mm <= 1e6:
             raise InputError(f"a voxel's side must lie between 1e-6 and 1e6 millimetres, not {self.voxel_mm:g}")
@@ -69,6 +73,7 @@ def raster_shape(grid: Grid, elevation_deg: float = 0.0) -> tuple[int, int]:
     return _round_up(height, nz), _round_up(diagonal, ny)
 
 
+@checked
 def picture_shape(grid: Grid, picture_width: float, aspect: float, elevation_deg: float = 0.0) -> tuple[int, int]:
     """``(rows, columns)`` of pictures on the screen raster.
 

@@ -1,10 +1,13 @@
 """What the voxels of a cube can be."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal
 
 from lightcube.errors import InputError
+from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import Grid
 
 #: What a largest extinction is counted along: a mm, or the side of a voxel.
@@ -32,10 +35,9 @@ class Material:
     per: Per = "mm"
 
     def __post_init__(self) -> None:
+        check_fields(self)
         if not self.max_extinction > 0:
             raise InputError(f"the largest extinction must be a positive number, not {self.max_extinction}")
-        if self.per not in get_args(Per):
-            raise InputError(f"an extinction is per {' or '.join(get_args(Per))}, not per {self.per!r}")
 
     def most(self, grid: Grid) -> float:
         """The largest extinction of the grid's voxels, 1/mm."""

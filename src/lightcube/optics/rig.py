@@ -5,6 +5,8 @@ reaches the pixel past no cube, T the transmittance of the beam, and a the stren
 distance (`lightcube.optics.law`). Lengths are mm, all is in the cube's own axes, as in `lightcube.optics.views`.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -12,16 +14,16 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Counts, Flags, Numbers, Reals, as_numbers, locked
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.tables import (
     POWER_MAX,
-    Counts,
     Fading,
     Lamps,
-    Reals,
     Screens,
     Stops,
     Sums,
@@ -76,6 +78,7 @@ class Rig:
     screens: Screens
 
     def __post_init__(self) -> None:
+        check_fields(self)
         views = len(self.views)
         if not len(self.sums.picture) == len(self.fading.cosine) == len(self.turning.turns) == views:
             raise InputError(f"the parts of a rig are not all of {views} views")
@@ -86,15 +89,16 @@ class Rig:
                 raise InputError("a rig's lamps and screens must be numbers of the names that it has, from 0")
 
     @classmethod
+    @checked
     def of(
         cls,
         views: Views,
-        angles_deg: ArrayLike | None = None,
+        angles_deg: Numbers | None = None,
         *,
         power: float | None = None,
         power_max: float = POWER_MAX,
         black: float = BLACK,
-    ) -> "Rig":
+    ) -> Rig:
         """Each view a picture of its own, whose lamp and endless screen go round the standing cube together.
 
         Parameters
@@ -140,13 +144,14 @@ class Rig:
     def pairs(self) -> Counts:
         """``(pairs, 2)``: every (picture, lamp) once, in order; each pair has lamp powers of its own."""
         found: Counts = np.unique(np.stack([self.sums.picture, self.sums.lamp], axis=1), axis=0)
-        return found
+        return locked(found)
 
     @cached_property
     def pair(self) -> Counts:
         """``(views,)``: which of the `pairs` each view belongs to."""
         lamps = len(self.lamps.names)
-        return np.searchsorted(self.pairs[:, 0] * lamps + self.pairs[:, 1], self.sums.picture * lamps + self.sums.lamp)
+        keys = self.pairs[:, 0] * lamps + self.pairs[:, 1]
+        return locked(np.searchsorted(keys, self.sums.picture * lamps + self.sums.lamp))
 
     @property
     def starts(self) -> Counts:
@@ -159,7 +164,7 @@ class Rig:
         return bool(len(self.views) == len(self) and np.all(self.sums.share == 1) and self.fading.is_none)
 
     @property
-    def inside(self) -> NDArray[np.bool_]:
+    def inside(self) -> Flags:
         """``(pictures, rows, columns)``: the pixels that lie on their screen."""
         rows, columns = (np.arange(count) for count in self.picture_shape)
         high, wide = self.stops.window[:, :1, None], self.stops.window[:, 1:, None]
@@ -210,7 +215,7 @@ class Rig:
         starts = self.starts
         return np.concatenate([np.arange(starts[p], starts[p + 1]) for p in pictures])
 
-    def take(self, pictures: Sequence[int] | NDArray[np.integer]) -> "Rig":
+    def take(self, pictures: Sequence[int] | NDArray[np.integer]) -> Rig:
         """Some of the pictures, in this order; a picture may come several times."""
         chosen = np.asarray(pictures, np.intp)
         taken = self._with_views(self.views_of(chosen))
@@ -218,7 +223,7 @@ class Rig:
         sums = replace(taken.sums, picture=np.repeat(np.arange(len(chosen)), counts))
         return Rig(taken.views, sums, taken.fading, taken.turning, _taken(self.stops, chosen), self.lamps, self.screens)
 
-    def _with_views(self, chosen: Counts) -> "Rig":
+    def _with_views(self, chosen: Counts) -> Rig:
         """Some of the views, which may be of no picture in order: to be given new ones."""
         rig = object.__new__(Rig)
         parts = {each.name: getattr(self, each.name) for each in fields(self)}
@@ -231,15 +236,15 @@ class Rig:
             object.__setattr__(rig, name, part)
         return rig
 
-    def turned(self, degrees: ArrayLike) -> "Rig":
+    def turned(self, degrees: Numbers) -> Rig:
         """The same when the table has turned on by so many degrees: one number, or one per picture."""
-        angles_deg = np.broadcast_to(np.asarray(degrees, np.float64), len(self))
+        angles_deg = as_numbers(degrees, "degrees", (), (len(self),))
         each = angles_deg[self.sums.picture]
         lamp, screen = (np.where(self.turning.turns[:, i], self.turning.way[:, i] * each, 0.0) for i in (0, 1))
         views = rotated(self.views, self.turning.axis, lamp, screen)
         return replace(self, views=views, stops=replace(self.stops, angle_deg=self.stops.angle_deg + angles_deg))
 
-    def held(self, hold_deg: float, step_deg: float) -> "Rig":
+    def held(self, hold_deg: float, step_deg: float) -> Rig:
         """Every picture at several angles within `hold_deg` degrees of its stop, at most `step_deg` apart, in a row.
 
         Raises
@@ -253,7 +258,7 @@ class Rig:
         return self.take(np.repeat(np.arange(len(self)), len(offsets))).turned(np.tile(offsets, len(self)))
 
     @cached_property
-    def both_sides(self) -> "Rig":
+    def both_sides(self) -> Rig:
         """The same with the mirror image of every picture at the stop half a turn on, where level light shows it."""
         if self.period_deg == 360:
             return self
@@ -265,7 +270,7 @@ class Rig:
         stops = replace(both.stops, angle_deg=np.concatenate([self.stops.angle_deg, again.stops.angle_deg]))
         return replace(both, views=self.views.joined(views), stops=stops)
 
-    def at(self, angles_deg: ArrayLike) -> tuple["Rig", Counts]:
+    def at(self, angles_deg: Numbers) -> tuple[Rig, Counts]:
         """The room at any turntable angles (degrees), and of which picture each of its pictures is the nearest stop.
 
         The pictures of an angle follow each other, one for each screen in the order of ``screens.names``. The room is
@@ -284,7 +289,7 @@ class Rig:
         stops = replace(moved.stops, angle_deg=now)
         return replace(moved, sums=replace(moved.sums, share=share), stops=stops), shown % len(self)
 
-    def sampled(self, *, lamp: int = 1, pixel: int = 1) -> "Rig":
+    def sampled(self, *, lamp: int = 1, pixel: int = 1) -> Rig:
         """Each view as several, whose mean is the light of a lamp's whole disc on a whole pixel.
 
         Parameters
@@ -314,7 +319,7 @@ class Rig:
         views = Views(lamps, origins_mm, *steps, self.picture_shape)
         return Rig(views, sums, copied.fading, copied.turning, self.stops, self.lamps, self.screens)
 
-    def shifted(self, offsets: NDArray[np.integer]) -> "Rig":
+    def shifted(self, offsets: NDArray[np.integer]) -> Rig:
         """Pictures that stand `offsets` ``(picture, 2)`` pixels further right and down on their screens."""
         if offsets.shape != (len(self), 2):
             raise InputError(f"offsets of shape {offsets.shape} do not fit the pictures, which want ({len(self)}, 2)")
@@ -322,14 +327,14 @@ class Rig:
         origins_mm = views.origins_mm + own[:, :1] * views.column_steps_mm + own[:, 1:] * views.row_steps_mm
         return replace(self, views=replace(views, origins_mm=origins_mm))
 
-    def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> "Rig":
+    def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> Rig:
         """The same pictures with pixels `ratio` times as large, so many of them around the same middle."""
         before = (np.multiply(picture_shape, ratio) - self.picture_shape) / 2  # what is added above and to the left
         windows = np.ceil((self.stops.window + before) / ratio - 1e-9).astype(np.intp)
         stops = replace(self.stops, window=np.minimum(windows, picture_shape))
         return replace(self, views=self.views.with_pixels(ratio, picture_shape), stops=stops)
 
-    def whole(self, grid: Grid) -> "Rig":
+    def whole(self, grid: Grid) -> Rig:
         """Pictures as large as the cube's whole shadow, in its middle, on screens without edges; others as they are."""
         if not np.all(self.screens.endless[self.stops.screen]):
             return self
@@ -357,9 +362,10 @@ class Rig:
         return float(raised[0]) if alike and upright and facing else None
 
 
+@checked
 def turntable(
     grid: Grid,
-    angles_deg: ArrayLike,
+    angles_deg: Numbers,
     *,
     elevation_deg: float = 0.0,
     picture_shape: tuple[int, int] | None = None,

@@ -3,14 +3,17 @@
 The room's axes are right-handed with z up, and the cube's middle is their origin; lengths are mm, angles degrees.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Reals
+from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.tables import POWER_MAX, POWER_MIN, POWER_MOST, Fading, Lamps, Screens, Stops, Sums, Turning
@@ -18,7 +21,6 @@ from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import Views, unit
 
 Vector = tuple[float, float, float]
-Reals = NDArray[np.float64]
 
 #: A stage has no more screens and lamps than this, and no screen more pixels along a side.
 MOST_SCREENS, MOST_LAMPS, MOST_PIXELS = 32, 256, 2048
@@ -66,6 +68,9 @@ class Lamp:
     falloff_mm: float = 0.0
     full_at_mm: float = math.inf
 
+    def __post_init__(self) -> None:
+        check_fields(self, f"lamp {self.name!r}")
+
 
 @dataclass(frozen=True)
 class Screen:
@@ -110,6 +115,9 @@ class Screen:
     cosine: bool = False
     black: float = BLACK
 
+    def __post_init__(self) -> None:
+        check_fields(self, f"screen {self.name!r}")
+
     @property
     def pixels(self) -> tuple[int, int]:
         """How many rows and columns of pixels there are."""
@@ -140,6 +148,9 @@ class Shot:
     screen: str
     lamps: tuple[str, ...]
     stop: int = 0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
 @dataclass(frozen=True)
@@ -174,6 +185,7 @@ class Stage:
     cube_turns: bool = True
 
     def __post_init__(self) -> None:
+        check_fields(self)
         _check_names("lamp", [lamp.name for lamp in self.lamps], MOST_LAMPS)
         _check_names("screen", [screen.name for screen in self.screens], MOST_SCREENS)
         for lamp in self.lamps:

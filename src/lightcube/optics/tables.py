@@ -1,19 +1,21 @@
 """The tables that a `Rig` is made of: a row for every view, picture, lamp or screen."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import DTypeLike
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Counts, Flags, Reals, keep
+from lightcube.optics.checks import check_fields
 from lightcube.optics.transfer import BLACK
-
-Reals = NDArray[np.float64]
-Counts = NDArray[np.intp]
 
 #: Bounds of the power of a lamp of which nothing is said; the lower one is that of any lamp that is not fixed.
 POWER_MIN, POWER_MAX = 1e-4, 16.0
+#: Any length of an axis.
+_ANY = -1
 #: No lamp may be stronger.
 POWER_MOST = 1e6
 
@@ -21,13 +23,15 @@ POWER_MOST = 1e6
 class _Columns:
     """Arrays of one row per view or picture, which cannot be written to."""
 
-    def _keep(self, **kinds: tuple[DTypeLike, tuple[int, ...]]) -> None:
-        for name, (kind, shape) in kinds.items():
-            array: NDArray[Any] = np.array(getattr(self, name), dtype=kind)
-            if array.shape != shape:
-                raise InputError(f"{name} of a rig has shape {array.shape}, not {shape}")
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
+    def _keep(self, rows: str, **kinds: tuple[DTypeLike, tuple[int | None, ...]]) -> None:
+        """Make arrays the value's own: dtypes and shapes by name, None where there is one for each of `rows`."""
+        check_fields(self)
+        keep(self, **{name: kind for name, (kind, _) in kinds.items()})
+        count = len(np.atleast_1d(getattr(self, rows)))
+        for name, (_, asked) in kinds.items():
+            shape, found = tuple(count if n is None else n for n in asked), getattr(self, name).shape
+            if len(found) != len(shape) or any(n not in (m, _ANY) for m, n in zip(found, shape, strict=True)):
+                raise InputError(f"{name} of a rig has shape {found}, not {shape}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,15 +58,15 @@ class Sums(_Columns):
     disc_deg: Reals
 
     def __post_init__(self) -> None:
-        views = len(self.picture)
         self._keep(
-            picture=(np.intp, (views,)),
-            lamp=(np.intp, (views,)),
-            share=(np.float64, (views, np.shape(self.share)[-1])),
-            disc_deg=(np.float64, (views,)),
+            "picture",
+            picture=(np.intp, (None,)),
+            lamp=(np.intp, (None,)),
+            share=(np.float64, (None, _ANY)),
+            disc_deg=(np.float64, (None,)),
         )
         steps = np.diff(self.picture, prepend=-1)
-        if not views or np.any((steps != 0) & (steps != 1)) or steps[0] != 1:
+        if not len(self.picture) or np.any((steps != 0) & (steps != 1)) or steps[0] != 1:
             raise InputError("views of a rig must be in the order of their pictures, none of which is left out")
         if np.any(self.share < 0):
             raise InputError("a rig's shares must be at least 0")
@@ -91,19 +95,19 @@ class Fading(_Columns):
     reach_mm: Reals
     falloff_mm: Reals
     full_at_mm: Reals
-    cosine: NDArray[np.bool_]
+    cosine: Flags
 
     def __post_init__(self) -> None:
-        views = len(self.full_at_mm)
         self._keep(
-            reach_mm=(np.float64, (views, 2)),
-            falloff_mm=(np.float64, (views, 2)),
-            full_at_mm=(np.float64, (views,)),
-            cosine=(np.bool_, (views,)),
+            "full_at_mm",
+            reach_mm=(np.float64, (None, 2)),
+            falloff_mm=(np.float64, (None, 2)),
+            full_at_mm=(np.float64, (None,)),
+            cosine=(np.bool_, (None,)),
         )
 
     @classmethod
-    def none(cls, views: int) -> "Fading":
+    def none(cls, views: int) -> Fading:
         """Light and shadows that are the same everywhere."""
         return cls(np.full((views, 2), np.inf), np.zeros((views, 2)), np.full(views, np.inf), np.zeros(views, np.bool_))
 
@@ -127,13 +131,12 @@ class Turning(_Columns):
         ``(3,)``, of the turntable.
     """
 
-    turns: NDArray[np.bool_]
+    turns: Flags
     way: Reals
     axis: Reals
 
     def __post_init__(self) -> None:
-        views = len(self.turns)
-        self._keep(turns=(np.bool_, (views, 2)), way=(np.float64, (views, 2)), axis=(np.float64, (3,)))
+        self._keep("turns", turns=(np.bool_, (None, 2)), way=(np.float64, (None, 2)), axis=(np.float64, (3,)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,8 +156,7 @@ class Stops(_Columns):
     window: Counts
 
     def __post_init__(self) -> None:
-        pictures = len(self.angle_deg)
-        self._keep(angle_deg=(np.float64, (pictures,)), screen=(np.intp, (pictures,)), window=(np.intp, (pictures, 2)))
+        self._keep("angle_deg", angle_deg=(np.float64, (None,)), screen=(np.intp, (None,)), window=(np.intp, (None, 2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,8 +168,7 @@ class Lamps(_Columns):
     most: Reals
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "names", tuple(self.names))
-        self._keep(least=(np.float64, (len(self.names),)), most=(np.float64, (len(self.names),)))
+        self._keep("names", least=(np.float64, (None,)), most=(np.float64, (None,)))
         if not np.all((self.least > 0) & (self.least <= self.most)):
             raise InputError("the powers of a rig's lamps must be above 0, the least before the largest")
 
@@ -183,11 +184,10 @@ class Screens(_Columns):
 
     names: tuple[str, ...]
     black: Reals
-    endless: NDArray[np.bool_]
+    endless: Flags
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "names", tuple(self.names))
-        self._keep(black=(np.float64, (len(self.names),)), endless=(np.bool_, (len(self.names),)))
+        self._keep("names", black=(np.float64, (None,)), endless=(np.bool_, (None,)))
         for black in self.black:
             if not BLACK <= black < 1:
                 raise InputError(

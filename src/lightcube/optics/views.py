@@ -4,14 +4,18 @@ Axes are right-handed with z up, lengths in millimetres, angles in degrees for p
 in the cube's own axes: the cube stands still and the lamp goes round it. See docs/conventions.md.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Numbers, Reals, as_numbers, keep
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, check_elevation, raster_shape
 
 
@@ -57,23 +61,23 @@ class Views:
     array([90.,  0.])
     """
 
-    lamps: NDArray[np.float64]
-    origins_mm: NDArray[np.float64]
-    column_steps_mm: NDArray[np.float64]
-    row_steps_mm: NDArray[np.float64]
+    lamps: Reals
+    origins_mm: Reals
+    column_steps_mm: Reals
+    row_steps_mm: Reals
     picture_shape: tuple[int, int]
 
     def __post_init__(self) -> None:
+        check_fields(self)
+        keep(self, **dict.fromkeys(("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"), np.float64))
         count = len(np.atleast_2d(self.lamps))
         for name, width in (("lamps", 4), ("origins_mm", 3), ("column_steps_mm", 3), ("row_steps_mm", 3)):
-            array = np.array(getattr(self, name), dtype=np.float64)
+            array = getattr(self, name)
             if array.shape != (count, width) or not np.all(np.isfinite(array)) or count == 0:
                 raise InputError(
                     f"{name} of views must be finite numbers of shape ({count}, {width}), not {array.shape}"
                 )
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
-        if len(self.picture_shape) != 2 or any(int(n) != n or n < 1 for n in self.picture_shape):
+        if min(self.picture_shape) < 1:
             raise InputError(f"a picture's shape is two whole numbers of at least 1, not {self.picture_shape}")
         object.__setattr__(self, "picture_shape", tuple(int(n) for n in self.picture_shape))
 
@@ -85,19 +89,19 @@ class Views:
         return f"<{len(self)} views of {rows} x {columns} pixels>"
 
     @property
-    def angles_deg(self) -> NDArray[np.float64]:
+    def angles_deg(self) -> Reals:
         """Turntable angle of each view's parallel lamp, degrees in [0, 360), to 1e-9."""
         x, y = self.lamps[:, 0], self.lamps[:, 1]
-        degrees: NDArray[np.float64] = np.degrees(np.arctan2(-y, x))
+        degrees: Reals = np.degrees(np.arctan2(-y, x))
         return np.asarray(np.round(degrees, 9) % 360, dtype=np.float64)
 
     @property
-    def elevations_deg(self) -> NDArray[np.float64]:
+    def elevations_deg(self) -> Reals:
         """Elevation of each view's parallel lamp above the horizon, degrees in (-90, 90), to 1e-9."""
         level = np.hypot(self.lamps[:, 0], self.lamps[:, 1])
         return np.asarray(np.round(np.degrees(np.arctan2(-self.lamps[:, 2], level)), 9), dtype=np.float64)
 
-    def take(self, indices: Sequence[int] | NDArray[np.integer] | slice) -> "Views":
+    def take(self, indices: Sequence[int] | NDArray[np.integer] | slice) -> Views:
         """Return some of the views, in the order of `indices`."""
         return Views(
             self.lamps[indices],
@@ -107,22 +111,22 @@ class Views:
             self.picture_shape,
         )
 
-    def joined(self, other: "Views") -> "Views":
+    def joined(self, other: Views) -> Views:
         """Return these views and then the others, of the same shape of pictures."""
         names = ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm")
         arrays = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
         return Views(**arrays, picture_shape=self.picture_shape)
 
-    def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> "Views":
+    def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> Views:
         """Return the same views with pixels `ratio` times as large, so many of them around the same middle."""
         return Views(
             self.lamps, self.origins_mm, ratio * self.column_steps_mm, ratio * self.row_steps_mm, picture_shape
         )
 
 
-def check_angles(angles_deg: ArrayLike) -> NDArray[np.float64]:
+def check_angles(angles_deg: Numbers) -> Reals:
     """Return `angles_deg` as a float64 vector, or raise `InputError` unless all are finite and there is one."""
-    vector = np.atleast_1d(np.asarray(angles_deg, dtype=np.float64))
+    vector = np.atleast_1d(as_numbers(angles_deg, "angles"))
     if vector.ndim != 1 or vector.size == 0:
         raise InputError("angles must be a list of at least one number of degrees")
     if not np.all(np.isfinite(vector)):
@@ -130,7 +134,8 @@ def check_angles(angles_deg: ArrayLike) -> NDArray[np.float64]:
     return vector
 
 
-def spread_angles(count: int, span_deg: float | None = None, *, elevation_deg: float = 0.0) -> NDArray[np.float64]:
+@checked
+def spread_angles(count: int, span_deg: float | None = None, *, elevation_deg: float = 0.0) -> Reals:
     """`count` angles spread evenly over `span_deg` degrees (default 180 at elevation 0, else 360).
 
     They start half a step from 0, or a third of a step where half a step would put one on a multiple
@@ -165,14 +170,14 @@ def spread_angles(count: int, span_deg: float | None = None, *, elevation_deg: f
     return angles_deg
 
 
-def _turned(angles_deg: NDArray[np.float64], vector: tuple[float, float, float]) -> NDArray[np.float64]:
+def _turned(angles_deg: Reals, vector: tuple[float, float, float]) -> Reals:
     """`vector` of the room in the axes of a cube that was turned counter-clockwise by `angles_deg` (degrees)."""
     cos, sin = _cos_sin(angles_deg)
     x, y, z = vector
     return np.stack([cos * x + sin * y, -sin * x + cos * y, np.full_like(cos, z)], axis=1)
 
 
-def _cos_sin(degrees: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _cos_sin(degrees: Reals) -> tuple[Reals, Reals]:
     """Cosine and sine, exact at multiples of 90 degrees."""
     turn = np.remainder(degrees, 360.0)
     quarter = np.rint(turn / 90)
@@ -182,13 +187,13 @@ def _cos_sin(degrees: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray
     return np.choose(index, [cos, -sin, -cos, sin]), np.choose(index, [sin, cos, -sin, -cos])
 
 
-def unit(vector: ArrayLike) -> NDArray[np.float64]:
+def unit(vector: Numbers) -> Reals:
     """The vector of length 1 that points the same way."""
     array = np.asarray(vector, np.float64)
     return np.asarray(array / np.linalg.norm(array))
 
 
-def rotations(axis: ArrayLike, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
+def rotations(axis: Numbers, degrees: Reals) -> Reals:
     """``(n, 3, 3)``: rotations counter-clockwise about `axis` by each of the angles (O. Rodrigues, 1840)."""
     cos, sin = (each[:, None, None] for each in _cos_sin(degrees))
     x, y, z = unit(axis)
@@ -198,7 +203,7 @@ def rotations(axis: ArrayLike, degrees: NDArray[np.float64]) -> NDArray[np.float
 
 
 def turntable_views(
-    grid: Grid, angles_deg: ArrayLike, *, elevation_deg: float = 0.0, picture_shape: tuple[int, int] | None = None
+    grid: Grid, angles_deg: Numbers, *, elevation_deg: float = 0.0, picture_shape: tuple[int, int] | None = None
 ) -> Views:
     """The beams of `lightcube.turntable`, which takes and raises the same.
 
@@ -230,7 +235,7 @@ def turntable_views(
     )
 
 
-def rotated(views: Views, axis: ArrayLike, lamps: NDArray[np.float64], screens: NDArray[np.float64]) -> Views:
+def rotated(views: Views, axis: Numbers, lamps: Reals, screens: Reals) -> Views:
     """Views whose lamps and screens have gone round the cube, counter-clockwise about `axis`, by degrees per view."""
     lamp, screen = rotations(axis, lamps), rotations(axis, screens)
     shone = np.einsum("vij,vj->vi", lamp, views.lamps[:, :3])
@@ -241,13 +246,13 @@ def rotated(views: Views, axis: ArrayLike, lamps: NDArray[np.float64], screens: 
     return Views(np.column_stack([shone, views.lamps[:, 3]]), origins_mm, right, down, views.picture_shape)
 
 
-def smallest_gap_deg(angles_deg: NDArray[np.float64], period: float) -> float:
+def smallest_gap_deg(angles_deg: Reals, period: float) -> float:
     """Degrees between the two nearest of the `angles_deg` that differ, which repeat after `period` degrees."""
     stops = np.unique(np.round(angles_deg % period, 9) % period)
     return float(np.min(np.diff(stops, append=stops[0] + period)))
 
 
-def hold_offsets_deg(hold_deg: float, most: float, step: float) -> NDArray[np.float64]:
+def hold_offsets_deg(hold_deg: float, most: float, step: float) -> Reals:
     """Degrees off its stop at which a picture is asked for, 0 in the middle, at most `step` apart.
 
     Raises
@@ -270,7 +275,7 @@ def hold_offsets_deg(hold_deg: float, most: float, step: float) -> NDArray[np.fl
 _SAME_ANGLE = 1e-9
 
 
-def distinct_angles(angles_deg: ArrayLike) -> NDArray[np.float64]:
+def distinct_angles(angles_deg: Numbers) -> Reals:
     """Return `angles_deg` (degrees) as a vector, or raise `InputError` where two are the same view, turns apart."""
     vector = check_angles(angles_deg)
     turned = np.remainder(vector, 360.0)

@@ -1,15 +1,18 @@
 """From pictures of any sizes to what is wanted on a screen: cropping, resampling in linear light."""
 
+from __future__ import annotations
+
 import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Images, Levels, locked
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import from_uint8, to_uint8
@@ -17,7 +20,7 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 
 Fit = Literal["crop", "pad", "stretch"]
-Picture = NDArray[np.float32]
+Picture = Images
 
 
 def check_fit(name: str) -> Fit:
@@ -28,6 +31,7 @@ def check_fit(name: str) -> Fit:
     raise InputError(f"unknown fit {name!r}: use one of {', '.join(get_args(Fit))}")
 
 
+@checked
 def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Targets:
     """Fit pictures to the screens of a rig, one each.
 
@@ -58,7 +62,7 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
     weights = np.zeros(fitted.shape[:3], np.float32)
     for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, rig.stops.window, fits, strict=True)):
         _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way))
-    return Targets(fitted, rig, weights, pictures.names, pictures.transfer)
+    return Targets(locked(fitted), rig, locked(weights), pictures.names, pictures.transfer)
 
 
 def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] = "crop") -> str:
@@ -80,7 +84,7 @@ def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] =
     return f"{count}, {done} from {_size(first)}{more} to {_size(target)}{rule}"
 
 
-def as_levels(targets: Targets) -> NDArray[np.uint8]:
+def as_levels(targets: Targets) -> Levels:
     """Targets as 8-bit display levels ``(view, row, column, channel + 1)``, the last channel the weight.
 
     Weights are scaled so that the largest is 255; none that is above 0 becomes 0.
@@ -101,7 +105,7 @@ def targets_of(cube: Cube) -> Targets:
         raise InputError("this cube was not made from pictures, so it has no targets: give the pictures themselves")
     pictures = from_uint8(cube.targets[..., :-1], cube.transfer)
     weights = cube.targets[..., -1].astype(np.float32) / np.float32(255)
-    return Targets(pictures, cube.rig, weights, cube.names, cube.transfer)
+    return Targets(locked(pictures), cube.rig, locked(weights), cube.names, cube.transfer)
 
 
 def _source_box(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[float, float, float, float]:

@@ -1,11 +1,14 @@
 """Pictures as they were read."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Images, Reals, owned
+from lightcube.optics.checks import check_fields
 from lightcube.optics.transfer import Transfer
 from lightcube.optics.views import check_angles
 
@@ -28,22 +31,27 @@ class Pictures:
         How the display values were decoded.
     """
 
-    images: tuple[NDArray[np.float32], ...]
+    images: tuple[Images, ...]
     names: tuple[str, ...]
-    angles_deg: NDArray[np.float64] | None = None
+    angles_deg: Reals | None = None
     elevation_deg: float | None = None
     transfer: Transfer = "srgb"
 
     def __post_init__(self) -> None:
+        check_fields(self)
+        object.__setattr__(self, "images", tuple(owned(image, np.float32) for image in self.images))
         if len(self.names) != len(self.images):
             raise InputError(f"{len(self.images)} pictures have {len(self.names)} names: give one name per picture")
         for name, image in zip(self.names, self.images, strict=True):
             if image.ndim != 3 or image.shape[2] != 3 or image.size == 0:
                 raise InputError(f"picture {name} has shape {image.shape}, not (rows, columns, 3)")
-        if self.angles_deg is not None and len(check_angles(self.angles_deg)) != len(self.images):
-            raise InputError(
-                f"{len(self.angles_deg)} angles for {len(self.images)} pictures: give one angle per picture"
-            )
+        if self.angles_deg is not None:
+            angles_deg = owned(check_angles(self.angles_deg), np.float64)
+            if len(angles_deg) != len(self.images):
+                raise InputError(
+                    f"{len(angles_deg)} angles for {len(self.images)} pictures: give one angle per picture"
+                )
+            object.__setattr__(self, "angles_deg", angles_deg)
 
     def __len__(self) -> int:
         return len(self.images)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.optics.arrays import locked
 from lightcube.optics.grid import Grid
 from lightcube.pictures.targets import Targets
 
@@ -35,7 +36,8 @@ def coarser(targets: Targets, grid: Grid, ratio: float) -> tuple[Targets, Grid]:
         light = np.einsum("ir,rck,jc->ijk", down, picture * targets.weight[view, ..., None], across, optimize=True)
         part = weight[view, ..., None]
         np.divide(light, part, out=pictures[view], where=part > 0)
-    return replace(targets, pictures=pictures, rig=targets.rig.with_pixels(ratio, shape), weights=weight), small
+    coarse = targets.rig.with_pixels(ratio, shape)
+    return replace(targets, pictures=locked(pictures), rig=coarse, weights=locked(weight)), small
 
 
 def enlarged(volume: Array, shape: tuple[int, int, int], slices: slice | None = None) -> Array:

@@ -1,11 +1,16 @@
 """Pictures as they are wanted on the screens of a rig."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Flags, Images, Reals, locked, owned
+from lightcube.optics.checks import check_fields
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
 
@@ -33,14 +38,15 @@ class Targets:
         Where shapes disagree, or a number is negative, NaN or infinite.
     """
 
-    pictures: NDArray[np.float32]
+    pictures: Images
     rig: Rig
-    weights: NDArray[np.float32] | None = None
+    weights: Images | Flags | None = None
     names: tuple[str, ...] = ()
     transfer: Transfer = "srgb"
 
     def __post_init__(self) -> None:
-        pictures = np.ascontiguousarray(self.pictures, dtype=np.float32)
+        check_fields(self)
+        pictures = owned(self.pictures, np.float32, order="C")
         expected = (len(self.rig), *self.rig.picture_shape)
         if pictures.ndim != 4 or pictures.shape[:3] != expected:
             raise InputError(
@@ -51,7 +57,7 @@ class Targets:
         names = self.names or tuple(str(i + 1) for i in range(len(pictures)))
         if len(names) != len(pictures):
             raise InputError(f"{len(pictures)} pictures have {len(names)} names: give one name per picture")
-        weights = np.asarray(self.rig.inside if self.weights is None else self.weights, np.float32)
+        weights = owned(self.rig.inside if self.weights is None else self.weights, np.float32)
         if weights.shape != expected:
             raise InputError(f"weights have shape {weights.shape}, not {expected}")
         for what, array in (("picture", pictures), ("weights of picture", weights)):
@@ -66,7 +72,7 @@ class Targets:
             raise InputError(f"picture {names[int(np.argmax(blank))]!r} has no pixel of weight above 0: leave it out")
         object.__setattr__(self, "pictures", pictures)
         object.__setattr__(self, "weights", weights)
-        object.__setattr__(self, "names", tuple(names))
+        object.__setattr__(self, "names", names)
 
     def __len__(self) -> int:
         return len(self.pictures)
@@ -75,23 +81,22 @@ class Targets:
         return f"<{len(self)} pictures wanted on {self.rig!r}>"
 
     @property
-    def weight(self) -> NDArray[np.float32]:
+    def weight(self) -> Images:
         """The weights, ``(picture, row, column)``, never None."""
-        assert self.weights is not None  # noqa: S101 - __post_init__ filled it
-        return self.weights
+        return cast(Images, self.weights)  # __post_init__ made it so
 
     @property
-    def angles_deg(self) -> NDArray[np.float64]:
+    def angles_deg(self) -> Reals:
         """Turntable angle of each picture's stop, degrees."""
         return self.rig.stops.angle_deg
 
-    def take(self, indices: list[int] | NDArray[np.integer] | slice) -> "Targets":
+    def take(self, indices: list[int] | NDArray[np.integer] | slice) -> Targets:
         """Return some of them, in the order of `indices`."""
         chosen = list(range(len(self))[indices] if isinstance(indices, slice) else indices)
         return replace(
             self,
-            pictures=self.pictures[chosen],
+            pictures=locked(self.pictures[chosen]),
             rig=self.rig.take(chosen),
-            weights=self.weight[chosen],
+            weights=locked(self.weight[chosen]),
             names=tuple(self.names[i] for i in chosen),
         )

@@ -1,11 +1,14 @@
 """What is said of a turntable before its pictures and its cube are known."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Numbers, Reals, keep
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.tables import POWER_MAX
@@ -43,7 +46,7 @@ class Turntable:
     16.0
     """
 
-    angles_deg: ArrayLike | None = None
+    angles_deg: Numbers | None = None
     span_deg: float | None = None
     elevation_deg: float | None = None
     power: float | None = None
@@ -51,6 +54,9 @@ class Turntable:
     black: float = BLACK
 
     def __post_init__(self) -> None:
+        check_fields(self)
+        if self.angles_deg is not None:
+            keep(self, angles_deg=np.float64)
         if self.angles_deg is not None and self.span_deg is not None:
             raise InputError("angles and a span of angles are both given: use one of the two")
 
@@ -59,6 +65,7 @@ class Turntable:
         said = pictures.elevation_deg if self.elevation_deg is None else self.elevation_deg
         return check_elevation(RAISED_DEG if said is None else said)
 
+    @checked
     def rig(self, pictures: Pictures, grid: Grid, *, picture_width: float = 1.0) -> Rig:
         """The turntable on which pictures shall be shown, each at a stop of its own, with the aspect of the first.
 
@@ -90,7 +97,7 @@ class Turntable:
             black=self.black,
         )
 
-    def _angles(self, pictures: Pictures, elevation_deg: float) -> NDArray[np.float64]:
+    def _angles(self, pictures: Pictures, elevation_deg: float) -> Reals:
         """One angle per picture: those asked for, else those that came along, else spread evenly."""
         angles_deg = pictures.angles_deg if self.angles_deg is None and self.span_deg is None else self.angles_deg
         if angles_deg is None:

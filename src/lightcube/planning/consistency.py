@@ -1,11 +1,14 @@
 """Pre-flight: what the pictures ask of a cube, and what no cube can do."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK, decode, encode
@@ -27,6 +30,7 @@ _LOAD_LEVEL, _LOAD_RAISED = 4.5, 5.0
 _SOLID = 0.1
 
 
+@checked
 def check(targets: Targets, grid: Grid) -> dict[str, Any]:
     """Find out about pictures, all under lamps of one elevation, what can be known before solving.
 

@@ -1,5 +1,7 @@
 """Make pictures easier to store: which picture stands at which stop, and where on the screen each one stands."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
 
@@ -13,6 +15,8 @@ from lightcube.backward.recipe import Recipe
 from lightcube.forward.casting import cast
 from lightcube.kernels import ordering
 from lightcube.optics.absorption import absorbance
+from lightcube.optics.arrays import Counts, Images, Reals, keep, locked
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.material import Material
 from lightcube.optics.views import Views
@@ -21,8 +25,6 @@ from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
 from lightcube.projection.projector import Projector
 from lightcube.scoring.metrics import mean_psnr
-
-Floats = NDArray[np.float64]
 
 #: Voxels along the longest side of the draft cube, and passes of its solve.
 _DRAFT, _PASSES = 16, 40
@@ -46,18 +48,26 @@ class Order:
         Mean PSNR of a draft of the cube, 16 voxels long, with the pictures as given and in this order.
     """
 
-    pictures: NDArray[np.intp]
+    pictures: Counts
     given_db: float
     best_db: float
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        keep(self, pictures=np.intp)
 
     def __call__(self, targets: Targets) -> Targets:
         """Return `targets` with its pictures, weights and names in this order, the views as they are."""
         names = tuple(targets.names[picture] for picture in self.pictures)
         return replace(
-            targets, pictures=targets.pictures[self.pictures], weights=targets.weight[self.pictures], names=names
+            targets,
+            pictures=locked(targets.pictures[self.pictures]),
+            weights=locked(targets.weight[self.pictures]),
+            names=names,
         )
 
 
+@checked
 def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Order:
     """Find which picture should stand at which stop, so that they fight each other least.
 
@@ -119,7 +129,7 @@ def _draft(targets: Targets, grid: Grid) -> tuple[Targets, Grid]:
 
 def _tiled(
     pictures: NDArray[np.floating], weights: NDArray[np.floating], shape: tuple[int, int]
-) -> tuple[Floats, Floats]:
+) -> tuple[Reals, Reals]:
     """Weighted means over ``shape`` tiles of pictures ``(view, row, column, channel)``, and means of the weights.
 
     A tile without weight has the mean of its picture.
@@ -139,14 +149,14 @@ def _tiles(count: int, shape: tuple[int, int]) -> tuple[int, int]:
     return min(side, shape[0]), min(side, shape[1])
 
 
-def _features(draft: Targets, tiles: tuple[int, int]) -> Floats:
+def _features(draft: Targets, tiles: tuple[int, int]) -> Reals:
     """``(picture, tile, channel)``: absorbance of each picture in tiles; columns of tiles one after the other."""
     dark = absorbance(np.maximum(draft.pictures, _BLACK))
     seen, _ = _tiled(dark, draft.weight, tiles)
     return np.ascontiguousarray(seen.transpose(0, 2, 1, 3).reshape(len(draft), tiles[0] * tiles[1], -1))
 
 
-def _parts(views: Views, grid: Grid, features: Floats, tiles: tuple[int, int]) -> NDArray[np.float32]:
+def _parts(views: Views, grid: Grid, features: Reals, tiles: tuple[int, int]) -> Images:
     """``(stop seen, stop, picture, tile and channel)``: what a picture at a stop adds to what is left unfitted."""
     stops, size = len(views), tiles[0] * tiles[1]
     rows, columns = views.picture_shape
@@ -166,7 +176,7 @@ def _parts(views: Views, grid: Grid, features: Floats, tiles: tuple[int, int]) -
     return np.ascontiguousarray(parts.reshape(stops, stops, stops, -1), dtype=np.float32)
 
 
-def _walks(parts: NDArray[np.float32], start: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+def _walks(parts: Images, start: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     """Orders that annealing finds from `start`, one per walk."""
     stops, random = len(start), np.random.default_rng(0)
     found = []

@@ -1,5 +1,7 @@
 """How large pictures may be, how the cube follows them, how long each can stand: chosen by prediction."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -8,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, dense_step_deg
 from lightcube.optics.rig import Rig
 from lightcube.optics.stage import Stage
@@ -66,8 +69,18 @@ class Plan:
     fit: Fit | tuple[Fit, ...]
     prediction: Prediction
     shift: int = 0
-    order: "Order | None" = None
+    order: Order | None = None
     stage: Stage | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if self.order is not None:
+            from lightcube.planning.order import Order  # here: the compiler comes with it
+
+            if not isinstance(self.order, Order):
+                raise InputError(
+                    f"Plan takes an Order as order, not {self.order!r}: find one with lightcube.best_order"
+                )
 
     def __repr__(self) -> str:
         return f"<plan of {self.targets!r} for {self.grid!r}: {self.prediction!r}>"
@@ -82,11 +95,12 @@ class Plan:
         """What is probably not meant, and which pictures are out of reach, a sentence each."""
         return [*([] if self.stage is None else doubtful(self.stage)), *sentences(self.targets)]
 
-    def to_solve(self, targets: Targets) -> "Plan":
+    def to_solve(self, targets: Targets) -> Plan:
         """The same plan for targets that stand, or follow each other, in another way: predicted anew."""
         return replace(self, targets=targets, prediction=predict(targets, self.grid, self.recipe))
 
 
+@checked
 def plan(
     pictures: Pictures,
     n: int = 128,

@@ -24,17 +24,20 @@ measured with the solver of that time; with the one that starts from half the si
 gave means within 3 dB in 90 % (median 1.2, 90 % below 2.1, largest 5.6; 0.8 too low on average), worst ones in 82 %.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.backward import solving
 from lightcube.backward.problem import held
 from lightcube.backward.recipe import Recipe
 from lightcube.forward.casting import cast
+from lightcube.optics.arrays import Images, Reals, keep, locked
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, dense_step_deg, nearest, raster_shape
 from lightcube.optics.material import Material
 from lightcube.optics.transfer import encode
@@ -52,8 +55,6 @@ BIAS, GROWTH, HOLD = 3.6, 0.12, 0.3
 #: Means and minima above this, dB, are told as this: no eye tells more.
 MOST_DB = 50.0
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Prediction:
@@ -67,11 +68,15 @@ class Prediction:
         Width in voxels of the small cube; 0 where there was none.
     """
 
-    psnr: Array
+    psnr: Reals
     rehearsed: int
 
+    def __post_init__(self) -> None:
+        check_fields(self)
+        keep(self, psnr=np.float64)
+
     @classmethod
-    def unknown(cls, views: int) -> "Prediction":
+    def unknown(cls, views: int) -> Prediction:
         """What is told of a room in which nothing was measured."""
         return cls(np.full(views, np.nan), 0)
 
@@ -96,6 +101,7 @@ class Prediction:
         return min(float(np.min(self.psnr)), MOST_DB) if self.is_known else math.nan
 
 
+@checked
 def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Prediction:
     """Predict the PSNR of each picture that `lightcube.solve` reaches in 150 passes of method ``display``.
 
@@ -114,12 +120,12 @@ def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Predi
     return Prediction(law(reached, max(grid.shape[1:]) / width), width)
 
 
-def law(reached: Array, ratio: float) -> Array:
+def law(reached: Reals, ratio: float) -> Reals:
     """PSNR to expect, dB, of pictures that `reached` so much in a cube narrower by `ratio`; see the module."""
     return np.clip(reached + (1 - 1 / ratio) * (BIAS + GROWTH * (reached - 30)), 0.0, BEST_DB)
 
 
-def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Array, int]:
+def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
     """PSNR of each picture in a small cube, dB, and the width of that in voxels; takes what `predict` does."""
     solving.check_targets(targets, grid)
     hold_deg = recipe.hold_deg
@@ -150,7 +156,13 @@ def reduced(targets: Targets, grid: Grid, width: int) -> tuple[Targets, Grid]:
     ratio = max(grid.shape[1:]) / max(shape[1:])
     pairs = [_shrunk(*each, picture_shape) for each in zip(targets.pictures, targets.weight, strict=True)]
     pictures, weights = (np.stack(arrays).astype(np.float32) for arrays in zip(*pairs, strict=True))
-    small = Targets(pictures, targets.rig.with_pixels(ratio, picture_shape), weights, targets.names, targets.transfer)
+    small = Targets(
+        locked(pictures),
+        targets.rig.with_pixels(ratio, picture_shape),
+        locked(weights),
+        targets.names,
+        targets.transfer,
+    )
     return small, Grid(shape, grid.voxel_mm * ratio)
 
 
@@ -201,7 +213,7 @@ def _proportioned(
     return best[1], best[2]
 
 
-def _shrunk(picture: NDArray[np.float32], weight: NDArray[np.float32], shape: tuple[int, int]) -> tuple[Array, Array]:
+def _shrunk(picture: Images, weight: Images, shape: tuple[int, int]) -> tuple[Reals, Reals]:
     """Picture ``(row, column, channel)`` and its weights ``(row, column)``, at fewer pixels."""
     down, across = shares(weight.shape[0], shape[0]), shares(weight.shape[1], shape[1]).T
     cover = down @ (weight > 0) @ across
@@ -215,7 +227,7 @@ def _shrunk(picture: NDArray[np.float32], weight: NDArray[np.float32], shape: tu
     return light, np.where(kept, total / np.where(kept, cover, 1), 0)
 
 
-def _ranked(values: Array, ascending: NDArray[np.float32]) -> Array:
+def _ranked(values: Reals, ascending: Images) -> Reals:
     """`values`, each replaced by the mean of its share of the `ascending` ones."""
     sums = np.concatenate([[0.0], np.cumsum(ascending, dtype=np.float64)])
     ends = np.interp(np.linspace(0, len(ascending), len(values) + 1), np.arange(len(sums)), sums)

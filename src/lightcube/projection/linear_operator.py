@@ -1,6 +1,6 @@
 """The matrix as scipy's iterative solvers want it. Importing this imports ``scipy.sparse.linalg``, which takes long."""
 
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,11 @@ from scipy.sparse.linalg import LinearOperator
 from lightcube.errors import InputError
 
 Floats = NDArray[np.floating[Any]]
+
+if TYPE_CHECKING:
+    _Operator = LinearOperator[np.floating[Any]]
+else:
+    _Operator = LinearOperator  # which takes no types before scipy 1.17
 
 
 class Matrix(Protocol):
@@ -23,7 +28,7 @@ class Matrix(Protocol):
         """``A.T @ b``."""
 
 
-class MatrixOperator(LinearOperator):
+class MatrixOperator(_Operator):
     """A matrix with `forward` and `adjoint` as scipy's ``LinearOperator`` of one `dtype`; it pickles with its matrix.
 
     Vectors and blocks of other real numbers are converted to `dtype`.

@@ -1,20 +1,25 @@
 """The matrix A: how much of each voxel each beam runs through."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from lightcube.errors import InputError
 from lightcube.kernels.layout import (
+    as_writable,
     columns_from_pictures,
     columns_from_volume,
     empty,
     pictures_from_columns,
     volume_from_columns,
 )
+from lightcube.optics.arrays import Counts, Flags, Floats, Reals, as_numbers
+from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.views import Views
@@ -23,8 +28,6 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
     from lightcube.projection.linear_operator import MatrixOperator
-
-Floats = NDArray[np.floating[Any]]
 
 
 class Projector:
@@ -98,13 +101,22 @@ class Projector:
     ((6, 12), (12, 2), (6, 2))
     """
 
-    def __init__(self, grid: Grid, rig: Rig | Views, heard: NDArray[np.bool_] | None = None) -> None:
+    grid: Grid
+    views: Views
+    domain_shape: tuple[int, int, int]
+    range_shape: tuple[int, int, int]
+    shape: tuple[int, int]
+    level: bool
+
+    @checked
+    def __init__(self, grid: Grid, rig: Rig | Views, heard: Flags | None = None) -> None:
         from lightcube.projection.rays import Rays  # here: the compiler comes with them
         from lightcube.projection.stacked import StackedBeams, is_stacked
 
         views = rig if isinstance(rig, Views) else rig.views
         self.grid, self.views = grid, views
         self.domain_shape, self.range_shape = grid.shape, (len(views), *views.picture_shape)
+        heard = None if heard is None else np.asarray(heard, np.bool_)
         if heard is not None and heard.shape != self.range_shape:
             raise InputError(f"which pixels count has shape {heard.shape}, not {self.range_shape}")
         self._engine = StackedBeams(grid, views) if is_stacked(grid, views) else Rays(grid, views, heard)
@@ -131,6 +143,7 @@ class Projector:
         InputError
             Where `volume` has another shape or dtype.
         """
+        volume = _array(volume, "a volume for this matrix")
         if volume.ndim not in (3, 4) or volume.shape[-3:] != self.domain_shape or volume.size == 0:
             nz, ny, nx = self.domain_shape
             raise InputError(
@@ -144,7 +157,7 @@ class Projector:
         return pictures if volume.ndim == 4 else pictures[..., 0]
 
     @cached_property
-    def T(self) -> "Transpose":  # noqa: N802 - what numpy calls it
+    def T(self) -> Transpose:  # noqa: N802 - what numpy calls it
         """The transpose: ``A.T(pictures)`` is a volume. ``A.T.T is A``."""
         return Transpose(self)
 
@@ -153,7 +166,7 @@ class Projector:
         return _product(self.forward, x)
 
     @property
-    def view_of_row(self) -> NDArray[np.intp]:
+    def view_of_row(self) -> Counts:
         """The view that each row of the matrix belongs to."""
         return np.repeat(np.arange(len(self.views)), self.shape[0] // len(self.views))
 
@@ -173,17 +186,17 @@ class Projector:
         )
         return _multiplied(self._engine.adjoint, b, self.shape[::-1], hint)
 
-    def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    def row(self, index: int) -> tuple[NDArray[np.int64], Reals]:
         """Return the unknowns that equation `index` touches, and its beam's length (mm) in each."""
         if not 0 <= index < self.shape[0]:
             raise InputError(f"row {index} is not in the matrix of {self.shape[0]} rows")
         return self._engine.row(index)
 
-    def to_sparse(self) -> "csr_array":
+    def to_sparse(self) -> csr_array:
         """Return the same matrix, float64."""
         return self._engine.to_sparse()
 
-    def as_linear_operator(self, dtype: DTypeLike = np.float64) -> "MatrixOperator":
+    def as_linear_operator(self, dtype: DTypeLike = np.float64) -> MatrixOperator:
         """Return the matrix as scipy's iterative solvers want it: a ``LinearOperator`` that can be pickled.
 
         Raises
@@ -193,7 +206,7 @@ class Projector:
         """
         from lightcube.projection.linear_operator import MatrixOperator
 
-        return MatrixOperator(self, _checked(np.dtype(dtype)))
+        return MatrixOperator(self, _precision(dtype))
 
 
 class Transpose:
@@ -210,6 +223,11 @@ class Transpose:
     shape
         ``(unknowns, equations)``, for columns.
     """
+
+    T: Projector
+    shape: tuple[int, int]
+    domain_shape: tuple[int, int, int]
+    range_shape: tuple[int, int, int]
 
     def __init__(self, projector: Projector) -> None:
         self.T = projector
@@ -237,6 +255,7 @@ class Transpose:
         InputError
             Where `pictures` have another shape or dtype.
         """
+        pictures = _array(pictures, "pictures for this matrix")
         if pictures.ndim not in (3, 4) or pictures.shape[:3] != self.domain_shape or pictures.size == 0:
             views, rows, columns = self.domain_shape
             raise InputError(
@@ -261,7 +280,7 @@ class Transpose:
         """``A @ x``, the projector's `forward`."""
         return self.T.forward(x)
 
-    def to_sparse(self) -> "csr_array":
+    def to_sparse(self) -> csr_array:
         """Return the same matrix, float64."""
         return self.T.to_sparse().T.tocsr()
 
@@ -275,6 +294,7 @@ def _product(multiply: Callable[[Floats], Floats], x: Floats) -> Floats:
 
 def _multiplied(multiply: Callable[[Floats], Floats], block: Floats, shape: tuple[int, int], hint: str) -> Floats:
     """The product of a matrix of that `shape` with a block of columns, of which there may be none."""
+    block = _array(block, "a block of columns for this matrix")
     if block.ndim != 2 or block.shape[0] != shape[1]:
         raise InputError(
             f"a block of columns for this matrix has shape ({shape[1]}, columns), not {block.shape}: {hint}"
@@ -282,7 +302,21 @@ def _multiplied(multiply: Callable[[Floats], Floats], block: Floats, shape: tupl
     _checked(block.dtype)
     if block.shape[1] == 0:
         return empty((shape[0], 0), block.dtype)
-    return multiply(np.ascontiguousarray(block))
+    return multiply(as_writable(np.ascontiguousarray(block)))
+
+
+def _array(given: Floats, what: str) -> Floats:
+    """What a product is taken of: an array as it is, and what becomes one."""
+    return given if isinstance(given, np.ndarray) else as_numbers(given, what)
+
+
+def _precision(dtype: DTypeLike) -> np.dtype[Any]:
+    """A dtype that there are products of, from one of its names."""
+    try:
+        found = np.dtype(object if dtype is None else dtype)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"the matrix multiplies numbers that are float32 or float64, not {dtype!r}") from error
+    return _checked(found)
 
 
 def _checked(dtype: np.dtype[Any]) -> np.dtype[Any]:
@@ -292,7 +326,22 @@ def _checked(dtype: np.dtype[Any]) -> np.dtype[Any]:
     return dtype
 
 
-def dot_test(operator: Any, columns: int = 3, dtype: type[np.floating[Any]] = np.float64, seed: int = 0) -> float:
+class Multiplies(Protocol):
+    """What `dot_test` asks of a matrix: its shape, and its products with blocks of columns."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """``(equations, unknowns)``."""
+
+    def forward(self, x: Floats) -> Floats:
+        """``A @ x`` of ``(unknowns, columns)``."""
+
+    def adjoint(self, b: Floats) -> Floats:
+        """``A.T @ b`` of ``(equations, columns)``."""
+
+
+@checked
+def dot_test(operator: Multiplies, columns: int = 3, dtype: DTypeLike = "float64", seed: int = 0) -> float:
     """``|<A x, b> - <x, A.T b>|`` relative to ``|A x| |b|`` for random blocks of non-negative columns.
 
     `operator` has ``shape``, ``forward`` and ``adjoint``: a `Projector`, its transpose, or one of your own. An exact
@@ -306,7 +355,9 @@ def dot_test(operator: Any, columns: int = 3, dtype: type[np.floating[Any]] = np
     >>> lc.dot_test(A) < 1e-12
     True
     """
-    random = np.random.default_rng(seed)
+    if columns < 1 or seed < 0:
+        raise InputError(f"a dot test takes at least 1 column and a seed of at least 0, not {columns} and {seed}")
+    dtype, random = _precision(dtype), np.random.default_rng(seed)
     x = random.random((operator.shape[1], columns)).astype(dtype)
     b = random.random((operator.shape[0], columns)).astype(dtype)
     ax, atb = operator.forward(x), operator.adjoint(b)

@@ -29,6 +29,8 @@ class Rays:
     """
 
     level = False
+    grid: Grid
+    shape: tuple[int, int]
 
     def __init__(self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None) -> None:
         rows, columns = views.picture_shape

@@ -40,6 +40,12 @@ class StackedBeams:
     one slice. Nothing is stored but a few numbers per view: lengths are traced anew in every product.
     """
 
+    grid: Grid
+    beams: NDArray[np.float64]
+    rise: int
+    level: bool
+    shape: tuple[int, int]
+
     def __init__(self, grid: Grid, views: Views) -> None:
         self.grid = grid
         rows, self._width = views.picture_shape

@@ -1,13 +1,16 @@
 """A scene: its description and the triangles of the meshes that it names."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Floats, Reals, owned
+from lightcube.optics.checks import check_fields
 from lightcube.scene.description import Mesh, SceneFile, Text, parse
 from lightcube.scene.letters import text_mesh
 from lightcube.scene.meshes import is_closed, outward, tidy
@@ -33,13 +36,15 @@ class Scene:
     """
 
     description: SceneFile
-    meshes: Mapping[str, NDArray[np.floating]] = field(default_factory=dict)
+    meshes: Mapping[str, Floats] = field(default_factory=dict)
     name: str = "scene"
     #: Triangles ``(n, 3, 3)`` of each mesh or text among the shapes, by the shape's number.
-    triangles: Mapping[int, NDArray[np.float64]] = field(init=False)
+    triangles: Mapping[int, Reals] = field(init=False)
 
     def __post_init__(self) -> None:
-        made: dict[int, NDArray[np.float64]] = {}
+        check_fields(self)
+        object.__setattr__(self, "meshes", {name: owned(mesh, np.float64) for name, mesh in self.meshes.items()})
+        made: dict[int, Reals] = {}
         for i, shape in enumerate(self.description.shapes):
             if isinstance(shape, Text):
                 try:
@@ -48,9 +53,9 @@ class Scene:
                     raise InputError(f"{self.name}: shapes.{i}.text: {error}") from None
             elif isinstance(shape, Mesh):
                 made[i] = self._mesh(i, shape)
-        object.__setattr__(self, "triangles", made)
+        object.__setattr__(self, "triangles", {number: owned(mesh, np.float64) for number, mesh in made.items()})
 
-    def _mesh(self, i: int, shape: Mesh) -> NDArray[np.float64]:
+    def _mesh(self, i: int, shape: Mesh) -> Reals:
         where = f"{self.name}: shapes.{i}.file"
         if shape.file not in self.meshes:
             raise InputError(f"{where}: the mesh {shape.file} was not given")
@@ -69,7 +74,7 @@ class Scene:
 
 
 def scene_from_tables(
-    data: Mapping[str, Any], meshes: Mapping[str, NDArray[np.floating]] | None = None, name: str = "scene"
+    data: Mapping[str, Any], meshes: Mapping[str, Floats] | None = None, name: str = "scene"
 ) -> Scene:
     """Scene from the tables of a scene file; `InputError` names the key that is wrong and what is allowed."""
     return Scene(parse(data, name), meshes or {}, name)

@@ -1,11 +1,14 @@
 """Pictures of a scene: seen by its camera, or as shadows on the screen of a turntable."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Images, Reals, locked
+from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.views import Views, spread_angles
@@ -25,14 +28,13 @@ def casts_shadows(scene: Scene) -> bool:
     return isinstance(scene.description.camera, ShadowCamera)
 
 
-def times(count: int) -> NDArray[np.float64]:
+def times(count: int) -> Reals:
     """Instants ``i / count`` of the pictures of an animation: in a loop the last is followed by the first."""
     return np.arange(count) / count
 
 
-def trace(
-    scene: Scene, count: int, picture_shape: tuple[int, int], *, callback: Callback | None = None
-) -> NDArray[np.float32]:
+@checked
+def trace(scene: Scene, count: int, picture_shape: tuple[int, int], *, callback: Callback | None = None) -> Images:
     """Ray-trace a scene as its perspective or parallel camera sees it.
 
     Parameters
@@ -81,7 +83,8 @@ def trace(
     return pictures
 
 
-def shadows(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None = None) -> NDArray[np.float32]:
+@checked
+def shadows(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None = None) -> Images:
     """Shadows of a scene's glass on the screen of a turntable, where the light cube of `grid` would stand.
 
     Parameters
@@ -127,6 +130,7 @@ def shadows(scene: Scene, views: Views, grid: Grid, *, callback: Callback | None
     return pictures
 
 
+@checked
 def scene_rig(
     scene: Scene,
     count: int | None = None,
@@ -160,10 +164,11 @@ def scene_rig(
     return grid, turntable(grid, angles_deg, elevation_deg=raised, picture_shape=(height, width))
 
 
+@checked
 def scene_targets(scene: Scene, rig: Rig, grid: Grid, *, callback: Callback | None = None) -> Targets:
     """Pictures of a scene for a turntable with the cube `grid`, one per stop: by its camera, or its `shadows`."""
     if casts_shadows(scene):
         pictures = shadows(scene, rig.views, grid, callback=callback)
     else:
         pictures = trace(scene, len(rig), rig.picture_shape, callback=callback)
-    return Targets(pictures, rig)
+    return Targets(locked(pictures), rig)

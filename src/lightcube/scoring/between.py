@@ -1,20 +1,21 @@
 """What one sees between the pictures, and what a set-up that is not perfect makes of them."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
 from lightcube.forward.turning import powers_of
+from lightcube.optics.arrays import Counts, Reals, keep
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import encode
 from lightcube.pictures.targets import Targets
 from lightcube.scoring.metrics import check_same_views, psnr, ssim
-
-Floats = NDArray[np.float64]
 
 #: A picture stands as long as its PSNR is at least this, dB.
 LOBE_DB = 30.0
@@ -46,15 +47,21 @@ class Curve:
         Degrees after which the curve repeats.
     """
 
-    angles_deg: Floats
-    nearest: NDArray[np.intp]
-    offsets_deg: Floats
-    psnr: Floats
-    ssim: Floats
-    lobes_deg: Floats
+    angles_deg: Reals
+    nearest: Counts
+    offsets_deg: Reals
+    psnr: Reals
+    ssim: Reals
+    lobes_deg: Reals
     period_deg: float
 
+    def __post_init__(self) -> None:
+        check_fields(self)
+        reals = ("angles_deg", "offsets_deg", "psnr", "ssim", "lobes_deg")
+        keep(self, nearest=np.intp, **dict.fromkeys(reals, np.float64))
 
+
+@checked
 def curve(cube: Cube, targets: Targets, steps: int = 8, *, callback: Callable[[int, int], None] | None = None) -> Curve:
     """Compare what is cast at, around and between the stops with the nearer of the two pictures.
 
@@ -109,7 +116,7 @@ def curve(cube: Cube, targets: Targets, steps: int = 8, *, callback: Callable[[i
     return Curve(places[nearest] + offsets, nearest, offsets, quality, likeness, lobes, period)
 
 
-def _reach(places: Floats, period: float, screens: NDArray[np.intp]) -> Floats:
+def _reach(places: Reals, period: float, screens: Counts) -> Reals:
     """``(2, pictures)``: degrees from each stop to halfway to the one before and to the one after it on its screen."""
     reach = np.empty((2, len(places)))
     for screen in np.unique(screens):
@@ -120,7 +127,7 @@ def _reach(places: Floats, period: float, screens: NDArray[np.intp]) -> Floats:
     return reach
 
 
-def _offsets(reach: Floats, steps: int) -> Floats:
+def _offsets(reach: Reals, steps: int) -> Reals:
     """Where a stop's cell is sampled, degrees from the stop: evenly, and by doubling distances near the stop."""
     sides = []
     for half in reach:
@@ -130,9 +137,7 @@ def _offsets(reach: Floats, steps: int) -> Floats:
     return np.concatenate([-sides[0], [0.0], sides[1]])
 
 
-def _compared(
-    cube: Cube, targets: Targets, view: Floats, offset: Floats
-) -> Iterator[tuple[float, float, float, float]]:
+def _compared(cube: Cube, targets: Targets, view: Reals, offset: Reals) -> Iterator[tuple[float, float, float, float]]:
     """View, offset in degrees, PSNR and SSIM of what is cast there against that view's picture, sample by sample."""
     index = view.astype(np.intp)
     wanted = encode(targets.pictures, targets.transfer)
@@ -143,7 +148,7 @@ def _compared(
         yield float(place), float(degrees), psnr(*pair), ssim(*pair)
 
 
-def _end(found: Floats, view: int, side: int) -> tuple[float, float, float]:
+def _end(found: Reals, view: int, side: int) -> tuple[float, float, float]:
     """Width of one side of a view's lobe, and the two distances from the stop that enclose its end (degrees)."""
     rows = found[(found[:, 0] == view) & (found[:, 1] * side >= 0)]
     distance, quality = rows[np.argsort(np.abs(rows[:, 1]))][:, 1:3].T

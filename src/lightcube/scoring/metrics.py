@@ -1,5 +1,7 @@
 """How near what is cast comes to what was wanted, always in display values and never clipped."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from typing import Any
 
@@ -10,6 +12,8 @@ from skimage import metrics as similarities
 
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
+from lightcube.optics.arrays import Images
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import encode
 from lightcube.pictures.fitting import targets_of
@@ -57,6 +61,7 @@ def delta_e(shown: Display, wanted: Display, weight: Display) -> float:
     return float(np.sum(weight * difference) / np.sum(weight))
 
 
+@checked
 def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
     """Compare what the cube really casts at its stops with what was wanted.
 
@@ -81,7 +86,7 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
     return score_pictures(cast(cube), wanted)
 
 
-def score_pictures(shown: Iterable[NDArray[np.float32]], targets: Targets) -> dict[str, Any]:
+def score_pictures(shown: Iterable[Images], targets: Targets) -> dict[str, Any]:
     """Compare pictures in linear light ``(row, column, channel)`` with the targets, in order; returns as `score`."""
     views: list[dict[str, Any]] = []
     for index, picture in enumerate(shown):
@@ -109,9 +114,7 @@ def score_pictures(shown: Iterable[NDArray[np.float32]], targets: Targets) -> di
     }
 
 
-def mean_psnr(
-    shown: NDArray[np.float32], targets: Targets, window: tuple[slice, slice] = (slice(None), slice(None))
-) -> float:
+def mean_psnr(shown: Images, targets: Targets, window: tuple[slice, slice] = (slice(None), slice(None))) -> float:
     """Mean over pictures of `psnr`, for pictures in linear light ``(view, row, column, channel)``.
 
     `shown` are the rows and channels of the targets that `window` says; pictures without weight there do not count.

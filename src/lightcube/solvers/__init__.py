@@ -115,6 +115,8 @@ def find_method(method: str | Solver | Method) -> Method:
     if isinstance(method, Method):
         return method
     if not isinstance(method, str):
+        if not callable(method):
+            raise InputError(f"a method is a name or a function, not {method!r}: use one of {', '.join(METHODS)}")
         return Method(method)
     if method in METHODS:
         return METHODS[method]

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.optics.arrays import locked
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
 
@@ -86,7 +87,7 @@ def cgls(
         progress = Progress(len(residuals), iterations, x, ax, residuals[-1], problem.lamp_powers, keep)
         if callback is not None and callback(progress):
             reason = "callback"
-    return Result(x, problem.lamp_powers, np.array(residuals), stop_reason=reason)
+    return Result(locked(x), problem.lamp_powers, np.array(residuals), stop_reason=reason)
 
 
 #: The method as the table has it; how many arrays it holds is measured.

@@ -1,5 +1,7 @@
 """What every solver takes and returns."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, get_args
@@ -9,6 +11,8 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.optics.absorption import absorbance
+from lightcube.optics.arrays import Counts, Flags, Integers, Reals, keep
+from lightcube.optics.checks import check_fields
 from lightcube.optics.law import Mixture, within
 from lightcube.optics.transfer import Transfer
 
@@ -36,7 +40,7 @@ class Operator(Protocol):
     def adjoint(self, b: Floats) -> Floats:
         """``A.T @ b`` for `b` of shape ``(equations, columns)``, in its dtype: the exact transpose of `forward`."""
 
-    def to_sparse(self) -> "csr_array":
+    def to_sparse(self) -> csr_array:
         """The same matrix, float64, for methods that need single rows."""
 
 
@@ -82,7 +86,7 @@ class Lighting:
         """How many pictures the views make."""
         return len(self.lamp if self.mixture is None else self.mixture.starts[1:])
 
-    def lamp_of_row(self, equations: int) -> NDArray[np.intp]:
+    def lamp_of_row(self, equations: int) -> Counts:
         """``(equations,)``: the lamp of each of all views' equations."""
         return np.repeat(self.lamp.astype(np.intp, copy=False), equations // len(self.lamp))
 
@@ -115,7 +119,7 @@ class Wanted:
     light: Floats
     weights: Floats
     lighting: Lighting
-    lamp_bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
+    lamp_bounds: tuple[Reals, Reals]
     transfer: Transfer
 
     def __init__(
@@ -197,9 +201,7 @@ def _weights(weights: Floats | None, light: Floats) -> Floats:
     return whole
 
 
-def _lamp_bounds(
-    bounds: tuple[Floats, Floats] | None, lighting: Lighting
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _lamp_bounds(bounds: tuple[Floats, Floats] | None, lighting: Lighting) -> tuple[Reals, Reals]:
     if bounds is None:
         return np.ones((lighting.lamps, 1)), np.ones((lighting.lamps, 1))
     low, high = (np.asarray(bound, dtype=np.float64) for bound in bounds)
@@ -261,11 +263,15 @@ class Result:
 
     x: Floats
     lamp_powers: Floats
-    residuals: NDArray[np.float64]
-    rejected: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
-    undetermined: NDArray[np.bool_] | None = None
+    residuals: Reals
+    rejected: Integers = field(default_factory=lambda: np.empty((0, 2), np.int64))
+    undetermined: Flags | None = None
     stop_reason: str = "iterations"
     lower_bound: float | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        keep(self, x=None, lamp_powers=None, residuals=np.float64, rejected=np.int64, undetermined=np.bool_)
 
 
 class Solver(Protocol):

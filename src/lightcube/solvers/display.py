@@ -16,6 +16,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from lightcube.kernels import descent, momentum
 from lightcube.kernels.layout import copied, empty
+from lightcube.optics.arrays import locked
 from lightcube.solvers._checks import check_bounds, check_fits, check_iterations, check_start, check_state
 from lightcube.solvers._convex import ConvexObjective
 from lightcube.solvers._objective import Objective
@@ -119,7 +120,7 @@ def display_values(
     x, lamp, history = at.x, at.lamp, np.array(at.history)
     del at, ay  # make room
     bound = goal.lower_bound(A, ax, lamp, bounds)
-    return Result(x, goal.powers(lamp), history, stop_reason=stop_reason, lower_bound=bound)
+    return Result(locked(x), goal.powers(lamp), history, stop_reason=stop_reason, lower_bound=bound)
 
 
 #: The method as the table has it; how many arrays it holds is measured.

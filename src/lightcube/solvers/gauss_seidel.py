@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from lightcube.kernels.row_action import sweep
+from lightcube.optics.arrays import locked
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
@@ -103,7 +104,9 @@ def gauss_seidel(
     reason = "callback" if asked else "converged" if settled else "iterations"
     undetermined = A.adjoint(judge.active.astype(dtype)) == 0
     x[undetermined] = np.clip(dtype.type(0), *limits)
-    return Result(x, problem.lamp_powers, np.array(residuals), np.argwhere(judge.rejected), undetermined, reason)
+    return Result(
+        locked(x), problem.lamp_powers, np.array(residuals), np.argwhere(judge.rejected), locked(undetermined), reason
+    )
 
 
 #: The method as the table has it; how many arrays it holds is measured.

@@ -1,5 +1,7 @@
 """What a method is, beside the function that solves: what it can choose, what its figures mean, what it needs."""
 
+from __future__ import annotations
+
 import inspect
 from dataclasses import dataclass
 from typing import Literal

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, eye_array, hstack
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import locked
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
@@ -107,7 +108,9 @@ def row_reduction(
         if callback is not None and callback(progress):
             reason = "callback"
             break
-    return Result(x, problem.lamp_powers, np.array(residuals), np.argwhere(rejected), undetermined, reason)
+    return Result(
+        locked(x), problem.lamp_powers, np.array(residuals), np.argwhere(rejected), locked(undetermined), reason
+    )
 
 
 #: The method as the table has it; how many arrays it holds is measured.

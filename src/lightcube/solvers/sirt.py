@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.optics.arrays import locked
 from lightcube.solvers._checks import check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
 from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
@@ -82,7 +83,7 @@ def sirt(
             callback(Progress(len(residuals), iterations, x, ax, residuals[-1], problem.lamp_powers, keep))
         )
     reason = "callback" if asked else "converged" if settled else "iterations"
-    return Result(x, problem.lamp_powers, np.array(residuals), stop_reason=reason)
+    return Result(locked(x), problem.lamp_powers, np.array(residuals), stop_reason=reason)
 
 
 #: The method as the table has it; how many arrays it holds is measured.

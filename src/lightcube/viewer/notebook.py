@@ -1,10 +1,13 @@
 """A cube in a notebook: the widget where a front end can show it, and what it shows at its stops everywhere."""
 
+from __future__ import annotations
+
 import sys
 from typing import TYPE_CHECKING, Any
 
 from lightcube.drawing.strip import still
 from lightcube.errors import InputError
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.viewer.smaller import MOST_SIDE
 
@@ -12,7 +15,8 @@ if TYPE_CHECKING:
     from lightcube.viewer.widget import CubeWidget
 
 
-def show(cube: Cube, *, full: bool = False) -> "CubeWidget":
+@checked
+def show(cube: Cube, *, full: bool = False) -> CubeWidget:
     """Make a widget in which a cube is turned, for Jupyter, VS Code and marimo; its ``angle`` can be read and set.
 
     Parameters

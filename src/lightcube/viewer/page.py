@@ -1,11 +1,14 @@
 """One HTML file in which a cube is turned, with all that it needs inside."""
 
+from __future__ import annotations
+
 import base64
 import html
 import re
 from typing import Any
 
 from lightcube.backward.pieces import Watching
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.modules import joined, source
@@ -13,6 +16,7 @@ from lightcube.viewer.packing import pack
 from lightcube.viewer.smaller import smaller
 
 
+@checked
 def page(cube: Cube, title: str, *, full: bool = False, callback: Watching | None = None) -> str:
     """The text of a page that shows a cube, in any browser, from a file, without a network.
 

@@ -1,7 +1,7 @@
 """The notebook widget in which a cube is turned; it needs anywidget."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import anywidget
 import traitlets
@@ -13,8 +13,19 @@ from lightcube.viewer.description import zipped
 from lightcube.viewer.modules import joined, source
 from lightcube.viewer.page import contents
 
+if TYPE_CHECKING:
 
-class CubeWidget(anywidget.AnyWidget):
+    class _Widget:
+        """What is used of anywidget's class, of which type checkers do not know what it is itself made of."""
+
+        def __init__(self, **traits: Any) -> None: ...
+        def __getattr__(self, name: str) -> Any: ...
+        def _repr_mimebundle_(self, **asked: Any) -> tuple[dict[str, Any], dict[str, Any]] | None: ...
+else:
+    _Widget = anywidget.AnyWidget
+
+
+class CubeWidget(_Widget):
     """A cube that is turned by hand or from Python, made by `lightcube.show`.
 
     Parameters
@@ -34,9 +45,9 @@ class CubeWidget(anywidget.AnyWidget):
     _esm = joined("widget.js") + "\nexport default { render };\n"
     _css = source("style.css")
 
-    angle_deg = traitlets.Float(0.0).tag(sync=True)
-    scene = traitlets.Bytes().tag(sync=True)
-    voxels = traitlets.Bytes().tag(sync=True)
+    angle_deg: Any = traitlets.Float(0.0).tag(sync=True)
+    scene: Any = traitlets.Bytes().tag(sync=True)
+    voxels: Any = traitlets.Bytes().tag(sync=True)
 
     def __init__(self, cube: Cube, *, full: bool = False) -> None:
         description, voxels = contents(cube, "light cube", full=full)

@@ -1,7 +1,7 @@
 """All shapes of a scene at one instant, as flat arrays, and what a beam meets among them."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -36,7 +36,7 @@ class World(NamedTuple):
 
 #: For functions that only kernels call: without entries from Python, which take most of the compiler's time, and put
 #: in place, since handing over a `World` copies a hundred words.
-inner = njit(forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)  # type: ignore[call-overload]
+inner: Any = njit(forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)  # type: ignore[call-overload]
 
 Vector = tuple[float, float, float]
 
