@@ -1,11 +1,15 @@
 """Whatever is wrong with what a public function is given is one sentence."""
 
 import inspect
+import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import lightcube as lc
 from lightcube.pictures import samples
@@ -158,3 +162,97 @@ def test_whatever_is_absurd_is_one_sentence(name: str, argument: str) -> None:
             pytest.fail(f"{what} was taken")
         assert "\n" not in str(refused.value)
         assert len(str(refused.value)) < 300
+
+
+STAGE = lc.Stage(GRID, (LAMP,), (SCREEN,), (SHOT,))
+MATRIX = lc.Projector(GRID, RIG)
+#: Methods of public classes, and what is no sensible argument of theirs.
+METHODS: dict[str, tuple[Callable[[Any], Any], list[Any]]] = {
+    "Rig.take": (RIG.take, ["abc", [2], [-3], [0.5], 1, None, [[0]], [True]]),
+    "Rig.at": (RIG.at, ["abc", None, [], [np.nan], 1j, [[1]]]),
+    "Rig.turned": (RIG.turned, ["abc", None, [1, 2, 3], {}, [[1]], True]),
+    "Rig.held": (lambda given: RIG.held(given, 1.0), ["abc", None, -1, np.nan]),
+    "Rig.sampled": (lambda given: RIG.sampled(lamp=given), ["abc", None, 0, 1.5]),
+    "Rig.shifted": (RIG.shifted, ["abc", None, [1, 2], np.ones((2, 2))]),
+    "Rig.whole": (RIG.whole, ["abc", None, RIG]),
+    "Rig.of": (lc.Rig.of, ["abc", None, RIG]),
+    "Views.take": (RIG.views.take, ["abc", [2], [0.5], 1, None, [[0]]]),
+    "Views.joined": (RIG.views.joined, ["abc", None, lc.turntable(GRID, [0]).views]),
+    "Targets.take": (TARGETS.take, ["abc", [2], [0.5], 1, None, [[0]], {}]),
+    "Stage.lamp": (STAGE.lamp, ["abc", None]),
+    "Stage.screen": (STAGE.screen, ["abc", None]),
+    "Material.most": (lc.Material().most, ["abc", None]),
+    "Projector": (MATRIX, ["abc", None, 1, [1, 2], [[None]]]),
+    "Projector.T": (MATRIX.T, ["abc", None, 1, [1, 2], [[None]]]),
+    "Projector.forward": (MATRIX.forward, ["abc", None, 1, [1, 2], [[None]]]),
+    "Projector.row": (MATRIX.row, ["abc", None, -1, 1.5]),
+    "Projector.as_linear_operator": (MATRIX.as_linear_operator, ["abc", int, lc]),
+    "player": (lc.player(CUBE), ["abc", [], [np.nan], 1j]),
+    "cast": (lambda given: lc.cast(CUBE, None, given), [np.ones((3, 3)), np.ones(2)]),
+}
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_methods_refuse_what_is_absurd(name: str) -> None:
+    method, absurd = METHODS[name]
+    for value in absurd:
+        with pytest.raises(lc.InputError) as refused:  # noqa: PT012
+            method(value)
+            pytest.fail(f"{value!r} was taken")
+        assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "sentence"),
+    [
+        (
+            "solve",
+            ["photos", GRID],
+            "solve takes Targets as targets, not 'photos': fit pictures to a rig with",
+        ),
+        ("play", ["cube.zarr"], "play takes a Cube as cube, not 'cube.zarr': read one with lightcube.load, or take"),
+        ("Projector", [RIG, GRID], "Projector takes a Grid as grid, not a Rig: make one with lightcube.Grid("),
+        ("Grid", [(3, 5, None)], "Grid takes 3 whole numbers as shape, not (3, 5, None): give 3 whole numbers"),
+        ("Material", [1.0, "m"], "Material takes a known word as per, not 'm': use one of mm, voxel"),
+        ("Shot", ["a", "b", [], "c"], "Shot takes a whole number as stop, not 'c': give a whole number"),
+        ("turntable", [GRID, [[1], []]], "turntable takes numbers as angles_deg, not [[1], []]: give numbers"),
+    ],
+)
+def test_sentences_say_where_what_and_what_to_do(name: str, values: list[Any], sentence: str) -> None:
+    with pytest.raises(lc.InputError, match=re.escape(sentence)):
+        getattr(lc, name)(*values)
+
+
+def test_numpys_numbers_and_lists_are_as_good() -> None:
+    grid = lc.Grid(np.array([3, 5, 7]), np.float32(0.5))  # type: ignore[arg-type]
+    assert grid == lc.Grid((3, 5, 7), 0.5)
+    assert len(lc.spread_angles(np.int64(3))) == 3  # type: ignore[arg-type]
+    assert lc.turntable(GRID, [np.float32(0.5), np.int8(3)]).stops.angle_deg.tolist() == [0.5, 3.0]
+    assert lc.Lamp("sun", direction=np.array([1, 0, 0])).direction == (1, 0, 0)  # type: ignore[arg-type]
+
+
+def test_a_missing_argument_and_an_unknown_one_are_pythons_own_errors() -> None:
+    with pytest.raises(TypeError, match="missing 1 required"):
+        lc.play()  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="unexpected keyword argument 'angle'"):
+        lc.play(CUBE, angle=3)  # type: ignore[call-arg]
+
+
+@given(st.data())
+@settings(max_examples=150, deadline=None)
+def test_arrays_of_any_shape_are_taken_or_refused(data: st.DataObject) -> None:
+    kinds = ["Cube", "Targets", "Views", "Prediction", "Result", "Solution"]
+    name = data.draw(st.sampled_from(kinds))
+    made = getattr(lc, name)(**GIVEN[name])
+    field = data.draw(
+        st.sampled_from([key for key, value in vars(made).items() if isinstance(value, np.ndarray)] or ["views"])
+    )
+    shape = data.draw(st.lists(st.integers(0, 4), max_size=4))
+    kind = data.draw(st.sampled_from([np.float32, np.float64, np.int8, np.uint8, np.bool_, np.complex64, object]))
+    array: Any = np.ones(shape, kind)
+    try:
+        value = getattr(lc, name)(**{**GIVEN[name], field: array})
+    except lc.InputError:
+        return
+    assert getattr(value, field).shape == array.shape
+    assert array.dtype.kind in "iufb"

@@ -14,6 +14,7 @@ from lightcube.backward.pieces import POWERS, VOXELS, known
 from lightcube.backward.problem import held
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
+from lightcube.errors import InputError
 from lightcube.kernels.layout import clear_volume
 from lightcube.optics.arrays import Floats, Images, Integers, Reals, keep, locked
 from lightcube.optics.checks import check_fields
@@ -54,6 +55,11 @@ class Solution:
     def __post_init__(self) -> None:
         check_fields(self)
         keep(self, residuals=np.float64, rejected=np.int64)
+        if self.residuals.ndim != 1 or self.rejected.shape[1:] != (4,):
+            raise InputError(
+                f"a solution has one residual per pass, and rejected pixels of shape (count, 4), not "
+                f"{self.residuals.shape} and {self.rejected.shape}"
+            )
 
     def __repr__(self) -> str:
         reached = f", {self.residuals[-1]:.4g} left" if len(self.residuals) else ""

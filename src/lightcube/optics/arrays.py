@@ -4,6 +4,7 @@ A value of this package shares its arrays with nobody who can write to them. Wha
 taken without a copy: whoever makes a large one and hands it over marks it by `locked`.
 """
 
+from collections.abc import Sequence
 from typing import Annotated, Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -25,6 +26,9 @@ Volume: TypeAlias = NDArray[np.float32]
 #: A number, or an array, list or nested list of numbers, which is made an array.
 Numbers: TypeAlias = Annotated[ArrayLike, "numbers"]
 
+#: Which of several things, by their numbers.
+Indices: TypeAlias = Sequence[int] | NDArray[np.integer[Any]] | slice
+
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 
@@ -45,6 +49,21 @@ def as_numbers(given: Numbers, what: str, *shapes: tuple[int, ...]) -> Reals:
         raise InputError(f"{what} must be numbers of shape {' or '.join(map(str, shapes))}, not {array.shape}")
     made = array.astype(np.float64, copy=False)
     return np.broadcast_to(made, shapes[-1]) if shapes else made
+
+
+def as_indices(given: Indices, count: int, what: str) -> Counts:
+    """Numbers of some of `count` things, from 0 or -1 on, or `InputError` that calls them `what`."""
+    if isinstance(given, slice):
+        return np.arange(count)[given]
+    try:
+        array = np.asarray(given)
+    except (TypeError, ValueError):
+        array = np.asarray(None)
+    if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
+        raise InputError(f"{what} are taken by a list of whole numbers, not by {given!r:.60}: give one")
+    if array.size and not -count <= array.min() <= array.max() < count:
+        raise InputError(f"there are {count} {what}, and {given!r:.60} names others: count from 0 to {count - 1}")
+    return array.astype(np.intp, copy=False)
 
 
 def owned(array: ArrayLike, dtype: DTypeLike | None, *, order: Any = "K") -> NDArray[Any]:

@@ -195,14 +195,15 @@ def _array(dtype: Any) -> _Kind:
 
 def _holds(value: Any, kinds: str, axes: int = 0) -> bool:
     """Whether something is an array of numbers of these of numpy's kinds, or becomes one, of so many axes at least."""
-    if isinstance(value, np.ndarray):  # as it mostly is: quickly
-        return value.ndim >= axes and (value.dtype.kind in kinds or value.size == 0)
-    if value is None or isinstance(value, _NO_LISTS):
+    if isinstance(value, np.ndarray):
+        array = value
+    elif value is None or isinstance(value, _NO_LISTS):
         return False
-    try:
-        array = np.asarray(value)
-    except Exception:  # lists of unequal lengths, and whatever a stranger's own conversion raises
-        return False
+    else:
+        try:
+            array = np.asarray(value)
+        except Exception:  # lists of unequal lengths, and whatever a stranger's own conversion raises
+            return False
     return array.ndim >= axes and (array.dtype.kind in kinds or (array.size == 0 and array.dtype.kind == "f"))
 
 

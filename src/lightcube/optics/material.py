@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from lightcube.errors import InputError
-from lightcube.optics.checks import check_fields
+from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid
 
 #: What a largest extinction is counted along: a mm, or the side of a voxel.
@@ -39,6 +39,7 @@ class Material:
         if not self.max_extinction > 0:
             raise InputError(f"the largest extinction must be a positive number, not {self.max_extinction}")
 
+    @checked
     def most(self, grid: Grid) -> float:
         """The largest extinction of the grid's voxels, 1/mm."""
         return self.max_extinction / (grid.voxel_mm if self.per == "voxel" else 1.0)

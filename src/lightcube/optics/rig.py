@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Counts, Flags, Numbers, Reals, as_numbers, locked
+from lightcube.optics.arrays import Counts, Flags, Indices, Numbers, Reals, as_indices, as_numbers, locked
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.tables import (
@@ -215,9 +215,9 @@ class Rig:
         starts = self.starts
         return np.concatenate([np.arange(starts[p], starts[p + 1]) for p in pictures])
 
-    def take(self, pictures: Sequence[int] | NDArray[np.integer]) -> Rig:
+    def take(self, pictures: Indices) -> Rig:
         """Some of the pictures, in this order; a picture may come several times."""
-        chosen = np.asarray(pictures, np.intp)
+        chosen = as_indices(pictures, len(self), "pictures") % len(self)
         taken = self._with_views(self.views_of(chosen))
         counts = np.diff(self.starts)[chosen]
         sums = replace(taken.sums, picture=np.repeat(np.arange(len(chosen)), counts))
@@ -244,6 +244,7 @@ class Rig:
         views = rotated(self.views, self.turning.axis, lamp, screen)
         return replace(self, views=views, stops=replace(self.stops, angle_deg=self.stops.angle_deg + angles_deg))
 
+    @checked
     def held(self, hold_deg: float, step_deg: float) -> Rig:
         """Every picture at several angles within `hold_deg` degrees of its stop, at most `step_deg` apart, in a row.
 
@@ -289,6 +290,7 @@ class Rig:
         stops = replace(moved.stops, angle_deg=now)
         return replace(moved, sums=replace(moved.sums, share=share), stops=stops), shown % len(self)
 
+    @checked
     def sampled(self, *, lamp: int = 1, pixel: int = 1) -> Rig:
         """Each view as several, whose mean is the light of a lamp's whole disc on a whole pixel.
 
@@ -319,14 +321,17 @@ class Rig:
         views = Views(lamps, origins_mm, *steps, self.picture_shape)
         return Rig(views, sums, copied.fading, copied.turning, self.stops, self.lamps, self.screens)
 
+    @checked
     def shifted(self, offsets: NDArray[np.integer]) -> Rig:
         """Pictures that stand `offsets` ``(picture, 2)`` pixels further right and down on their screens."""
+        offsets = np.asarray(offsets)
         if offsets.shape != (len(self), 2):
             raise InputError(f"offsets of shape {offsets.shape} do not fit the pictures, which want ({len(self)}, 2)")
         views, own = self.views, offsets[self.sums.picture]
         origins_mm = views.origins_mm + own[:, :1] * views.column_steps_mm + own[:, 1:] * views.row_steps_mm
         return replace(self, views=replace(views, origins_mm=origins_mm))
 
+    @checked
     def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> Rig:
         """The same pictures with pixels `ratio` times as large, so many of them around the same middle."""
         before = (np.multiply(picture_shape, ratio) - self.picture_shape) / 2  # what is added above and to the left
@@ -334,6 +339,7 @@ class Rig:
         stops = replace(self.stops, window=np.minimum(windows, picture_shape))
         return replace(self, views=self.views.with_pixels(ratio, picture_shape), stops=stops)
 
+    @checked
     def whole(self, grid: Grid) -> Rig:
         """Pictures as large as the cube's whole shadow, in its middle, on screens without edges; others as they are."""
         if not np.all(self.screens.endless[self.stops.screen]):

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -140,6 +141,10 @@ class Screen:
         return self.pitch_mm * (-right if self.rear else right), -self.pitch_mm * up
 
 
+#: What a stage knows by its name.
+_Named = TypeVar("_Named", Lamp, Screen)
+
+
 @dataclass(frozen=True)
 class Shot:
     """A picture that is wanted: its name, on which screen, under which lamps, at which stop (counted from 0)."""
@@ -207,11 +212,11 @@ class Stage:
 
     def lamp(self, name: str) -> Lamp:
         """The lamp of this name."""
-        return next(lamp for lamp in self.lamps if lamp.name == name)
+        return _named("lamp", self.lamps, name)
 
     def screen(self, name: str) -> Screen:
         """The screen of this name."""
-        return next(screen for screen in self.screens if screen.name == name)
+        return _named("screen", self.screens, name)
 
     def rig(self) -> Rig:
         """Views of every picture, one for each of its lamps, and how they make it.
@@ -268,6 +273,14 @@ class Stage:
             raise InputError(
                 f"picture {shot.name!r}: there is no stop {shot.stop + 1}: the turntable has {len(self.stops_deg)}"
             )
+
+
+def _named(kind: str, things: Sequence[_Named], name: str) -> _Named:
+    """The lamp or screen of a name."""
+    for thing in things:
+        if thing.name == name:
+            return thing
+    raise InputError(f"there is no {kind} {name!r}: use one of {', '.join(each.name for each in things)}")
 
 
 def _powers(lamp: Lamp) -> tuple[float, float]:

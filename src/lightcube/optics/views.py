@@ -7,14 +7,12 @@ in the cube's own axes: the cube stands still and the lamp goes round it. See do
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Numbers, Reals, as_numbers, keep
+from lightcube.optics.arrays import Indices, Numbers, Reals, as_indices, as_numbers, keep
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, check_elevation, raster_shape
 
@@ -101,22 +99,29 @@ class Views:
         level = np.hypot(self.lamps[:, 0], self.lamps[:, 1])
         return np.asarray(np.round(np.degrees(np.arctan2(-self.lamps[:, 2], level)), 9), dtype=np.float64)
 
-    def take(self, indices: Sequence[int] | NDArray[np.integer] | slice) -> Views:
+    def take(self, indices: Indices) -> Views:
         """Return some of the views, in the order of `indices`."""
+        chosen = indices if isinstance(indices, slice) else as_indices(indices, len(self), "views")
         return Views(
-            self.lamps[indices],
-            self.origins_mm[indices],
-            self.column_steps_mm[indices],
-            self.row_steps_mm[indices],
+            self.lamps[chosen],
+            self.origins_mm[chosen],
+            self.column_steps_mm[chosen],
+            self.row_steps_mm[chosen],
             self.picture_shape,
         )
 
+    @checked
     def joined(self, other: Views) -> Views:
         """Return these views and then the others, of the same shape of pictures."""
+        if other.picture_shape != self.picture_shape:
+            raise InputError(
+                f"views of {other.picture_shape} pixels do not join those of {self.picture_shape}: give as large ones"
+            )
         names = ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm")
         arrays = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
         return Views(**arrays, picture_shape=self.picture_shape)
 
+    @checked
     def with_pixels(self, ratio: float, picture_shape: tuple[int, int]) -> Views:
         """Return the same views with pixels `ratio` times as large, so many of them around the same middle."""
         return Views(

@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Flags, Images, Reals, locked, owned
+from lightcube.optics.arrays import Flags, Images, Indices, Reals, as_indices, locked, owned
 from lightcube.optics.checks import check_fields
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
@@ -90,9 +89,9 @@ class Targets:
         """Turntable angle of each picture's stop, degrees."""
         return self.rig.stops.angle_deg
 
-    def take(self, indices: list[int] | NDArray[np.integer] | slice) -> Targets:
+    def take(self, indices: Indices) -> Targets:
         """Return some of them, in the order of `indices`."""
-        chosen = list(range(len(self))[indices] if isinstance(indices, slice) else indices)
+        chosen = as_indices(indices, len(self), "targets")
         return replace(
             self,
             pictures=locked(self.pictures[chosen]),

@@ -35,6 +35,7 @@ import numpy as np
 from lightcube.backward import solving
 from lightcube.backward.problem import held
 from lightcube.backward.recipe import Recipe
+from lightcube.errors import InputError
 from lightcube.forward.casting import cast
 from lightcube.optics.arrays import Images, Reals, keep, locked
 from lightcube.optics.checks import check_fields, checked
@@ -74,6 +75,8 @@ class Prediction:
     def __post_init__(self) -> None:
         check_fields(self)
         keep(self, psnr=np.float64)
+        if self.psnr.ndim != 1 or not self.psnr.size:
+            raise InputError(f"a prediction is of one PSNR for each picture, not of shape {self.psnr.shape}")
 
     @classmethod
     def unknown(cls, views: int) -> Prediction:

@@ -186,6 +186,7 @@ class Projector:
         )
         return _multiplied(self._engine.adjoint, b, self.shape[::-1], hint)
 
+    @checked
     def row(self, index: int) -> tuple[NDArray[np.int64], Reals]:
         """Return the unknowns that equation `index` touches, and its beam's length (mm) in each."""
         if not 0 <= index < self.shape[0]:

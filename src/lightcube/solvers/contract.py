@@ -271,6 +271,11 @@ class Result:
 
     def __post_init__(self) -> None:
         check_fields(self)
+        if np.ndim(self.x) != 2 or np.ndim(self.residuals) != 1:
+            raise InputError(
+                f"a result is x of shape (unknowns, columns) and one residual per iteration, not {np.shape(self.x)} "
+                f"and {np.shape(self.residuals)}"
+            )
         keep(self, x=None, lamp_powers=None, residuals=np.float64, rejected=np.int64, undetermined=np.bool_)
 
 
