@@ -227,7 +227,8 @@ def test_numpys_numbers_and_lists_are_as_good() -> None:
     grid = lc.Grid(np.array([3, 5, 7]), np.float32(0.5))  # type: ignore[arg-type]
     assert grid == lc.Grid((3, 5, 7), 0.5)
     assert len(lc.spread_angles(np.int64(3))) == 3  # type: ignore[arg-type]
-    assert lc.turntable(GRID, [np.float32(0.5), np.int8(3)]).stops.angle_deg.tolist() == [0.5, 3.0]
+    turned = lc.turntable(GRID, [np.float32(0.5), np.int8(3)])  # type: ignore[arg-type]
+    assert turned.stops.angle_deg.tolist() == [0.5, 3.0]
     assert lc.Lamp("sun", direction=np.array([1, 0, 0])).direction == (1, 0, 0)  # type: ignore[arg-type]
 
 
