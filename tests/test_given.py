@@ -135,7 +135,6 @@ def may_be(name: str, argument: str, what: str) -> bool:
         "a fraction": {"float", "Numbers"},
         "a cube": {"Cube"},
         "targets": {"Targets"},
-        "a word": {"str | Path"} if "Path" in words else set(),
     }
     return bool(words & kinds.get(what, set())) or (name, argument, what) in SENSIBLE
 
@@ -168,7 +167,7 @@ STAGE = lc.Stage(GRID, (LAMP,), (SCREEN,), (SHOT,))
 MATRIX = lc.Projector(GRID, RIG)
 #: Methods of public classes, and what is no sensible argument of theirs.
 METHODS: dict[str, tuple[Callable[[Any], Any], list[Any]]] = {
-    "Rig.take": (RIG.take, ["abc", [2], [-3], [0.5], 1, None, [[0]], [True]]),
+    "Rig.take": (RIG.take, [[], slice(9, 12), slice("a"), "abc", [2], [-3], [0.5], 1, None, [[0]], [True]]),
     "Rig.at": (RIG.at, ["abc", None, [], [np.nan], 1j, [[1]]]),
     "Rig.turned": (RIG.turned, ["abc", None, [1, 2, 3], {}, [[1]], True]),
     "Rig.held": (lambda given: RIG.held(given, 1.0), ["abc", None, -1, np.nan]),
@@ -176,9 +175,9 @@ METHODS: dict[str, tuple[Callable[[Any], Any], list[Any]]] = {
     "Rig.shifted": (RIG.shifted, ["abc", None, [1, 2], np.ones((2, 2))]),
     "Rig.whole": (RIG.whole, ["abc", None, RIG]),
     "Rig.of": (lc.Rig.of, ["abc", None, RIG]),
-    "Views.take": (RIG.views.take, ["abc", [2], [0.5], 1, None, [[0]]]),
+    "Views.take": (RIG.views.take, [[], slice(9, 12), "abc", [2], [0.5], 1, None, [[0]]]),
     "Views.joined": (RIG.views.joined, ["abc", None, lc.turntable(GRID, [0]).views]),
-    "Targets.take": (TARGETS.take, ["abc", [2], [0.5], 1, None, [[0]], {}]),
+    "Targets.take": (TARGETS.take, [[], slice(9, 12), "abc", [2], [0.5], 1, None, [[0]], {}]),
     "Stage.lamp": (STAGE.lamp, ["abc", None]),
     "Stage.screen": (STAGE.screen, ["abc", None]),
     "Material.most": (lc.Material().most, ["abc", None]),
@@ -240,14 +239,12 @@ def test_a_missing_argument_and_an_unknown_one_are_pythons_own_errors() -> None:
 
 
 @given(st.data())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_arrays_of_any_shape_are_taken_or_refused(data: st.DataObject) -> None:
     kinds = ["Cube", "Targets", "Views", "Prediction", "Result", "Solution"]
     name = data.draw(st.sampled_from(kinds))
     made = getattr(lc, name)(**GIVEN[name])
-    field = data.draw(
-        st.sampled_from([key for key, value in vars(made).items() if isinstance(value, np.ndarray)] or ["views"])
-    )
+    field = data.draw(st.sampled_from([key for key, value in vars(made).items() if isinstance(value, np.ndarray)]))
     shape = data.draw(st.lists(st.integers(0, 4), max_size=4))
     kind = data.draw(st.sampled_from([np.float32, np.float64, np.int8, np.uint8, np.bool_, np.complex64, object]))
     array: Any = np.ones(shape, kind)

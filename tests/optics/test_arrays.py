@@ -134,7 +134,7 @@ def test_what_can_be_written_to_by_another_name_is_copied(kind: str) -> None:
     raw = bytearray(memory.tobytes())
     given: dict[str, Any] = {
         "a view": view,
-        "a memoryview": memory.data,
+        "a memoryview": np.asarray(memory.data.toreadonly()),
         "a bytearray": np.frombuffer(raw),
         "handed out": Handing(),
     }
@@ -152,8 +152,11 @@ def test_read_only_volumes_are_no_new_kind_to_the_compiler() -> None:
     point = replace(RIG.views, lamps=np.array([[-30.0, 2, 3, 1], [-30.0, 9, 3, 1]]))
     loops: list[tuple[lc.Views, Any]] = [(RIG.views, stacked._forward), (point, rays._forward)]
     for views, loop in loops:
-        A, volume = lc.Projector(GRID, views), np.random.default_rng(4).random(GRID.shape, np.float32)
-        first = A(volume)
+        if not hasattr(loop, "signatures"):
+            pytest.skip("kernels run interpreted: there is no compiler")
+        A = lc.Projector(GRID, views)
+        x = np.random.default_rng(4).random((A.shape[1], 3), np.float32)
+        first = A.forward(x)
         kinds = list(loop.signatures)
-        assert np.array_equal(A(locked(volume)), first)
+        assert np.array_equal(A.forward(locked(x)), first)
         assert loop.signatures == kinds

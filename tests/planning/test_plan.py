@@ -146,6 +146,9 @@ def test_a_stage_is_told_what_the_same_turntable_is() -> None:
     assert not unknown.is_known
     assert np.isnan([unknown.psnr_mean, unknown.psnr_min]).all()
 
+    coarse = replace(stage, screens=(replace(wall, pitch_mm=2 * side),))
+    assert not plan_stage(coarse, planned.pictures, rig=coarse.rig()).prediction.is_known
+
     inside = replace(stage, screens=(replace(wall, centre_mm=(0.0, 0.0, 0.0)),))
     wrong = plan_stage(inside, planned.pictures, rig=inside.rig())
     assert wrong.impossible

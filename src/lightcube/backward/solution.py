@@ -23,7 +23,7 @@ from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.resampling import enlarged
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """A cube and how the solver arrived at it.
 

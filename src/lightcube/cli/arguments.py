@@ -61,7 +61,9 @@ def play_angles(
     """Stops, given angles, or a turn in which each stop is met exactly."""
     turn = [start, end, count] != [None] * 3
     if stops + (angles_deg is not None) + turn > 1:
-        raise InputError("--stops, --angles-deg, and --from, --to and --count are three ways to say the same: use one")
+        raise InputError(
+            "--stops, --angles-deg, and --from-deg, --to-deg and --count are three ways to say the same: use one"
+        )
     if stops:
         return cube.angles_deg
     if angles_deg is not None:
@@ -76,7 +78,7 @@ def play_angles(
     if pictures < 1:
         raise InputError(f"--count {pictures}: give at least 1 picture")
     if not (np.isfinite([first, last]).all() and first != last):
-        raise InputError(f"--from {first} --to {last}: give two different finite numbers of degrees")
+        raise InputError(f"--from-deg {first} --to-deg {last}: give two different finite numbers of degrees")
     return turning.turn(cube, pictures, first, last)
 
 

@@ -27,7 +27,7 @@ def play(
         float | None, typer.Option("--to-deg", help="Where the turn ends, in degrees.  [default: 360]")
     ] = None,
     count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120 or more]")] = None,
-    stops: Annotated[bool, typer.Option("--stops", help="Play just the views that the cube was made for.")] = False,
+    stops: Annotated[bool, typer.Option("--stops", help="Play just the pictures that the cube was made for.")] = False,
     scale: Annotated[
         int | None, typer.Option(help="Enlarge each pixel to a square of so many.  [default: movies about 256 high]")
     ] = None,
@@ -84,7 +84,7 @@ def play(
             views=show.views,
             names=show.names,
         )
-    done(as_json, f"{show.count} pictures in {output}", out=str(output), targets=show.count)
+    done(as_json, f"{show.count} pictures in {output}", out=str(output), count=show.count)
 
 
 def _counted(

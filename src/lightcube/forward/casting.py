@@ -37,6 +37,9 @@ def cast(cube: Cube, rig: Rig | None = None, lamp_powers: Reals | None = None) -
     """
     powers = cube.powers if lamp_powers is None else np.asarray(lamp_powers, np.float64)
     shape = len((rig or cube.rig).pairs), len(cube.extinction)
+    colours = (rig or cube.rig).sums.share.shape[1]
+    if colours not in (1, shape[1]):
+        raise InputError(f"a rig of {colours} colours does not fit a cube of {shape[1]}: give one of as many")
     if powers.shape != shape:
         raise InputError(f"lamp powers for this rig have shape {shape}, not {powers.shape}: give one for each pair")
     return _cast(columns_from_volume(cube.extinction), cube, rig or cube.rig, powers)

@@ -1,6 +1,9 @@
 """NumPy's archives of arrays (.npz), read without trust."""
 
+import lzma
+import tokenize
 import zipfile
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import IO
@@ -9,8 +12,12 @@ from numpy.lib.npyio import NpzFile
 
 from lightcube.errors import InputError
 
-#: What NumPy, zipfile and readers of what they return raise where a file is not what it should be.
-_WRONG = ValueError, TypeError, EOFError, zipfile.BadZipFile, KeyError, RecursionError
+#: What zipfile, its decompressors, NumPy and whoever reads an array raise where a file is not what it should be;
+#: NotImplementedError is for a way of compression that zipfile does not know.
+_WRONG = (
+    *(zipfile.BadZipFile, NotImplementedError, EOFError, zlib.error, lzma.LZMAError),
+    *(ValueError, TypeError, KeyError, RecursionError, tokenize.TokenError),
+)
 
 
 @contextmanager
@@ -31,14 +38,5 @@ def archive(file: IO[bytes], where: object, damaged: Callable[[str], InputError]
         raise
     except MemoryError as error:
         raise InputError(f"{where} does not fit into this machine's memory: open it on a larger one") from error
-    # NotImplementedError is what zipfile raises for a way of compression that it does not know
-    except (
-        ValueError,
-        TypeError,
-        EOFError,
-        zipfile.BadZipFile,
-        KeyError,
-        RecursionError,
-        NotImplementedError,
-    ) as error:
+    except _WRONG as error:
         raise damaged(" ".join(str(error).split())[:100]) from error

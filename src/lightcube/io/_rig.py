@@ -142,4 +142,4 @@ def _check_light(views: Views) -> None:
     if not np.all((lamps[:, 3] == 1) | np.any(lamps[:, :3] != 0, axis=1)):
         raise InputError("lamps: a direction of light is zero")
     if not np.all(np.any(np.cross(views.column_steps_mm, views.row_steps_mm) != 0, axis=1)):
-        raise InputError("column_steps: a screen's columns and rows run along one line")
+        raise InputError("column_steps_mm: a screen's columns and rows run along one line")

@@ -59,7 +59,7 @@ class CubeTable(_Table):
 
 
 class TurntableTable(_Table):
-    """Where the table stops: at the angles `stops`, or `count` times, spread evenly over the whole turn."""
+    """Where the table stops: at the angles `stops_deg`, or `count` times, spread evenly over the whole turn."""
 
     stops_deg: Annotated[tuple[Number, ...], Field(min_length=1)] = (0.0,)
     count: Count | None = None

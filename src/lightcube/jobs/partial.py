@@ -41,6 +41,7 @@ from lightcube.io._places import (
     written,
 )
 from lightcube.io._rig import RigJson, rig_to_json
+from lightcube.optics.arrays import locked
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 from lightcube.pictures.targets import Targets
@@ -260,7 +261,7 @@ def load_job(partial: str | Path) -> Job:
     if arrays is None:
         raise _damaged(path, "it is missing")
     try:
-        pictures, weights = arrays["pictures"], arrays["weights"]
+        pictures, weights = locked(arrays["pictures"]), locked(arrays["weights"])
         job = Job(
             targets=Targets(pictures, said.rig.rig(), weights, tuple(said.names), said.transfer),
             grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),

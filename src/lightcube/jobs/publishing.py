@@ -60,8 +60,8 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
 
 def finish(job: Job, store: DiskStore, out: str | Path, *, overwrite: bool = False) -> Published:
     """Save what a store has of the job of a cube; where that is all it is scored, and the partial folder removed."""
+    done = len(store.names().intersection(job.unit_names))  # first: what others finish from here on is counted no more
     solution = merged(job, store)
-    done = len(store.names().intersection(job.unit_names))
     if done == job.units:
         scored = replace(solution.cube, scores=metrics.score(solution.cube, job.targets))
         solution = replace(solution, cube=scored)

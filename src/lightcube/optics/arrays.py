@@ -53,16 +53,17 @@ def as_numbers(given: Numbers, what: str, *shapes: tuple[int, ...]) -> Reals:
 
 def as_indices(given: Indices, count: int, what: str) -> Counts:
     """Numbers of some of `count` things, from 0 or -1 on, or `InputError` that calls them `what`."""
-    if isinstance(given, slice):
-        return np.arange(count)[given]
     try:
-        array = np.asarray(given)
+        array = np.arange(count)[given] if isinstance(given, slice) else np.asarray(given)
     except (TypeError, ValueError):
         array = np.asarray(None)
+    said = " ".join(repr(given).split())[:60]
     if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
-        raise InputError(f"{what} are taken by a list of whole numbers, not by {given!r:.60}: give one")
-    if array.size and not -count <= array.min() <= array.max() < count:
-        raise InputError(f"there are {count} {what}, and {given!r:.60} names others: count from 0 to {count - 1}")
+        raise InputError(f"{what} are taken by a list of whole numbers, not by {said}: give one")
+    if not array.size:
+        raise InputError(f"none of {count} {what} is taken by {said}: take one at least")
+    if not -count <= array.min() <= array.max() < count:
+        raise InputError(f"there are {count} {what}, and {said} names others: count from 0 to {count - 1}")
     return array.astype(np.intp, copy=False)
 
 

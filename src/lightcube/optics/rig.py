@@ -110,7 +110,7 @@ class Rig:
         power_max
             Its largest power where it is not, at least 1.
         black
-            Display value, in [0, 1), that the screen cannot be darker than.
+            Display value, from half a level of 255 to below 1, that the screen cannot be darker than.
         """
         count = len(views)
         least, most = power_bounds(power, power_max)

@@ -100,7 +100,8 @@ class Screen:
     cosine
         Whether light that falls aslant is spread over more of the screen.
     black
-        Display value, in [0, 1), that it cannot be darker than; pixels darker than it are wanted at it.
+        Display value, from half a level of 255 to below 1, that it cannot be darker than; pixels darker than it are
+        wanted at it.
     """
 
     name: str
@@ -168,7 +169,7 @@ class Stage:
         The cube, its middle at the origin.
     lamps, screens, shots
         Names are used once; every shot names a screen and lamps that are there.
-    stops
+    stops_deg
         Turntable angles, degrees; a positive angle turns what the table carries counter-clockwise about `axis`.
     axis
         Of the turntable, through the cube's middle.

@@ -22,7 +22,7 @@ class Views:
     """Lamp and screen of every view, as vectors in the cube's axes (mm, float64).
 
     The centre of pixel ``(row, column)`` of view ``v`` lies at
-    ``origins[v] + (column - (columns - 1) / 2) * column_steps[v] + (row - (rows - 1) / 2) * row_steps[v]``.
+    ``origins_mm[v] + (column - (columns - 1) / 2) * column_steps_mm[v] + (row - (rows - 1) / 2) * row_steps_mm[v]``.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class Views:
 
     def take(self, indices: Indices) -> Views:
         """Return some of the views, in the order of `indices`."""
-        chosen = indices if isinstance(indices, slice) else as_indices(indices, len(self), "views")
+        chosen = as_indices(indices, len(self), "views")
         return Views(
             self.lamps[chosen],
             self.origins_mm[chosen],

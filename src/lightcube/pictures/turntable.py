@@ -36,7 +36,7 @@ class Turntable:
     power, power_max
         Power of the lamp where it is fixed, and its largest where it is not, as `lightcube.optics.rig.Rig.of` has them.
     black
-        Display value, in [0, 1), that the screen cannot be darker than.
+        Display value, from half a level of 255 to below 1, that the screen cannot be darker than.
 
     Examples
     --------

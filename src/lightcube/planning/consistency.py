@@ -38,7 +38,7 @@ def check(targets: Targets, grid: Grid) -> dict[str, Any]:
     -------
     Facts for JSON and for `advice`; pictures go by their names, row 0 is the top one:
 
-    ``pictures, columns, rows, elevation, lamp_max``
+    ``pictures, columns, rows, elevation_deg, lamp_max``
         As given; `lamp_max` is the largest power of the lamp, linear light.
     ``load, load_limit``
         How full the cube will be, see `load`, and up to what load unrelated pictures were stored with 40 dB.
@@ -53,7 +53,7 @@ def check(targets: Targets, grid: Grid) -> dict[str, Any]:
     ``moments``
         See there.
     """
-    elevation_deg, lamp_max = raised(targets.rig), float(targets.rig.lamps.most.max())
+    elevation_deg, lamp_max = raised(targets.rig, grid), float(targets.rig.lamps.most.max())
     rows, columns = targets.rig.views.picture_shape
     white, blank = plain_rows(targets)
     return {

@@ -126,7 +126,7 @@ def facts(stage: Stage) -> dict[str, Any]:
     ``lamps, screens, stops, pictures, views``
         How many there are; a view is one lamp of one picture.
     ``per_picture``
-        For each: ``name, screen, lamps``; ``stop`` (counted from 1) and ``angle`` (degrees); ``rows, columns``;
+        For each: ``name, screen, lamps``; ``stop`` (counted from 1) and ``angle_deg``; ``rows, columns``;
         ``beams_in_cube``, the part of its beams that meet the cube; ``distance_mm`` from the screen's middle to the
         cube's; and ``pixel_in_voxels``, the square root of the cross-section of a pixel's beams where they pass the
         cube's middle, in voxels (mean over its lamps).

@@ -4,21 +4,26 @@ In other rooms a rehearsal on a small cube is no guide: told as `lightcube.plann
 rooms with a point lamp, or lamps of several elevations, came out 2 to 10 dB too low (21 rooms of benchmarks/stages.py).
 """
 
+import numpy as np
+
 from lightcube.errors import InputError
+from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 
 
-def is_measured(rig: Rig) -> bool:
-    """Whether a rig has one parallel lamp, raised alike for all pictures, and a screen behind the cube."""
-    return rig.is_thin and rig.elevation_deg is not None
+def is_measured(rig: Rig, grid: Grid) -> bool:
+    """Whether one parallel lamp, raised alike for all pictures, shines on a screen behind, its pixels as voxels."""
+    steps = rig.views.column_steps_mm, rig.views.row_steps_mm
+    as_voxels = all(np.allclose(np.linalg.norm(each, axis=1), grid.voxel_mm, rtol=1e-6) for each in steps)
+    return rig.is_thin and rig.elevation_deg is not None and as_voxels
 
 
-def raised(rig: Rig) -> float:
+def raised(rig: Rig, grid: Grid) -> float:
     """Elevation of a rig's light, degrees, or `InputError` where planning was not measured on rooms like it."""
     elevation_deg = rig.elevation_deg
-    if elevation_deg is None or not is_measured(rig):
+    if elevation_deg is None or not is_measured(rig, grid):
         raise InputError(
             "what to expect was measured for one parallel lamp, raised alike for all pictures, and a screen behind the "
-            "cube: this room is another one, so solve a small cube to see"
+            "cube with pixels as wide as voxels: this room is another one, so solve a small cube to see"
         )
     return elevation_deg

@@ -93,7 +93,7 @@ def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Or
     ``pictures^3`` numbers per tile and colour: from 139 pictures on there is no room for two tiles a side, and the
     tour is all there is beside the given order.
     """
-    raised(targets.rig)
+    raised(targets.rig, grid)
     recipe = recipe or Recipe()
     bound = Material(recipe.material.most(grid))
     drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0)

@@ -92,8 +92,8 @@ class Plan:
 
     @cached_property
     def doubtful(self) -> list[str]:
-        """What is probably not meant, and which pictures are out of reach, a sentence each."""
-        return [*([] if self.stage is None else doubtful(self.stage)), *sentences(self.targets)]
+        """What is probably not meant in a room that is described, and which pictures are out of reach there."""
+        return [] if self.stage is None else [*doubtful(self.stage), *sentences(self.targets)]
 
     def to_solve(self, targets: Targets) -> Plan:
         """The same plan for targets that stand, or follow each other, in another way: predicted anew."""
@@ -189,7 +189,7 @@ def plan_stage(
         The stage's, or that with samples of its lamps and pixels.
     """
     asked, targets = recipe or Recipe(), fitted(pictures, rig, ways)
-    told = is_measured(rig) and not impossible(stage)
+    told = is_measured(rig, stage.grid) and not impossible(stage)
     prediction = predict(targets, stage.grid, asked) if told else Prediction.unknown(len(targets))
     return Plan(pictures, targets, stage.grid, asked, ways, prediction, stage=stage)
 

@@ -57,14 +57,14 @@ BIAS, GROWTH, HOLD = 3.6, 0.12, 0.3
 MOST_DB = 50.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Prediction:
     """What PSNR to expect of each picture, dB.
 
     Parameters
     ----------
     psnr
-        ``(views,)``, in the order of the targets, 0 to 100; NaN where nobody knows.
+        ``(pictures,)``, in the order of the targets, 0 to 100; NaN where nobody knows.
     rehearsed
         Width in voxels of the small cube; 0 where there was none.
     """
@@ -118,7 +118,7 @@ def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Predi
     InputError
         Where `solve` would refuse them.
     """
-    raised(targets.rig)
+    raised(targets.rig, grid)
     reached, width = rehearse(targets, grid, recipe or Recipe())
     return Prediction(law(reached, max(grid.shape[1:]) / width), width)
 

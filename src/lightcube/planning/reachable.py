@@ -23,7 +23,7 @@ def least_light(targets: Targets) -> NDArray[np.float64]:
 
     ``(picture, row, column, channel)``, 0 where shadows do not fade. A lamp that makes pixel j as bright as b shows on
     pixel i, behind a cube however dark, no less than ``b D_i / G_j``, with ``G = sum_v share g`` and
-    ``D = sum_v share g (1 - a)`` over that lamp's views (`lightcube.optics.rig`); several lamps show no less than the
+    ``D = sum_v share g (1 - a)`` over that lamp's views (`lightcube.optics.law`); several lamps show no less than the
     one with the least such quotient.
     """
     rig = targets.rig

@@ -73,7 +73,7 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
 
     Returns
     -------
-    ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``views``, a list with ``name, angle, psnr, ssim, delta_e``
+    ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``views``, a list with ``name, angle_deg, psnr, ssim, delta_e``
     of each.
 
     Raises

@@ -16,7 +16,7 @@ from lightcube.planning import feasibility
 from lightcube.planning.consistency import advice, check
 from lightcube.planning.measured import is_measured
 from lightcube.planning.plan import Plan, narrower
-from lightcube.planning.prediction import as_json, predict
+from lightcube.planning.prediction import MOST_DB, as_json, predict
 
 if TYPE_CHECKING:
     from lightcube.planning.order import Order
@@ -27,7 +27,9 @@ POOR_DB = 25.0
 
 def table(planned: Plan) -> list[str]:
     """Aligned lines: how full the cube is, what contradicts itself, and where all stands on a stage."""
-    full = _contradictions(check(planned.targets, planned.grid)) if is_measured(planned.targets.rig) else []
+    full = (
+        _contradictions(check(planned.targets, planned.grid)) if is_measured(planned.targets.rig, planned.grid) else []
+    )
     return full if planned.stage is None else [*full, *([""] if full else []), *_places(planned.stage)]
 
 
@@ -77,7 +79,7 @@ def facts(planned: Plan, order: "Order | None") -> dict[str, Any]:
         "impossible": planned.impossible,
         "doubtful": planned.doubtful,
     }
-    if is_measured(targets.rig):
+    if is_measured(targets.rig, planned.grid):
         known |= check(targets, planned.grid)
     return known if planned.stage is None else known | feasibility.facts(planned.stage)
 
@@ -121,7 +123,7 @@ def expected(planned: Plan) -> str:
     prediction = planned.prediction
     if not prediction.is_known:
         return "" if planned.impossible else "; how good they become was not measured in rooms like this"
-    more = " or more" if prediction.psnr_mean >= 50 else ""
+    more = " or more" if prediction.psnr_mean >= MOST_DB else ""
     by = " by method display" * (planned.recipe.method != "display")
     return f", PSNR of {prediction.psnr_mean:.0f} dB{more} expected (worst {prediction.psnr_min:.0f}){by}"
 
@@ -137,13 +139,16 @@ def gain(planned: Plan, order: "Order | None") -> list[str]:
 
 
 def what_to_change(planned: Plan) -> list[str]:
-    """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much."""
-    if not planned.prediction.is_known:
+    """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much.
+
+    None of a stage: they name options that it leaves no room for.
+    """
+    if planned.stage is not None:
         return []
     found = advice(check(planned.targets, planned.grid))
     if planned.prediction.psnr_mean >= POOR_DB:
         return [sentence for sentence in found if not sentence.startswith("The load")]
-    return [*found, *(_remedies(planned) if planned.stage is None else [])]
+    return [*found, *_remedies(planned)]
 
 
 def _remedies(planned: Plan) -> list[str]:
