@@ -147,7 +147,7 @@ def test_the_command_prints_json_or_tables(monkeypatch: pytest.MonkeyPatch, caps
         return {"found": 1.0}
 
     monkeypatch.setattr(bench, "measure", measure)
-    for words in (["--n", "3", "--json", "--quick"], ["--n", "3", "--views", "2", "--json"]):
+    for words in (["--n", "3", "--json", "--quick"], ["--n", "3", "--pictures", "2", "--json"]):
         assert run(["bench", *words]) == 0
         printed = capsys.readouterr()
         assert json.loads(printed.out) == {"found": 1.0}
@@ -159,8 +159,8 @@ def test_the_command_prints_json_or_tables(monkeypatch: pytest.MonkeyPatch, caps
     ("words", "said"),
     [
         (["--n", "1"], "--n"),
-        (["--views", "0"], "--views"),
-        (["--n", "2000", "--views", "100000"], "of memory"),
+        (["--pictures", "0"], "--pictures"),
+        (["--n", "2000", "--pictures", "100000"], "of memory"),
     ],
 )
 def test_bad_sizes_get_a_sentence(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:

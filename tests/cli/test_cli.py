@@ -88,9 +88,9 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
         assert movie.size == (24, 24)
     scored = run("score", tmp_path / "ball.zarr", tmp_path / "ball", "--json", "--sheet", tmp_path / "sheet.png")
     scores = json.loads(scored.out)
-    assert list(scores) == ["psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "views"]
+    assert list(scores) == ["psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "pictures"]
     assert scores["psnr_mean"] > 30
-    assert [view["angle_deg"] for view in scores["views"]] == pytest.approx([22.5, 67.5, 112.5, 157.5])
+    assert [view["angle_deg"] for view in scores["pictures"]] == pytest.approx([22.5, 67.5, 112.5, 157.5])
     with Image.open(tmp_path / "sheet.png") as sheet:
         assert sheet.size[0] > 100
     told = run("info", tmp_path / "ball.zarr")
@@ -107,7 +107,7 @@ def test_solve_prints_json_lines_for_machines(run, pictures: Path, tmp_path: Pat
     result = events[-1]
     assert result["event"] == "result"
     assert result["iterations"] == 5
-    assert {"psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "views", "rejected"} <= set(result)
+    assert {"psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "pictures", "rejected"} <= set(result)
 
 
 def test_gauss_seidel_says_what_it_threw_out(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]

@@ -38,7 +38,7 @@ def test_check_says_what_to_expect_in_words_and_json(run, pictures: Path) -> Non
     facts = json.loads(run("check", pictures, "--n", 8, "--json").out)
     assert facts["pictures"] == 4
     assert facts["elevation_deg"] == 35
-    assert len(facts["predicted"]["views"]) == 4
+    assert len(facts["predicted"]["pictures"]) == 4
     assert sorted(facts["order"]["best"]) == [0, 1, 2, 3]
     assert facts["voxels"] == [8, 8, 8]
 
@@ -121,7 +121,7 @@ def test_the_best_order_is_kept_by_name(run, unlike: Path, tmp_path: Path) -> No
     assert np.all(np.diff(cube.rig.views.angles_deg) > 0)
     again = json.loads(run("score", tmp_path / "a.npz", unlike, "--json").out)
     assert again["psnr_mean"] == pytest.approx(cube.scores["psnr_mean"], abs=0.01)
-    for own, float_target in zip(score(cube)["views"], cube.scores["views"], strict=True):  # 8 bits tell to 59 dB
+    for own, float_target in zip(score(cube)["pictures"], cube.scores["pictures"], strict=True):  # 8 bits tell to 59 dB
         assert min(own["psnr"], 45) == pytest.approx(min(float_target["psnr"], 45), abs=0.5)
 
 

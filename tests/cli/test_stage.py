@@ -77,7 +77,7 @@ def test_a_stage_goes_through_all_commands(run, stage: Path) -> None:  # type: i
     assert made.names == ("a on wall", "b", "a on side")
     own, given = (json.loads(run("score", cube, *more, "--json").out) for more in ((), (stage,)))
     assert own["psnr_mean"] == pytest.approx(given["psnr_mean"], abs=0.2)
-    assert [view["angle_deg"] for view in given["views"]] == [10, 130, 10]
+    assert [view["angle_deg"] for view in given["pictures"]] == [10, 130, 10]
     assert "bulb" in run("info", cube).out
     checked = run("check", stage)
     assert checked.code == 0

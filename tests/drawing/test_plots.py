@@ -139,7 +139,7 @@ def test_a_sheet_shows_what_was_wanted_above_what_is_shown(cube: Cube) -> None:
     weights[:, 0, 0] = 1
     targets = replace(targets, weights=weights)
     figure = sheet_plot(cube, targets)
-    scores, panels = score(cube, targets)["views"], [axes for axes in figure.axes if axes.images]
+    scores, panels = score(cube, targets)["pictures"], [axes for axes in figure.axes if axes.images]
     assert len(panels) == len(targets)
     rows = targets.rig.picture_shape[0]
     for view, axes in enumerate(panels):
@@ -155,7 +155,7 @@ def test_a_sheet_takes_the_targets_that_the_cube_keeps() -> None:
     with pytest.raises(InputError, match="give the pictures"):
         sheet_plot(cube)
     keeping = replace(cube, targets=as_levels(wanted(cube)))
-    psnr = [f"{view['psnr']:.1f} dB" for view in score(keeping)["views"]]
+    psnr = [f"{view['psnr']:.1f} dB" for view in score(keeping)["pictures"]]
     assert [axes.get_title().split()[-2] + " dB" for axes in sheet_plot(keeping).axes] == psnr
 
 

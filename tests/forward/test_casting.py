@@ -195,15 +195,15 @@ def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
         ("a", "b"),
     )
     scores = score(cube, targets)
-    for index, view in enumerate(scores["views"]):
+    for index, view in enumerate(scores["pictures"]):
         pair = encode(shown[index]), encode(targets.pictures[index])
         assert view["psnr"] == pytest.approx(psnr(*pair, targets.weight[index]), rel=1e-4)
         difference = deltaE_ciede2000(rgb2lab(pair[0]), rgb2lab(pair[1]))
         weight = targets.weight[index]
         assert view["delta_e"] == pytest.approx(np.sum(difference * weight) / weight.sum(), rel=1e-3)
         assert view["name"] == "ab"[index]
-    assert scores["psnr_mean"] == pytest.approx(np.mean([view["psnr"] for view in scores["views"]]))
-    assert scores["psnr_min"] == min(view["psnr"] for view in scores["views"])
+    assert scores["psnr_mean"] == pytest.approx(np.mean([view["psnr"] for view in scores["pictures"]]))
+    assert scores["psnr_min"] == min(view["psnr"] for view in scores["pictures"])
     assert mean_psnr(shown, targets) == pytest.approx(scores["psnr_mean"], rel=1e-4)
     assert score(cube, Targets(shown, cube.rig))["psnr_mean"] == 100
 

@@ -47,7 +47,7 @@ def make(shape: tuple[int, int, int] = (3, 5, 7), count: int = 2, channels: int 
         rig,
         random.random((count, channels)) + 1e-3,
         random.integers(0, 256, (count, 3, 5, channels + 1), dtype=np.uint8),
-        scores={"psnr_mean": 0.1 + 0.2, "views": [{"psnr": 1e-300}, {"psnr": None}]},
+        scores={"psnr_mean": 0.1 + 0.2, "pictures": [{"psnr": 1e-300}, {"psnr": None}]},
         provenance={"method": "display", "iterations": 7, "ok": True, "name": "ü\n"},
         **more,
     )

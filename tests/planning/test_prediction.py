@@ -156,7 +156,7 @@ def test_what_is_small_enough_is_solved_as_it_is(monkeypatch: pytest.MonkeyPatch
     told = predict(targets, grid)
     assert told.rehearsed == 12
     scored = solve(targets, grid, Recipe(passes=12))
-    reached = [view["psnr"] for view in score(scored.cube, targets)["views"]]
+    reached = [view["psnr"] for view in score(scored.cube, targets)["pictures"]]
     np.testing.assert_allclose(told.psnr, reached, rtol=1e-4)
 
 

@@ -248,8 +248,8 @@ def test_every_figure_is_that_of_score(run: Run, pictures: Path) -> None:
     page = reported(run, "a.npz", "pictures")
     head, *rows = page.rows("Every picture")
     assert head == ["no.", "picture", "angle", "PSNR, dB", "SSIM", "CIEDE2000", "predicted, dB", "30 dB over"]
-    predicted, lobes = load("a.npz").provenance["predicted"]["views"], scores["between"]["lobe_deg"]
-    for number, (row, view) in enumerate(zip(rows, scores["views"], strict=True)):
+    predicted, lobes = load("a.npz").provenance["predicted"]["pictures"], scores["between"]["lobe_deg"]
+    for number, (row, view) in enumerate(zip(rows, scores["pictures"], strict=True)):
         figures = [f"{view['psnr']:.2f}", "–" if view["ssim"] is None else f"{view['ssim']:.4f}"]
         figures += [
             f"{view['delta_e']:.2f}",

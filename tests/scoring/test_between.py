@@ -73,8 +73,8 @@ def test_at_the_stops_the_curve_is_the_score(elevation_deg: float) -> None:
     for view, quality, likeness in zip(
         found.nearest[at_stops], found.psnr[at_stops], found.ssim[at_stops], strict=True
     ):
-        assert quality == pytest.approx(scores["views"][view]["psnr"], rel=1e-5)
-        assert likeness == pytest.approx(scores["views"][view]["ssim"], rel=1e-5)
+        assert quality == pytest.approx(scores["pictures"][view]["psnr"], rel=1e-5)
+        assert likeness == pytest.approx(scores["pictures"][view]["ssim"], rel=1e-5)
     assert np.allclose(found.angles_deg[at_stops] % 180, cube.angles_deg[found.nearest[at_stops]] % 180)
 
 

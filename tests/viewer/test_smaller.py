@@ -59,7 +59,7 @@ def test_the_smaller_cube_shows_the_same_pictures(solved: Cube, monkeypatch: pyt
     assert told["kept"]["full"] == (10, 12, 12)
     assert told["voxels"]["shape"] == (7, 8, 8)
     assert told["raster"] == (4, 6)
-    assert [each["psnr"] for each in told["pictures"]] == [each["psnr"] for each in small.scores["views"]]
+    assert [each["psnr"] for each in told["pictures"]] == [each["psnr"] for each in small.scores["pictures"]]
 
 
 BOUNDS: dict[str, dict[str, Any]] = {

@@ -12,7 +12,7 @@ from lightcube.verbs import solving
 @threaded
 def bench(
     n: Annotated[int, typer.Option("--n", min=2, max=2000, help="Voxels along each side of the cube.")] = 300,
-    views: Annotated[
+    pictures: Annotated[
         int | None, typer.Option(min=1, max=100_000, help="Number of pictures.  [default: as many as voxels]")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Time everything once only; the figures scatter.")] = False,
@@ -22,10 +22,10 @@ def bench(
     from lightcube import bench as benches
     from lightcube.bench.report import markdown
 
-    pictures = n if views is None else views
-    solving.check_memory(benches.memory(n, pictures))
+    count = n if pictures is None else pictures
+    solving.check_memory(benches.memory(n, count))
     with compiling(as_json=as_json):
-        found = benches.measure(n, pictures, lambda what: err.print(f"{what} ..."), quick=quick)
+        found = benches.measure(n, count, lambda what: err.print(f"{what} ..."), quick=quick)
     if as_json:
         json_document(found)
     else:

@@ -89,7 +89,7 @@ def _one(name: str, targets: Targets, grid: Grid, folder: Path, recipe: Recipe |
     cube = replace(solution.cube, scores=scores)
     io.save(cube, folder / f"{name}.zarr", overwrite=True)
     shown = casting.play(cube)
-    sheet = contact_sheet(shown, targets, [view["psnr"] for view in scores["views"]])
+    sheet = contact_sheet(shown, targets, [view["psnr"] for view in scores["pictures"]])
     io.save(sheet, folder / f"{name}.png", overwrite=True)
     stops = _on_a_screen(casting.cast(cube))
     io.save(

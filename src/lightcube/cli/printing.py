@@ -41,8 +41,8 @@ def solved(solution: Solution, opening: str, seconds: float | None = None) -> No
 def scored(scores: dict[str, Any]) -> None:
     """Print one line per view, the means, and what was asked for besides."""
     lobes = scores["between"]["lobe_deg"] if "between" in scores else []
-    out.print(f"{'view':>20} {'angle':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}" + " 30 dB over" * bool(lobes))
-    for number, view in enumerate(scores["views"]):
+    out.print(f"{'picture':>20} {'angle, °':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}" + " 30 dB over" * bool(lobes))
+    for number, view in enumerate(scores["pictures"]):
         figures = f"{view['angle_deg']:9.3f} {view['psnr']:7.2f} {view['ssim']:7.4f} {view['delta_e']:7.2f}"
         lobe = f" {lobes[number]:9.2f}°" if lobes else ""
         out.print(f"{view['name'][:20]:>20} {figures}{lobe}")

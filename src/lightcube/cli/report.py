@@ -38,5 +38,5 @@ def report(
         f"{target}, {size / 1e6:.1f} MB: mean PSNR {scores['psnr_mean']:.2f} dB (worst {scores['psnr_min']:.2f})",
         out=target,
         bytes=size,
-        **{name: value for name, value in scores.items() if name != "views"},
+        **{name: value for name, value in scores.items() if name != "pictures"},
     )

@@ -21,7 +21,7 @@ def trace(
     size: Annotated[
         str | None, typer.Option(help="Size of the pictures, WIDTHxHEIGHT; default the scene's own.")
     ] = None,
-    span_deg: Annotated[float | None, typer.Option(help="Degrees that the views are spread over.")] = None,
+    span_deg: Annotated[float | None, typer.Option(help="Degrees that the pictures are spread over.")] = None,
     elevation_deg: Annotated[float | None, typer.Option(help="Elevation of the lamp in degrees.")] = None,
     fps: Annotated[float, FPS] = 25.0,
     overwrite: Annotated[bool, OVERWRITE] = False,

@@ -91,7 +91,7 @@ def sheet_plot(cube: Cube, targets: Targets | None = None) -> "Figure":
     wanted = targets_of(cube) if targets is None else targets
     check_same_views(cube, wanted)
     shown = play(cube)
-    scores = score_pictures(shown, wanted)["views"]
+    scores = score_pictures(shown, wanted)["pictures"]
     count = len(wanted)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
     rows, columns = wanted.rig.picture_shape

@@ -244,4 +244,4 @@ def as_json(prediction: Prediction) -> dict[str, Any] | None:
     if not prediction.is_known:
         return None
     each = [round(float(value), 2) for value in prediction.psnr]
-    return {"psnr_mean": prediction.psnr_mean, "psnr_min": prediction.psnr_min, "views": each}
+    return {"psnr_mean": prediction.psnr_mean, "psnr_min": prediction.psnr_min, "pictures": each}

@@ -35,7 +35,7 @@ def head(found: Findings, compared: str) -> str:
     if cube.status != "complete":
         warning = "This cube is unfinished: its solver was stopped early, or it is still being made."
         lines.insert(0, text("p", warning, class_="warning"))
-    worst = min(scores["views"], key=lambda view: float(view["psnr"]))["name"]
+    worst = min(scores["pictures"], key=lambda view: float(view["psnr"]))["name"]
     tiles = {
         "mean PSNR": (f"{number(scores['psnr_mean'])} dB", _predicted(cube, "psnr_mean")),
         "worst PSNR": (f"{number(scores['psnr_min'])} dB", worst),
@@ -154,7 +154,7 @@ def _exact(found: Findings) -> bool:
 
 def _card(found: Findings, index: int) -> str:
     """Three pictures, side by side, and what they are."""
-    view = found.scores["views"][index]
+    view = found.scores["pictures"][index]
     kinds = zip(("wanted", "shown", "difference"), found.pictures[index], strict=True)
     three = "".join(image(levels, f"{kind}: {view['name']}", exact=_exact(found)) for kind, levels in kinds)
     caption = (
@@ -175,7 +175,7 @@ def _table(found: Findings) -> str:
 
 def _rows(found: Findings, expected: list[float] | None) -> Iterator[list[object]]:
     rig = found.cube.rig
-    for index, view in enumerate(found.scores["views"]):
+    for index, view in enumerate(found.scores["pictures"]):
         row: list[object] = [index + 1, view["name"], f"{view['angle_deg']:.3f}°", number(view["psnr"])]
         row += [number(view["ssim"], 4), number(view["delta_e"])]
         row += [] if expected is None else [number(expected[index], 1)]
@@ -186,14 +186,14 @@ def _rows(found: Findings, expected: list[float] | None) -> Iterator[list[object
 
 def _expected(cube: Cube) -> list[float] | None:
     """What was predicted of each picture."""
-    views = cube.provenance.get("predicted", {}).get("views", [])
+    views = cube.provenance.get("predicted", {}).get("pictures", [])
     return [float(each) for each in views] if len(views) == len(cube.names) else None
 
 
 def curves(found: Findings) -> str:
     """PSNR of each picture, PSNR between the stops, and the lamp's powers."""
     cube, scores, expected = found.cube, found.scores, _expected(found.cube)
-    each = np.array([view["psnr"] for view in scores["views"]])
+    each = np.array([view["psnr"] for view in scores["pictures"]])
     mean, worst = number(scores["psnr_mean"]), number(scores["psnr_min"])
     label = f"PSNR of {len(each)} pictures: {mean} dB on average, worst {worst} dB"
     said = "PSNR of each picture, the worst one in a colour of its own, the mean as a line"

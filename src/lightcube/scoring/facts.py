@@ -14,7 +14,7 @@ def facts(cube: Cube) -> dict[str, Any]:
         "voxels": f"{nz} x {ny} x {nx} (z, y, x)",
         "size_mm": " x ".join(f"{length:g}" for length in cube.grid.size_mm),
         "voxel_mm": cube.grid.voxel_mm,
-        "views": len(cube.rig.views),
+        "pictures": len(cube.rig.views),
         "pictures": len(cube.names),
         "picture": f"{columns} x {rows} pixels",
         **_where(cube),
@@ -24,7 +24,7 @@ def facts(cube: Cube) -> dict[str, Any]:
         "hold_deg": cube.hold_deg,
         "transfer": cube.transfer,
         "names": list(cube.names),
-        **{name: value for name, value in cube.scores.items() if name != "views"},
+        **{name: value for name, value in cube.scores.items() if name != "pictures"},
         **{f"made_with_{name}": value for name, value in cube.provenance.items()},
     }
 

@@ -68,18 +68,18 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
     Parameters
     ----------
     targets
-        The wanted pictures in the cube's views; None = the 8-bit targets stored in the cube, which cap
+        The wanted pictures, on the cube's rig; None = the 8-bit targets stored in the cube, which cap
         the PSNR at about 58.9 dB where the pictures were resampled.
 
     Returns
     -------
-    ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``views``, a list with ``name, angle_deg, psnr, ssim, delta_e``
+    ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``pictures``, a list with ``name, angle_deg, psnr, ssim, delta_e``
     of each.
 
     Raises
     ------
     InputError
-        Where the cube has no targets and none are given, or they do not fit the cube's views.
+        Where the cube has no targets and none are given, or they do not fit the cube's pictures.
     """
     wanted = targets_of(cube) if targets is None else targets
     check_same_views(cube, wanted)
@@ -110,7 +110,7 @@ def score_pictures(shown: Iterable[Images], targets: Targets) -> dict[str, Any]:
         "psnr_min": float(np.min(columns["psnr"])),
         "ssim_mean": float(np.mean(columns["ssim"])),
         "delta_e_mean": float(np.mean(columns["delta_e"])),
-        "views": views,
+        "pictures": views,
     }
 
 

@@ -93,9 +93,9 @@ def _whole(cube: Cube) -> tuple[int, int] | None:
 def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> list[dict[str, Any]]:
     """One for each stop and screen; those after the cube's own are their mirror images."""
     own = len(cube.names)
-    scores = cube.scores.get("views", [])
+    scores = cube.scores.get("pictures", [])
     if len(scores) != own:
-        scores = metrics.score(cube)["views"] if wanted else own * [{"psnr": None}]
+        scores = metrics.score(cube)["pictures"] if wanted else own * [{"psnr": None}]
     return [
         {
             "name": name,
