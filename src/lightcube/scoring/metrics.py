@@ -73,8 +73,8 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
 
     Returns
     -------
-    ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``pictures``, a list with ``name, angle_deg, psnr, ssim, delta_e``
-    of each.
+    ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``pictures``, a list with ``name, angle_deg, psnr, ssim,
+    delta_e`` of each.
 
     Raises
     ------
