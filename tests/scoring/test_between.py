@@ -346,7 +346,7 @@ def test_score_adds_what_is_asked_for(run, solved: Path, tmp_path: Path) -> None
     assert f"{found['lobe_deg'][0]:.2f}°" in told
     assert all(str(each) in told for each in DISTURBANCES.values())
     plain = run("score", solved).out
-    assert "°" not in plain
+    assert "30 dB over" not in plain
     assert "between" not in json.loads(run("score", solved, "--json").out)
 
 
