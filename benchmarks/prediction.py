@@ -133,7 +133,7 @@ def even_with(value: float, parity: int, most: int) -> int:
     return min(max(2 * round((value - odd) / 2) + odd, 2 - odd), most)
 
 
-def targets_of_scene(problem: Case) -> tuple[Targets, Grid]:
+def targets_of_case(problem: Case) -> tuple[Targets, Grid]:
     """The pictures of a case, and its cube."""
     grid = Grid(problem.shape)
     rows, columns = problem.picture
@@ -217,7 +217,7 @@ def kept(problems: list[Case]) -> list[list[float]]:
 
 def measured(problem: Case) -> list[float]:
     """PSNR of each picture of a case that is solved for real."""
-    targets, grid = targets_of_scene(problem)
+    targets, grid = targets_of_case(problem)
     cube = solve(targets, grid, problem.recipe).cube
     shown = cast(cube)
     pairs = zip(shown, targets.pictures, targets.weight, strict=True)
@@ -235,7 +235,7 @@ class Rehearsed(NamedTuple):
 
 def rehearsed(problem: Case, wanted: list[float]) -> Rehearsed:
     """Rehearse a case that was measured."""
-    targets, grid = targets_of_scene(problem)
+    targets, grid = targets_of_case(problem)
     reached, width = rehearse(targets, grid, problem.recipe)
     return Rehearsed(problem, np.array(wanted), reached, max(grid.shape[1:]) / width)
 

@@ -181,7 +181,7 @@ TABLES["capacity"] = [
 ]
 
 
-def targets_of_scene(problem: Problem) -> tuple[lc.Targets, lc.Grid]:
+def targets_of_problem(problem: Problem) -> tuple[lc.Targets, lc.Grid]:
     grid = lc.Grid((problem.n,) * 3, voxel_mm=100 / problem.n)
     angles_deg = lc.spread_angles(problem.count, elevation_deg=problem.elevation_deg)
     shape = (problem.rows, problem.columns)
@@ -194,7 +194,7 @@ def targets_of_scene(problem: Problem) -> tuple[lc.Targets, lc.Grid]:
 
 def measure(problem: Problem) -> Row:
     """Solve a problem and score it."""
-    targets, grid = targets_of_scene(problem)
+    targets, grid = targets_of_problem(problem)
     row: Row = {}
     if problem.order == "best":
         began = time.perf_counter()

@@ -87,7 +87,7 @@ def around(n: int, count: int, columns: int, distance: float, span_deg: float, p
     return Stage(lc.Grid((n, n, n)), (lamp,), (screen,), shots, tuple(stops.tolist()))
 
 
-def targets_of_scene(stage: Stage, pictures: lc.Pictures, lamp_samples: int = 1) -> lc.Targets:
+def targets_on(stage: Stage, pictures: lc.Pictures, lamp_samples: int = 1) -> lc.Targets:
     """Photographs on a stage, one for each shot."""
     rig = stage.rig().sampled(lamp=lamp_samples)
     return fit(pictures, rig)
@@ -121,7 +121,7 @@ def hemisphere(n: int, passes: int) -> Iterator[Row]:
         "32 lamps all over": all_over(n, 32, 64),
     }
     for name, stage in stages.items():
-        yield measured(name, stage.grid, targets_of_scene(stage, samples.photographs(32)), passes)[0]
+        yield measured(name, stage.grid, targets_on(stage, samples.photographs(32)), passes)[0]
 
 
 def points(n: int, passes: int) -> Iterator[Row]:
@@ -137,7 +137,7 @@ def points(n: int, passes: int) -> Iterator[Row]:
             (1.5, 180.0),
         ):
             stage = around(n, count, columns, distance, span_deg, 16)
-            targets = targets_of_scene(stage, samples.photographs(count, aspect=2 * columns / n))
+            targets = targets_on(stage, samples.photographs(count, aspect=2 * columns / n))
             said = "parallel" if math.isinf(distance) else f"{distance:g} widths"
             yield measured(f"{count} x {part}, {said}, {span_deg:g}", stage.grid, targets, passes, load=count * part)[0]
 
@@ -148,9 +148,9 @@ def soft(n: int, passes: int) -> Iterator[Row]:
         stage = tilts(n, 8, [35], 16, vertical=True)
         stage = replace(stage, lamps=tuple(replace(lamp, size_deg=size) for lamp in stage.lamps))
         pictures = samples.photographs(8)
-        true = targets_of_scene(stage, pictures, 32)
+        true = targets_on(stage, pictures, 32)
         for name, points in (("not minded", 1), ("minded", 8)):
-            targets = targets_of_scene(stage, pictures, points)
+            targets = targets_on(stage, pictures, points)
             row, cube = measured(f"{size:g} degrees, {name}", stage.grid, targets, passes)
             shown = score_pictures(lc.cast(cube, true.rig), true)
             yield row | {"psnr_mean": shown["psnr_mean"], "psnr_min": shown["psnr_min"]}
@@ -163,7 +163,7 @@ def starts(n: int, passes: int) -> Iterator[Row]:
         coarser = max(stage.grid.shape) / n
         screens = tuple(replace(screen, pitch_mm=screen.pitch_mm * coarser) for screen in stage.screens)
         stage = replace(stage, grid=lc.Grid((n, n, n), stage.grid.voxel_mm * coarser), screens=screens)
-        problem = pose(targets_of_scene(stage, samples.photographs(8)), stage.grid, Recipe())
+        problem = pose(targets_on(stage, samples.photographs(8)), stage.grid, Recipe())
         assert problem.lighting.mixture is not None  # noqa: S101
         lamps = problem.lighting.lamps
         bounds = np.full((lamps, 3), 1e-4), np.full((lamps, 3), float(stage.lamps[0].power_max))

@@ -14,14 +14,16 @@ import pytest
 from PIL import Image
 
 from lightcube import load
-from lightcube.cli import main
+from lightcube.cli import demo, main
 from lightcube.forward.casting import play
 from lightcube.io import save
 from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
+from lightcube.pictures.samples import photographs
 from lightcube.planning import order  # noqa: F401 - it keeps the function that `pressed` takes the place of
+from lightcube.planning.plan import plan
 
 SCENE = """
 camera = {type = "shadow", cube_width = 4.0}
@@ -377,3 +379,18 @@ def test_help_names_every_command() -> None:
     text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
     listed = re.findall(r"^\s+([a-z]+)\s\s+[A-Z]", text, re.MULTILINE)
     assert " ".join(listed) == "trace check solve play score view report draw info publish bench demo"
+
+
+def test_the_demo_leaves_what_it_says(run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
+    """As a whole, on cubes of a moment."""
+    monkeypatch.setattr(demo, "_SIDE", 10)
+    monkeypatch.setattr(demo, "photographs", lambda: photographs(2))
+    monkeypatch.setattr(demo, "_juggler", lambda grid: plan(photographs(3), 10, picture_width=0.5).targets)
+    done = run("demo", "-o", tmp_path / "out")
+    assert done.code == 0, done.err
+    figures = json.loads((tmp_path / "out/metrics.json").read_text())
+    for name, count in (("photographs", 2), ("juggler", 3)):
+        assert f"{count} of " in done.out
+        assert len(figures[name]["pictures"]) == count
+        for suffix in (".html", ".zarr", ".png", "-stops.mp4", "-turn.mp4"):
+            assert (tmp_path / f"out/{name}{suffix}").exists(), suffix

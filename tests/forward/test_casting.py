@@ -1,5 +1,7 @@
 """Program 3 and the scores: what is cast, at the stops and between them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike
@@ -278,3 +280,11 @@ def test_a_picture_that_stands_aside_is_shown_there(elevation_deg: float) -> Non
     assert np.allclose(play(cube, [20.3])[0], window, atol=1e-6)
     if elevation_deg == 0:
         assert np.allclose(play(cube, [200.0])[0], play(cube, [20.0])[0][:, ::-1], atol=1e-6)
+
+
+def test_a_rig_of_other_colours_than_the_cube_is_refused_at_once() -> None:
+    cube = make_cube([10.0, 100.0], 35.0)
+    grey = Cube(cube.extinction[:1], cube.grid, cube.rig)
+    coloured = replace(cube.rig, sums=replace(cube.rig.sums, share=np.ones((2, 3))))
+    with pytest.raises(InputError, match="a rig of 3 colours does not fit a cube of 1"):
+        cast(grey, coloured)

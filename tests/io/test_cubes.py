@@ -259,6 +259,35 @@ def put(*keys: str | int, value: Any) -> Any:
     return edit
 
 
+def with_method(data: bytes, method: int) -> bytes:
+    """A zip file whose entries claim to be compressed in another way: local headers, and the directory's."""
+    changed = bytearray(data)
+    for head, at in ((b"PK\x03\x04", 8), (b"PK\x01\x02", 10)):
+        place = data.find(head)
+        while place >= 0:
+            changed[place + at : place + at + 2] = method.to_bytes(2, "little")
+            place = data.find(head, place + 1)
+    return bytes(changed)
+
+
+@pytest.mark.parametrize(
+    "damaged",
+    [
+        lambda data: with_method(data, 8),
+        lambda data: with_method(data, 12),
+        lambda data: with_method(data, 14),
+        lambda data: with_method(data, 99),
+        lambda data: data.replace(b"), }", b"),  ", 1),
+    ],
+    ids=["deflate", "bzip2", "lzma", "no such way", "a header that does not end"],
+)
+def test_whatever_a_damaged_archive_raises_is_one_sentence(tmp_path: Path, damaged: Any) -> None:
+    path = save(make(), tmp_path / "a.npz")
+    path.write_bytes(damaged(path.read_bytes()))
+    with pytest.raises(InputError, match="is a damaged light cube"):
+        load(path)
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 @pytest.mark.parametrize("found", [5, 10**9])
 def test_a_newer_format_is_refused(tmp_path: Path, suffix: str, found: int) -> None:

@@ -264,6 +264,20 @@ def test_publishing_what_is_there(tmp_path: Path) -> None:
     assert_same(replace(load(tmp_path / "b.zarr"), scores={}), whole)
 
 
+def test_what_others_finish_while_it_is_published_is_not_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made, out = job(**LEVEL), tmp_path / "a.zarr"
+    store = begun(out, made, *made.pieces[:-1])
+
+    def slow(*arguments: Any) -> Any:
+        reached = merged(*arguments)
+        assert solve_piece(made, made.pieces[-1], store)  # by another program, after the pieces were read
+        return reached
+
+    monkeypatch.setattr(publishing, "merged", slow)
+    assert not publish(partial_path(out)).is_whole
+    assert store.names() == set(made.pieces)
+
+
 def test_two_programs_at_the_same_unit_do_no_harm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lightcube.backward.pieces.FIRST_CHECKPOINT_S", 0.0)
     monkeypatch.setattr("lightcube.backward.pieces.CHECKPOINT_S", 0.0)

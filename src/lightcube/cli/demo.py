@@ -64,7 +64,7 @@ def run(folder: Path) -> None:
     )
     for row in rows:
         out.print(
-            f"{row['name']:>14} {row['pictures']:>16} {row['elevation_deg']:>5.0f}° {row['psnr_mean']:>5.1f} dB "
+            f"{row['name']:>14} {row['size']:>16} {row['elevation_deg']:>5.0f}° {row['psnr_mean']:>5.1f} dB "
             f"{row['psnr_min']:>4.1f} dB {row['ssim_mean']:>7.3f} {row['delta_e_mean']:>7.2f} {row['seconds']:>5.0f} s"
         )
     out.print(f"\nLook at the movies and contact sheets in {folder}/. Turn the cubes by hand: open, in a browser,")
@@ -102,7 +102,7 @@ def _one(name: str, targets: Targets, grid: Grid, folder: Path, recipe: Recipe |
     rows, columns = targets.rig.picture_shape
     return {
         "name": name,
-        "pictures": f"{len(targets)} of {columns} x {rows}",
+        "size": f"{len(targets)} of {columns} x {rows}",
         "elevation_deg": targets.rig.elevation_deg,
         "seconds": seconds,
         **scores,

@@ -38,5 +38,7 @@ def archive(file: IO[bytes], where: object, damaged: Callable[[str], InputError]
         raise
     except MemoryError as error:
         raise InputError(f"{where} does not fit into this machine's memory: open it on a larger one") from error
-    except _WRONG as error:
+    except (*_WRONG, OSError) as error:
+        if isinstance(error, OSError) and error.errno is not None:  # the disk's; bzip2's own errors have no number
+            raise
         raise damaged(" ".join(str(error).split())[:100]) from error

@@ -95,7 +95,7 @@ class Plan:
         """What is probably not meant in a room that is described, and which pictures are out of reach there."""
         return [] if self.stage is None else [*doubtful(self.stage), *sentences(self.targets)]
 
-    def to_solve(self, targets: Targets) -> Plan:
+    def with_targets(self, targets: Targets) -> Plan:
         """The same plan for targets that stand, or follow each other, in another way: predicted anew."""
         return replace(self, targets=targets, prediction=predict(targets, self.grid, self.recipe))
 
@@ -165,12 +165,12 @@ def plan(
     best = _widest(predicted) if picture_width is None else predicted(picture_width)
     best = held_longest(best) if longest_hold else best
     if shift:
-        best = replace(best, shift=shift).to_solve(spread(best, best.targets, shift))
+        best = replace(best, shift=shift).with_targets(spread(best, best.targets, shift))
     if order == "best":
         from lightcube.planning.order import best_order  # here: the compiler comes with it
 
         found = best_order(best.targets, best.grid, best.recipe)
-        best = replace(best, order=found).to_solve(found(best.targets))
+        best = replace(best, order=found).with_targets(found(best.targets))
     return best
 
 
@@ -189,9 +189,8 @@ def plan_stage(
         The stage's, or that with samples of its lamps and pixels.
     """
     asked, targets = recipe or Recipe(), fitted(pictures, rig, ways)
-    told = is_measured(rig, stage.grid) and not impossible(stage)
-    prediction = predict(targets, stage.grid, asked) if told else Prediction.unknown(len(targets))
-    return Plan(pictures, targets, stage.grid, asked, ways, prediction, stage=stage)
+    made = Plan(pictures, targets, stage.grid, asked, ways, Prediction.unknown(len(targets)), stage=stage)
+    return made.with_targets(targets) if is_measured(rig, stage.grid) and not made.impossible else made
 
 
 def _cube_for(

@@ -67,7 +67,7 @@ def _read_pictures(source: str, options: Options) -> Callable[[], Plan]:
         max(shape),
         recipe,
         size_mm=options.size_mm,
-        shape=None if options.shape is None else shape,
+        shape=options.shape,
         picture_width=options.picture_width,
         turntable=turntable,
         fit=options.fit,
