@@ -14,6 +14,7 @@ import json
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +23,7 @@ import skimage.data
 from numpy.typing import NDArray
 
 from lightcube import io
+from lightcube.backward.mat import Mat
 from lightcube.backward.recipe import Recipe, from_plain
 from lightcube.backward.solving import solve
 from lightcube.forward.casting import cast
@@ -64,6 +66,8 @@ ORIGINALS: tuple[tuple[Callable[[], Any], ...], ...] = (
         skimage.data.microaneurysms,
     ),
 )
+#: Passes of the real cubes.
+PASSES = 150
 SCENES = ("juggler", "carousel", "bloom", "gems")
 Rng = np.random.Generator
 
@@ -86,11 +90,14 @@ class Case(NamedTuple):
     #: Photographs are put next to similar ones.
     tour: bool
     hold_deg: float
+    #: Pictures are framed by a dark mat.
+    mat: bool
 
     @property
     def recipe(self) -> Recipe:
         """How it is solved."""
-        return from_plain({"powers": None if self.powers == "fixed" else self.powers, "hold_deg": self.hold_deg})
+        said = {"powers": None if self.powers == "fixed" else self.powers, "hold_deg": self.hold_deg, "passes": PASSES}
+        return replace(from_plain(said), mat=Mat() if self.mat else None)
 
     @property
     def lamp(self) -> dict[str, float]:
@@ -121,10 +128,11 @@ def case(seed: int, sizes: tuple[int, ...], *, held: bool = False) -> Case:
     high = nz if level and rng.random() < 0.6 else width / aspect
     most = raster_shape(Grid((nz, ny, nx)), elevation_deg)
     picture = even_with(high, nz, most[0] if elevation_deg else nz), even_with(width, ny, most[1])
-    hold_deg = float(min(rng.choice([1.5, 3, 6]), (180 if level else 360) / views / 2)) if held else 0.0
+    hold_deg = float(min(rng.choice([0.5, 1.5, 3]), (180 if level else 360) / views / 2)) if held else 0.0
     if not held and rng.random() < 0.22:
         style, tour = str(rng.choice(SCENES)), False
-    return Case(seed, (nz, ny, nx), views, elevation_deg, picture, style, powers, lamp_max, disc, tour, hold_deg)
+    mat = bool(rng.random() < 0.5)
+    return Case(seed, (nz, ny, nx), views, elevation_deg, picture, style, powers, lamp_max, disc, tour, hold_deg, mat)
 
 
 def even_with(value: float, parity: int, most: int) -> int:

@@ -32,6 +32,8 @@ GIVEN: dict[str, dict[str, Any]] = {
     "Cube": {"extinction": CUBE.extinction, "grid": GRID, "rig": RIG},
     "Grid": {"shape": (3, 5, 7)},
     "Lamp": {"name": "sun"},
+    "Light": {},
+    "Mat": {},
     "Material": {},
     "Pictures": {"images": [np.ones((2, 3, 3))], "names": ["a"]},
     "Plan": {
@@ -171,7 +173,6 @@ METHODS: dict[str, tuple[Callable[[Any], Any], list[Any]]] = {
     "Rig.at": (RIG.at, ["abc", None, [], [np.nan], 1j, [[1]]]),
     "Rig.turned": (RIG.turned, ["abc", None, [1, 2, 3], {}, [[1]], True]),
     "Rig.held": (lambda given: RIG.held(given, 1.0), ["abc", None, -1, np.nan]),
-    "Rig.sampled": (lambda given: RIG.sampled(lamp=given), ["abc", None, 0, 1.5]),
     "Rig.shifted": (RIG.shifted, ["abc", None, [1, 2], np.ones((2, 2))]),
     "Rig.whole": (RIG.whole, ["abc", None, RIG]),
     "Rig.of": (lc.Rig.of, ["abc", None, RIG]),

@@ -7,6 +7,7 @@ from lightcube.optics import showing
 __getattr__, __dir__, __all__ = when_used(
     __name__,
     {
+        "Mat": "backward.mat",
         "Recipe": "backward.recipe",
         "Solution": "backward.solution",
         "solve": "backward.solving",
@@ -24,6 +25,7 @@ __getattr__, __dir__, __all__ = when_used(
         "publish": "jobs.publishing",
         "Cube": "optics.cube",
         "Grid": "optics.grid",
+        "Light": "optics.light",
         "Material": "optics.material",
         "Rig": "optics.rig",
         "turntable": "optics.rig",

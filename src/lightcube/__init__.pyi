@@ -1,5 +1,6 @@
 """Pictures in, a cube of coloured shadows out."""
 
+from lightcube.backward.mat import Mat
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution
 from lightcube.backward.solving import solve
@@ -11,6 +12,7 @@ from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.light import Light
 from lightcube.optics.material import Material
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
@@ -38,6 +40,8 @@ __all__ = [
     "Grid",
     "InputError",
     "Lamp",
+    "Light",
+    "Mat",
     "Material",
     "Pictures",
     "Plan",

@@ -12,16 +12,18 @@ from lightcube.backward.problem import pose
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import make_job, solve
 from lightcube.errors import InputError
-from lightcube.forward.casting import cast, play
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.light import Light
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import encode
 from lightcube.pictures.targets import Targets
 from lightcube.scoring.metrics import mean_psnr
 from lightcube.solvers.display import display_values
 from tests.conftest import INTERPRETED
+from tests.helpers.areas import divided
+from tests.helpers.thin import cast, play, thin_recipe
 
 SIDE = 4 if INTERPRETED else 7
 GRID = Grid((SIDE, SIDE - 1, SIDE + 1), 0.7)
@@ -50,7 +52,7 @@ def stage(room: str, **more: Any) -> Stage:
 def known(made: Stage, samples: int = 1, seed: int = 0) -> tuple[Cube, Targets]:
     """A random cube, under random powers within their bounds, and what it shows."""
     random = np.random.default_rng(seed)
-    rig = made.rig().sampled(lamp=samples)
+    rig = divided(made.rig(), lamp=samples)
     extinction = random.gamma(0.3, 4 / (0.3 * 0.7 * SIDE), (3, *made.grid.shape)).astype(np.float32)
     low, high = (bound[rig.pairs[:, 1], None] for bound in (rig.lamps.least, rig.lamps.most))
     powers = np.clip(random.uniform(0.7, 2, (len(rig.pairs), 3)), low, high)
@@ -66,7 +68,7 @@ PASSES = 6 if INTERPRETED else 300
 def test_known_cubes_come_back(room: str) -> None:
     """Not the cube, which so few pictures do not tell, but all that it shows."""
     _, targets = known(stage(room), ROOMS[room][2])
-    solution = solve(targets, GRID, Recipe(passes=PASSES))
+    solution = solve(targets, GRID, thin_recipe(passes=PASSES))
     assert solution.lower_bound is None
     if INTERPRETED:
         assert solution.residuals[-1] < 0.3 * solution.residuals[0]
@@ -78,7 +80,7 @@ def test_known_cubes_come_back(room: str) -> None:
 def test_no_start_gets_stuck(room: str) -> None:
     """The problem is not convex; yet from anywhere the objective ends as low."""
     _, targets = known(stage(room), ROOMS[room][2])
-    problem = pose(targets, GRID, Recipe())
+    problem = pose(targets, GRID, thin_recipe())
     assert problem.lighting.mixture is not None
     pairs = len(targets.rig.pairs)
     bounds = np.full((pairs, 3), 1e-4), np.full((pairs, 3), 16.0)
@@ -98,7 +100,7 @@ def test_lamps_keep_their_bounds_and_are_shared_as_asked(powers: Any) -> None:
     made = replace(made, shots=(made.shots[0], replace(made.shots[1], lamps=("blue",)), made.shots[2]))
     _, targets = known(made)
     rig = targets.rig
-    cube = solve(targets, GRID, Recipe(powers=powers, passes=5)).cube
+    cube = solve(targets, GRID, thin_recipe(powers=powers, passes=5)).cube
     assert cube.powers.shape == (len(rig.pairs), 3) == (5, 3)
     red = rig.pairs[:, 1] == 0
     assert np.all(cube.powers[red] == 1.3)
@@ -113,7 +115,7 @@ def test_held_pictures_stand_still_for_a_while(units: int) -> None:
     _, targets = known(stage("two coloured lamps", stops_deg=(0.0, 40.0, 230.0)))
     wide, passes = (2.0, 2 if INTERPRETED else 100)
     solutions = [
-        solve(targets, GRID, Recipe(hold_deg=hold_deg, passes=passes), units=units) for hold_deg in (0.0, wide)
+        solve(targets, GRID, thin_recipe(hold_deg=hold_deg, passes=passes), units=units) for hold_deg in (0.0, wide)
     ]
     cubes = [solution.cube for solution in solutions]
     assert [cube.provenance["angles_per_picture"] for cube in cubes] == [1, 3]
@@ -126,7 +128,7 @@ def test_held_pictures_stand_still_for_a_while(units: int) -> None:
     np.testing.assert_allclose(powers, cubes[1].powers)
     assert INTERPRETED or off[1] < 0.7 * off[0]
     with pytest.raises(InputError, match="a hold of 21 degrees is wider"):
-        solve(targets, GRID, Recipe(hold_deg=21.0, passes=1))
+        solve(targets, GRID, thin_recipe(hold_deg=21.0, passes=1))
 
 
 def test_a_level_lamp_that_a_slanted_table_tilts_can_be_held_in_units() -> None:
@@ -136,14 +138,16 @@ def test_a_level_lamp_that_a_slanted_table_tilts_can_be_held_in_units() -> None:
     made = stage("two coloured lamps", lamps=lamps, screens=(wall,), axis=(0.2, 0.0, 1.0))
     _, targets = known(replace(made, shots=made.shots[:1], stops_deg=(0.0,)))
     whole, parts = (
-        solve(targets, GRID, Recipe(hold_deg=4.0, passes=4, powers="coarse"), units=units) for units in (1, 3)
+        solve(targets, GRID, thin_recipe(hold_deg=4.0, passes=4, powers="coarse"), units=units) for units in (1, 3)
     )
     np.testing.assert_allclose(parts.cube.extinction, whole.cube.extinction, rtol=1e-4, atol=1e-6)
 
 
 def test_light_that_adds_up_needs_more_memory() -> None:
-    """Of each pixel of each view: what falls on it, and how strong its shadow is."""
+    """Of each pixel of each view, of each point: what falls on it, and how strong its shadow is."""
     aslant = stage("aslant and by the inverse square")
     plain = replace(aslant, lamps=(BULB,), screens=(WALL,))
-    needed = [job_memory(make_job(known(each)[1], each.grid)) for each in (aslant, plain)]
-    assert needed[0] - needed[1] == 16 * len(aslant.shots) * math.prod(WALL.pixels)
+    for light in (Light.thin(), Light(5)):
+        recipe = Recipe(light=light)
+        needed = [job_memory(make_job(known(each)[1], each.grid, recipe)) for each in (aslant, plain)]
+        assert needed[0] - needed[1] == 16 * light.points * len(aslant.shots) * math.prod(WALL.pixels)

@@ -22,7 +22,6 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.pictures.samples import photographs
-from lightcube.planning import order  # noqa: F401 - it keeps the function that `pressed` takes the place of
 from lightcube.planning.plan import plan
 
 SCENE = """
@@ -90,7 +89,8 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
         assert movie.size == (24, 24)
     scored = run("score", tmp_path / "ball.zarr", tmp_path / "ball", "--json", "--sheet", tmp_path / "sheet.png")
     scores = json.loads(scored.out)
-    assert list(scores) == ["psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "pictures"]
+    area = ["psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "pictures"]
+    assert list(scores) == [*area, "thin_psnr_mean", "thin_psnr_min", "grain_rms", "grain_db", "mat_rms"]
     assert scores["psnr_mean"] > 30
     assert [view["angle_deg"] for view in scores["pictures"]] == pytest.approx([22.5, 67.5, 112.5, 157.5])
     with Image.open(tmp_path / "sheet.png") as sheet:

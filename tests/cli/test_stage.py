@@ -90,7 +90,7 @@ def test_a_stage_goes_through_all_commands(run, stage: Path) -> None:  # type: i
         (["--stops"], 3, (7, 6)),
         (["--stops", "--screens"], 2, (6, 3 + 2 + 5)),
         (["--angles-deg", "0,50,90"], 3, (6, 3 + 2 + 5)),
-        (["--angles-deg", "0,50", "--pixel-samples", "2"], 2, (6, 10)),
+        (["--angles-deg", "0,50", "--light", "thin"], 2, (6, 10)),
         (["--angles-deg", "10,20", "--room"], 2, (540, 960)),
     ],
 )
@@ -142,12 +142,10 @@ def test_a_cubes_room_is_drawn_as_it_is_played(run, stage: Path) -> None:  # typ
     assert "use one of .png, .webp, .jpg, .jpeg" in done.err
 
 
-def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
-    cube = solved(run, stage, "--pixel-samples", "2")
-    assert len(load(cube).rig.views) == 4 * 3
-    done = run("play", cube, "-o", stage.parent / "x.npy", "--pixel-samples", "2")
-    assert done.code == 2
-    assert "played so" in done.err
+def test_points_are_of_the_solver_and_a_cube_keeps_its_own_room(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
+    cube = solved(run, stage, "--points", "2")
+    assert len(load(cube).rig.views) == 3
+    assert load(cube).provenance["points"] == 2
     assert run("score", cube, stage).code == 0
 
 
@@ -162,7 +160,8 @@ def test_samples_make_views_and_are_not_taken_twice(run, stage: Path) -> None:  
         (["--method", "sirt"], "cannot choose the power of lamp 'sun'"),
         (["--quality", "best", "--iterations", "3"], "--quality and --iterations both"),
         (["--hold-deg", "90"], "wider than half the way"),
-        (["--lamp-samples", "0"], "lamp-samples"),
+        (["--points", "0"], "points"),
+        (["--light", "thin", "--points", "4"], "leave out one of the two"),
     ],
 )
 def test_options_that_contradict_a_stage_are_refused(run, stage: Path, options: list[str], said: str) -> None:  # type: ignore[no-untyped-def]
@@ -217,10 +216,10 @@ def test_a_turntables_cube_is_played_as_a_stages(run, stage: Path) -> None:  # t
 
 def test_a_lamps_size_that_is_not_minded_is_said(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     stage.write_text(STAGE.replace('name = "sun"', 'name = "sun"\nsize_deg = 2'))
-    for more, said in (((), True), (("--lamp-samples", "2"), False)):
+    for more, said in ((("--light", "thin"), True), (("--points", "2"), False)):
         done = run("solve", stage, "-o", stage.parent / "cube.zarr", "--iterations", "2", "--overwrite", *more)
         assert done.code == 0, done.err
-        assert ("size of lamp 'sun' is not minded" in done.err) is said
+        assert ("do not mind the size of lamp 'sun'" in done.err) is said
 
 
 def test_a_cube_before_which_nothing_turns_is_played_once(run, stage: Path) -> None:  # type: ignore[no-untyped-def]

@@ -9,7 +9,7 @@ from skimage.color import deltaE_ciede2000, rgb2lab
 
 from lightcube.drawing.sheet import beside_targets, contact_sheet
 from lightcube.errors import InputError
-from lightcube.forward.casting import cast, play, player
+from lightcube.forward import casting
 from lightcube.forward.turning import moment, turn
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
 from lightcube.optics.cube import Cube
@@ -22,6 +22,7 @@ from lightcube.planning.consistency import mirror_conflicts
 from lightcube.projection.projector import Projector
 from lightcube.scoring.metrics import mean_psnr, psnr, score, ssim
 from tests.helpers import plain
+from tests.helpers.thin import cast, play, player
 
 SHAPE = (3, 5, 7)
 
@@ -188,7 +189,7 @@ def test_a_turn_meets_every_stop_and_stays_even_elsewhere(elevation_deg: float, 
 def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
     powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
     cube = make_cube([10.0, 100.0], 35.0, powers, names=("a", "b"))
-    shown = play(cube)
+    shown = casting.play(cube)
     random = np.random.default_rng(3)
     targets = Targets(
         np.clip(shown * random.uniform(0.8, 1.1, shown.shape), 0, None).astype(np.float32),
@@ -212,7 +213,7 @@ def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
 
 def test_the_score_without_targets_is_against_the_8_bit_ones() -> None:
     cube = make_cube([10.0, 100.0])
-    targets = Targets(np.clip(play(cube), 0, 1), cube.rig)
+    targets = Targets(np.clip(casting.play(cube), 0, 1), cube.rig)
     with_targets = Cube(cube.extinction, cube.grid, cube.rig, targets=as_levels(targets))
     assert 55 < score(with_targets)["psnr_mean"] < 65
     with pytest.raises(InputError, match="no targets"):

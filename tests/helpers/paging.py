@@ -15,6 +15,7 @@ from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.packing import Packed, pack
+from tests.helpers.areas import divided
 
 Evaluate = Callable[..., Any]
 Array = NDArray[Any]
@@ -41,7 +42,7 @@ def on_table(rig: Rig, channels: int = 3, **more: Any) -> Cube:
 
 def on_stage(stage: Stage, *, lamp_samples: int = 1, pixel_samples: int = 1, **more: Any) -> Cube:
     """A random cube on a stage, under random powers."""
-    rig = stage.rig().sampled(lamp=lamp_samples, pixel=pixel_samples)
+    rig = divided(stage.rig(), lamp=lamp_samples, pixel=pixel_samples)
     extinction = np.random.default_rng(3).gamma(0.5, 0.2, (3, *GRID.shape))
     powers = np.random.default_rng(4).uniform(0.5, 3, (len(rig.pairs), 3))
     return Cube(extinction.astype(np.float32), GRID, rig, powers, **more)

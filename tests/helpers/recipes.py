@@ -7,6 +7,7 @@ import numpy as np
 
 from lightcube.backward.recipe import Recipe
 from lightcube.optics.grid import Grid
+from lightcube.optics.light import Light
 from lightcube.optics.material import Material
 from lightcube.optics.tables import power_bounds
 from lightcube.pictures.fitting import Fit, fit
@@ -20,8 +21,11 @@ _LIGHT = ("lamp_power", "lamp_max", "black")
 
 
 def asked(targets: Targets, grid: Grid, **options: Any) -> dict[str, Any]:
-    """What `solve` takes: options of the recipe (`max_extinction` its material's), of lamp and screen, and others."""
-    own = {name: value for name, value in options.items() if name in _OWN}
+    """What `solve` takes: options of the recipe (`max_extinction` its material's), of lamp and screen, and others.
+
+    By thin beams, unless light is said: what is exact is known of those.
+    """
+    own = {"light": Light.thin()} | {name: value for name, value in options.items() if name in _OWN}
     light = {name: value for name, value in options.items() if name in _LIGHT}
     others = {name: value for name, value in options.items() if name not in (*_OWN, *_LIGHT)}
     if not find_method(options.get("method", "display")).chooses_lamps and not light:

@@ -23,6 +23,7 @@ from lightcube.optics.rig import Rig, turntable
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets
 from tests.backward.test_job import same
+from tests.helpers.areas import divided
 from tests.helpers.recipes import asked
 from tests.io.test_cubes import SUFFIXES, change, partial_path, put
 from tests.io.test_cubes import assert_same as assert_same_field
@@ -45,7 +46,7 @@ def assert_same(one: Cube, other: Cube) -> None:
 def some_cube(**more: Any) -> Cube:
     """Lamps with discs, sampled; numbers that no decimal fraction is."""
     lamps = tuple(replace(lamp, size_deg=0.1 + 0.2) for lamp in ROOM.lamps)
-    rig = replace(ROOM, lamps=lamps).rig().sampled(lamp=2, pixel=2)
+    rig = divided(replace(ROOM, lamps=lamps).rig(), lamp=2, pixel=2)
     levels = np.random.default_rng(1).integers(0, 256, (4, 5, 5, 4), np.uint8)
     return Cube(extinction(), GRID, rig, powers_of(rig), levels, **more)
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from lightcube.errors import InputError
-from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture, falling_light, shown_light
@@ -14,6 +13,8 @@ from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.tables import Fading
 from tests.conftest import INTERPRETED
 from tests.helpers import plain
+from tests.helpers.areas import divided
+from tests.helpers.thin import play
 from tests.optics.test_rig import ROOM
 
 GRID = Grid((3, 5, 7), 0.7)
@@ -120,7 +121,7 @@ def test_sums_of_one_view_each_are_thin_pictures(elevation_deg: float) -> None:
 
 
 def test_a_picture_of_more_views_than_are_cast_at_a_time_is_their_sum() -> None:
-    rig = turntable(GRID, [10.0, 77.0], elevation_deg=20.0, picture_shape=(3, 3)).sampled(pixel=5)
+    rig = divided(turntable(GRID, [10.0, 77.0], elevation_deg=20.0, picture_shape=(3, 3)), pixel=5)
     assert len(rig.views) == 50
     extinction = np.random.default_rng(0).random((2, *GRID.shape)).astype(np.float32)
     powers = np.random.default_rng(1).uniform(0.5, 3, (2, 2))
@@ -133,7 +134,7 @@ def test_a_picture_of_more_views_than_are_cast_at_a_time_is_their_sum() -> None:
 
 def test_a_part_of_a_rig_makes_a_part_of_the_mixture() -> None:
     """Some views, which count their own pictures from 0; some colours; some rows, bottom-up in each column."""
-    rig = ROOM.rig().sampled(pixel=2)
+    rig = divided(ROOM.rig(), pixel=2)
     light, shadow = falling_light(rig)
     for one, other in zip(falling_light(rig, range(3, 9)), (light, shadow), strict=True):
         assert np.array_equal(one, other[3:9])

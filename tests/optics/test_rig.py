@@ -10,14 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lightcube.backward.problem import held, pose
-from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import split
 from lightcube.errors import InputError
-from lightcube.forward.casting import cast, play, player
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import fade, falling_light
+from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.tables import Lamps, Screens
@@ -25,6 +24,8 @@ from lightcube.optics.views import spread_angles
 from lightcube.pictures.resampling import halved
 from lightcube.pictures.targets import Targets
 from tests.helpers import plain
+from tests.helpers.areas import divided
+from tests.helpers.thin import cast, play, player, thin_recipe
 
 GRID = Grid((4, 5, 6), 0.7)
 #: Parallel and from a point; coloured; fading slowly, at once, and never; on a wall and a floor of other sizes.
@@ -121,7 +122,7 @@ def test_a_lamp_that_stands_on_a_pixel_shines_on_it() -> None:
 @pytest.mark.parametrize("samples", [{}, {"lamp": 2, "pixel": 2}])
 def test_what_is_cast_is_the_plain_sum(samples: dict[str, Any]) -> None:
     lamps = tuple(replace(lamp, size_deg=4.0) for lamp in ROOM.lamps)
-    rig = replace(ROOM, lamps=lamps).rig().sampled(**samples)
+    rig = divided(replace(ROOM, lamps=lamps).rig(), **samples)
     cube = Cube(extinction(), GRID, rig, powers_of(rig))
     expected = by_hand(cube, rig, cube.powers)
     np.testing.assert_allclose(pictures(cube, rig), expected, rtol=1e-4, atol=1e-6)
@@ -134,14 +135,12 @@ def test_solvers_see_the_plain_sum(powers_of_lamps: Any, hold_deg: float) -> Non
     """And so does whoever asks a problem for what is shown; at the stops themselves where pictures are held."""
     cube = made(ROOM)
     wanted = np.full((4, 5, 5, 3), 0.5, np.float32)
-    recipe = Recipe(powers=powers_of_lamps, hold_deg=hold_deg, dtype="float64")
+    recipe = thin_recipe(powers=powers_of_lamps, hold_deg=hold_deg, dtype="float64", light=Light.thin())
     problem = pose(Targets(wanted, cube.rig), GRID, recipe)
     assert problem.lighting.mixture is not None
     powers = cube.powers if powers_of_lamps == "per-picture" else powers_of(cube.rig)[:3]
     each = powers if powers_of_lamps == "per-picture" else powers[cube.rig.pairs[:, 1]]
-    absorbed = problem.matrix.forward(problem.unknowns(cube.extinction.astype(np.float64)))
-    inside = cube.rig.inside[..., None]
-    shown = problem.shown(absorbed, powers) * inside
+    shown = problem.shown(problem.unknowns(cube.extinction.astype(np.float64)), powers)
     np.testing.assert_allclose(shown, pictures(cube, cube.rig, each), rtol=1e-4, atol=1e-6)
 
 
@@ -155,13 +154,12 @@ def test_the_parts_of_a_problem_are_the_problem(level: bool, count: int) -> None
     cube = made(Stage(GRID, lamps, (wall,), shots, (10.0, 50.0)))
     wanted = np.random.default_rng(3).random((2, 4, 5, 3)).astype(np.float32)
     targets = Targets(wanted, cube.rig)
-    whole = pose(targets, GRID, Recipe())
+    whole = pose(targets, GRID, thin_recipe())
     assert whole.matrix.level == level
-    shown = whole.shown(whole.matrix.forward(whole.unknowns(cube.extinction)), cube.powers)
+    shown = whole.shown(whole.unknowns(cube.extinction), cube.powers)
     for part in split(GRID.shape, 3, count, level=level):
-        own = pose(targets, GRID, Recipe(), part)
-        absorbed = own.matrix.forward(own.unknowns(cube.extinction[part.colours, part.slices]))
-        mine = own.shown(absorbed, cube.powers[:, part.colours])
+        own = pose(targets, GRID, thin_recipe(), part)
+        mine = own.shown(own.unknowns(cube.extinction[part.colours, part.slices]), cube.powers[:, part.colours])
         np.testing.assert_allclose(mine, shown[:, own.rows, :, part.colours], rtol=1e-6)
 
 
@@ -189,7 +187,7 @@ def edge(stage: Stage, samples: int) -> np.ndarray:
     """Light along the wall behind a cube whose one half is opaque."""
     half = np.zeros((3, 2, 6, 1), np.float32)
     half[:, :, :3] = 50.0
-    rig = stage.rig().sampled(lamp=samples)
+    rig = divided(stage.rig(), lamp=samples)
     return pictures(Cube(half, stage.grid, rig), rig)[0, 0, :, 0]
 
 
@@ -215,7 +213,7 @@ def test_samples_of_a_disc_lie_in_it_and_their_mean_is_the_lamp(place: Any, samp
     screen = Screen("wall", (5.0, -10.0, -9.0), (2.0, 2.0), 1.0)
     shots = (Shot("1", "wall", ("lamp", "sun")), Shot("2", "wall", ("lamp",), 1))
     rig = Stage(GRID, (lamp, ROOM.lamps[0]), (screen,), shots, (0.0, 50.0)).rig()
-    several = rig.sampled(lamp=samples)
+    several = divided(rig, lamp=samples)
     assert several.sums.lamp.tolist() == [0] * samples + [1] + [0] * samples
     assert several.sums.picture.tolist() == [0] * (samples + 1) + [1] * samples
     assert np.all(several.sums.disc_deg == 0)
@@ -233,7 +231,7 @@ def test_samples_of_a_disc_lie_in_it_and_their_mean_is_the_lamp(place: Any, samp
 def test_many_samples_fill_the_disc_evenly() -> None:
     """As many in the inner disc of half the area as outside it, and in each half."""
     rig = lit_by(10.0, 5.0).rig()
-    points = rig.sampled(lamp=400).views.lamps[:, 1:3]
+    points = divided(rig, lamp=400).views.lamps[:, 1:3]
     radius = math.tan(math.radians(5.0))
     assert np.mean(np.hypot(*points.T) < radius / math.sqrt(2)) == pytest.approx(0.5, abs=0.02)
     for axis in (0, 1):
@@ -248,18 +246,12 @@ def test_samples_of_a_pixel_tend_to_its_mean_and_change_no_sum() -> None:
     area = pictures(cube, fine.rig()).reshape(rows, 8, columns, 8, 3).mean(axis=(1, 3))
     off = []
     for samples in (1, 2, 4):
-        rig = cube.rig.sampled(pixel=samples)
+        rig = divided(cube.rig, pixel=samples)
         assert len(rig.views) == 2 * samples**2
         np.testing.assert_allclose(np.add.reduceat(rig.sums.share, [0, samples**2]), cube.rig.sums.share, rtol=1e-12)
         off.append(float(np.sqrt(np.mean((pictures(cube, rig)[0] - area) ** 2))))
     assert off[0] > 1.5 * off[1] > 3 * off[2]
     assert off[2] < 0.02
-
-
-@pytest.mark.parametrize("samples", [{"lamp": 0}, {"lamp": 1025}, {"pixel": 0}])
-def test_samples_that_cannot_be_are_refused(samples: dict[str, Any]) -> None:
-    with pytest.raises(InputError, match="1 to 1024 samples"):
-        ROOM.rig().sampled(**samples)
 
 
 def test_some_pictures_of_many_keep_their_views() -> None:
@@ -341,7 +333,7 @@ def test_a_turntable_is_a_stage_with_one_lamp_and_a_screen_behind(
     between = [angle_deg + off for angle_deg in angles_deg for off in (0.0, 1.0, 7.5, 180.0, 200.0, -90.0)]
     np.testing.assert_allclose(play(turned, between), play(staged, between), rtol=1e-4, atol=1e-6)
     targets = [Targets(play(turned), rig, transfer="linear") for rig in (one, stage.rig())]
-    problems = [pose(each, GRID, Recipe(hold_deg=2.0)) for each in targets]
+    problems = [pose(each, GRID, thin_recipe(hold_deg=2.0)) for each in targets]
     for name in ("light", "weights"):
         np.testing.assert_allclose(getattr(problems[0], name), getattr(problems[1], name), rtol=1e-6)
     np.testing.assert_array_equal(problems[0].lighting.lamp, problems[1].lighting.lamp)
@@ -453,10 +445,10 @@ def test_over_a_hold_the_lamps_stay_as_they_are() -> None:
 def test_held_pictures_are_asked_for_on_either_side_under_the_same_lamps() -> None:
     """The views at stop and hold are those of the same stage at stops that far aside."""
     cube = made(TURNED)
-    several = held(cube.rig, Recipe(hold_deg=4.0), GRID)
+    several = held(cube.rig, thin_recipe(hold_deg=4.0), GRID)
     angles_deg = len(several) // len(cube.rig)
     assert angles_deg == 3
-    problem = pose(Targets(play(cube), cube.rig), GRID, Recipe(hold_deg=4.0))
+    problem = pose(Targets(play(cube), cube.rig), GRID, thin_recipe(hold_deg=4.0))
     for index, off in enumerate((-4.0, 0.0, 4.0)):
         aside = replace(TURNED, stops_deg=tuple(stop + off for stop in TURNED.stops_deg)).rig().views
         mine = np.flatnonzero(np.isin(several.sums.picture, np.arange(index, len(several), angles_deg)))
@@ -492,7 +484,7 @@ def test_held_pictures_are_dense_enough_and_keep_the_stop_in_the_middle(
 ) -> None:
     grid = Grid((4, n, 4))
     rig = turntable(grid, [20.0, 70.0, 150.0], elevation_deg=elevation_deg, picture_shape=(2, 2))
-    angles_deg = held(rig, Recipe(hold_deg=hold_deg), grid).stops.angle_deg.reshape(3, -1)
+    angles_deg = held(rig, thin_recipe(hold_deg=hold_deg), grid).stops.angle_deg.reshape(3, -1)
     assert np.allclose(angles_deg[:, angles_deg.shape[1] // 2], rig.stops.angle_deg)
     assert np.allclose(angles_deg[:, -1] - angles_deg[:, 0], 2 * hold_deg)
     assert np.max(np.diff(angles_deg, axis=1)) <= 0.5 * 64 / n + 1e-6

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lightcube.errors import InputError
-from lightcube.forward.casting import cast, play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from tests.helpers import plain
+from tests.helpers.thin import cast, play
 
 GRID = Grid((4, 5, 6), 0.7)
 SUN = Lamp("sun", direction=(2.0, 0.0, -1.2))

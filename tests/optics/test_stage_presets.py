@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
-from lightcube.forward.casting import cast, play
 from lightcube.io import read_stage, read_stage_targets
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
@@ -17,6 +15,8 @@ from lightcube.pictures.targets import Targets
 from lightcube.planning.feasibility import doubtful, impossible
 from lightcube.scoring.metrics import score
 from tests.conftest import INTERPRETED
+from tests.helpers.areas import divided
+from tests.helpers.thin import cast, play, thin_recipe
 
 STAGES = sorted((Path(__file__).parents[2] / "examples" / "stages").glob("*.toml"))
 #: Voxels along the cube's longest side here: fewer where nothing is compiled.
@@ -36,7 +36,7 @@ def smaller(stage: Stage, side: int) -> Stage:
 def known(stage: Stage, lamp_samples: int = 1) -> tuple[Cube, Targets]:
     """A random cube on a stage, under lamps of random powers, and its shadows."""
     random = np.random.default_rng(0)
-    rig = stage.rig().sampled(lamp=lamp_samples)
+    rig = divided(stage.rig(), lamp=lamp_samples)
     extinction = random.gamma(0.3, 4.0 / (0.3 * stage.grid.size_mm[0]), (3, *stage.grid.shape)).astype(np.float32)
     powers = random.uniform(0.8, 2.0, (len(rig.pairs), 3))
     cube = Cube(extinction, stage.grid, rig, powers)
@@ -57,9 +57,9 @@ def test_the_shadows_of_a_known_cube_come_back(path: Path) -> None:
     stage = smaller(read_stage(path)[0], SIDE)
     cube, targets = known(stage, 3 if path.stem == "soft-lamp" else 1)
     assert np.mean(targets.pictures < 0.5) > 0.1  # there are shadows
-    solved = solve(targets, stage.grid, Recipe(passes=100 if INTERPRETED else 400))
+    solved = solve(targets, stage.grid, thin_recipe(passes=100 if INTERPRETED else 400))
     scores = score(solved.cube, targets)
-    assert scores["psnr_min"] >= 50
+    assert scores["thin_psnr_min"] >= 50
     assert not np.allclose(solved.cube.extinction, cube.extinction, atol=1e-3)  # other cubes have the same shadows
 
 

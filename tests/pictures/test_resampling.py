@@ -5,10 +5,8 @@ import pytest
 
 from lightcube.backward.pieces import Step
 from lightcube.backward.problem import pose
-from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
 from lightcube.backward.units import coarser, halvings
-from lightcube.forward.casting import play
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
@@ -17,6 +15,7 @@ from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
 from lightcube.solvers import METHODS
 from tests.helpers.recipes import lit
+from tests.helpers.thin import play, thin_recipe
 
 
 def some_targets(shape: tuple[int, int, int], size: tuple[int, int], elevation_deg: float, count: int = 3) -> Targets:
@@ -75,8 +74,8 @@ def test_a_smooth_cube_casts_nearly_the_same_at_half_the_size(elevation_deg: flo
     half = volume.reshape(3, 3, 2, 6, 2, 5, 2).mean((2, 4, 6))
     totals = []
     for problem, extinction in (
-        (pose(targets, grid, Recipe()), volume),
-        (pose(small, small_grid, Recipe()), half),
+        (pose(targets, grid, thin_recipe()), volume),
+        (pose(small, small_grid, thin_recipe()), half),
     ):
         pixels = problem.matrix.shape[0] * problem.light.shape[1]
         totals.append(float(np.sum(problem.matrix.forward(problem.unknowns(extinction)))) / pixels)
@@ -93,7 +92,7 @@ def test_coarser_sizes_run_down_to_the_coarsest() -> None:
 
 def test_the_unknowns_are_the_extinction() -> None:
     targets = some_targets((3, 7, 5), (3, 3), 0.0)
-    problem = pose(targets, Grid((3, 7, 5), 0.7), Recipe())
+    problem = pose(targets, Grid((3, 7, 5), 0.7), thin_recipe())
     volume = np.random.default_rng(0).random((3, 3, 7, 5)).astype(np.float32)
     assert np.array_equal(problem.extinction(problem.unknowns(volume)), volume)
 
@@ -103,8 +102,8 @@ def test_units_are_independent_once_the_lamp_is_known(elevation_deg: float, size
     """Colours, or slabs of slices, solved one by one give what they give together."""
     grid = Grid((6, 7, 5), 0.7)
     targets = some_targets((6, 7, 5), size, elevation_deg)
-    apart = solve(lit(targets, lamp_max=4), grid, Recipe(passes=400), units=2)
-    problem = pose(targets, grid, Recipe(powers="coarse"))
+    apart = solve(lit(targets, lamp_max=4), grid, thin_recipe(passes=400), units=2)
+    problem = pose(targets, grid, thin_recipe(powers="coarse"))
     powers = apart.cube.powers
     assert np.max(powers) <= 4 * (1 + 1e-6)
     together = METHODS["display"].solve(problem.matrix, problem.wanted((powers, powers)), iterations=400)
@@ -119,9 +118,9 @@ def test_the_start_at_half_the_size_saves_passes(monkeypatch: pytest.MonkeyPatch
     rows, columns = np.mgrid[:6, :6] / 6
     pictures = np.stack([np.stack([0.2 + 0.7 * rows, 0.9 - 0.6 * columns, 0.5 + 0.3 * rows * columns], -1)] * 4)
     targets = Targets(pictures.astype(np.float32), rig)
-    cold = solve(targets, grid, Recipe(passes=5))
+    cold = solve(targets, grid, thin_recipe(passes=5))
     monkeypatch.setattr("lightcube.backward.units.COARSEST", 8)
-    warm = solve(targets, grid, Recipe(passes=5))
+    warm = solve(targets, grid, thin_recipe(passes=5))
     assert warm.residuals[0] < 0.5 * cold.residuals[0]
     assert warm.residuals[-1] < cold.residuals[-1]
 
@@ -150,7 +149,7 @@ def test_the_work_done_grows_to_all_of_it(monkeypatch: pytest.MonkeyPatch, power
     grid = Grid((6, 8, 8), 0.7)
     targets = some_targets((6, 8, 8), (4, 4), 35.0)
     done: list[float] = []
-    solve(targets, grid, Recipe(powers=powers, passes=7), callback=lambda step: done.append(step.done))  # type: ignore[arg-type]
+    solve(targets, grid, thin_recipe(powers=powers, passes=7), callback=lambda step: done.append(step.done))
     assert done == sorted(done)
     assert done[-1] == pytest.approx(1)
     assert 0 < done[0] < 0.1
@@ -168,8 +167,8 @@ def test_halves_are_problems_of_their_own() -> None:
 def test_enough_is_enough(powers: str, enough_db: float) -> None:
     grid = Grid((6, 8, 8), 0.7)
     targets = some_targets((6, 8, 8), (4, 4), 35.0, count=2)
-    most = solve(targets, grid, Recipe(powers=powers, passes=150))  # type: ignore[arg-type]
-    enough = solve(targets, grid, Recipe(powers=powers, passes=150, enough_db=enough_db))  # type: ignore[arg-type]
+    most = solve(targets, grid, thin_recipe(powers=powers, passes=150))
+    enough = solve(targets, grid, thin_recipe(powers=powers, passes=150, enough_db=enough_db))
     assert most.stop_reason != "enough"
     assert enough.stop_reason == "enough"
     assert enough.cube.status == "complete"
@@ -198,4 +197,4 @@ def test_stopped_at_the_coarsest_of_several_sizes_the_cube_is_whole(monkeypatch:
 def test_slabs_of_one_colour_are_no_colours() -> None:
     rig = turntable(Grid((4, 6, 6)), [20.0, 80.0, 140.0], picture_shape=(4, 4))
     targets = Targets(np.random.default_rng(0).uniform(0.2, 1, (3, 4, 4, 1)).astype(np.float32), rig)
-    assert solve(targets, Grid((4, 6, 6)), Recipe(powers="coarse", passes=5)).cube.powers.shape == (3, 1)
+    assert solve(targets, Grid((4, 6, 6)), thin_recipe(powers="coarse", passes=5)).cube.powers.shape == (3, 1)

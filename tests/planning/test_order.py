@@ -9,7 +9,6 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 from lightcube.errors import InputError
-from lightcube.forward.casting import play
 from lightcube.kernels import ordering
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
@@ -20,6 +19,7 @@ from lightcube.pictures.targets import Targets
 from lightcube.planning import order as orders
 from lightcube.planning.order import Order, best_order
 from tests.helpers.plain import beam_of_pixel, lengths_of_beam
+from tests.helpers.thin import play
 
 GRID = Grid((3, 5, 7), 0.5)
 

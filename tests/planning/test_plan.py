@@ -135,21 +135,21 @@ def test_a_stage_is_told_what_the_same_turntable_is() -> None:
     )
     shots = tuple(Shot(name, "wall", ("lamp",), stop) for stop, name in enumerate(planned.targets.names))
     stage = Stage(grid, (Lamp("lamp", light),), (wall,), shots, tuple(rig.stops.angle_deg.tolist()))
-    staged = plan_stage(stage, planned.pictures, "crop", planned.recipe, rig=stage.rig())
+    staged = plan_stage(stage, planned.pictures, "crop", planned.recipe)
     assert staged.prediction.is_known
     np.testing.assert_allclose(staged.prediction.psnr, planned.prediction.psnr, atol=1e-3)
     np.testing.assert_array_equal(staged.targets.pictures, planned.targets.pictures)
     assert staged.impossible == staged.doubtful == []
 
     bulb = replace(stage, lamps=(Lamp("lamp", position_mm=(-far, 0.0, 0.0)),))
-    unknown = plan_stage(bulb, planned.pictures, rig=bulb.rig()).prediction
+    unknown = plan_stage(bulb, planned.pictures).prediction
     assert not unknown.is_known
     assert np.isnan([unknown.psnr_mean, unknown.psnr_min]).all()
 
     coarse = replace(stage, screens=(replace(wall, pitch_mm=2 * side),))
-    assert not plan_stage(coarse, planned.pictures, rig=coarse.rig()).prediction.is_known
+    assert not plan_stage(coarse, planned.pictures).prediction.is_known
 
     inside = replace(stage, screens=(replace(wall, centre_mm=(0.0, 0.0, 0.0)),))
-    wrong = plan_stage(inside, planned.pictures, rig=inside.rig())
+    wrong = plan_stage(inside, planned.pictures)
     assert wrong.impossible
     assert not wrong.prediction.is_known

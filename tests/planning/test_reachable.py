@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures.targets import Targets
 from lightcube.planning.reachable import least_light, out_of_reach, sentences, too_bright
+from tests.helpers.thin import cast
 
 
 def faded(lamps: int = 1, falloff_mm: float = 60.0) -> tuple[Stage, Targets]:

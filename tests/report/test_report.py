@@ -196,7 +196,7 @@ def test_the_command_makes_the_cube_bit_for_bit(run: Run, pictures: Path, option
 
 
 def test_the_command_makes_the_cube_of_a_stage(run: Run, pictures: Path) -> None:
-    options = ["--lamp-samples", 2, "--pixel-samples", 2, "--iterations", 3, "--hold-deg", 1]
+    options = ["--points", 4, "--iterations", 3, "--hold-deg", 1]
     assert run("solve", "stage.toml", "-o", "a.npz", *options)[0] == 0
     _makes_it_again(run, "a.npz", "stage.toml")
 
@@ -230,7 +230,7 @@ def test_passes_that_are_recorded_become_options() -> None:
 
     assert "quality" not in words(passes=200, enough_db=42.0)[0]
     assert "--quality draft" in words(passes=30, enough_db=36.0)[0]
-    assert "--quality best" in words(passes=1000, enough_db=None)[0]
+    assert "--quality best" in words(passes=400, enough_db=None)[0]
     assert "--iterations 17" in words(passes=17, enough_db=None)[0]
     assert words(passes=17, enough_db=None)[1] == []
     assert "33 dB" in words(passes=17, enough_db=33.0)[1][0]

@@ -20,6 +20,7 @@ from lightcube.optics.transfer import Transfer, decode, encode
 from lightcube.viewer import packing
 from lightcube.viewer.description import describe
 from lightcube.viewer.packing import pack
+from tests.helpers.areas import divided
 
 Run = Callable[..., Any]
 #: Levels of 255 that a shadow may be off: half of one by rounding, and what single precision costs.
@@ -152,7 +153,7 @@ def on_stage(name: str) -> Cube:
         its = tuple(lamp.name for lamp in lamps if (lamp.name == "sun") == (screen.name == "floor"))
         shots += [Shot(f"{screen.name} {stop}", screen.name, its, stop) for stop in range(3)]
     stage = Stage(GRID, lamps, screens, tuple(shots), (0.0, 110.0, 230.0))
-    rig = stage.rig().sampled(lamp=samples)
+    rig = divided(stage.rig(), lamp=samples)
     powers = np.random.default_rng(2).uniform(0.4, 1.5, (len(rig.pairs), 3))
     return Cube(glass(GRID.shape), GRID, rig, powers)
 

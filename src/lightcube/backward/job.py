@@ -3,13 +3,14 @@
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.problem import held, is_level
+from lightcube.backward.problem import beams, is_level
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import Part, halvings, split
 from lightcube.optics.grid import Grid
@@ -79,12 +80,12 @@ class Job:
     @property
     def max_extinction(self) -> float:
         """The largest extinction, 1/mm; that of coarser cubes too."""
-        return self.recipe.material.most(self.grid)
+        return self.recipe.stuff.most(self.grid)
 
-    @property
+    @cached_property
     def level(self) -> bool:
         """Whether each slice of the cube casts one row of the pictures by itself, at all angles that are asked for."""
-        return is_level(self.grid, held(self.targets.rig, self.recipe, self.grid).views)
+        return is_level(self.grid, beams(self.targets.rig, self.recipe, self.grid).views)
 
     @property
     def parts(self) -> list[Part]:
@@ -162,6 +163,11 @@ _WORDS = {
     "per": "what extinction is counted along",
     "enough_db": "PSNR that is enough",
     "dtype": "precision",
+    "points": "points a pixel",
+    "row_points": "points along a row",
+    "mat_tone": "tone of the mat",
+    "mat_weight": "weight of the mat",
+    "mat_width": "width of the mat",
 }
 _CHECKSUMS = ("pictures", "weights", "names", "lamps and screens")
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from lightcube.backward.job import Job, shares
-from lightcube.backward.problem import Problem, held, pose
+from lightcube.backward.problem import Problem, beams, pose
 from lightcube.backward.units import coarse_shape, coarser, most_units, split
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
@@ -54,7 +54,7 @@ def memory_needed(
     elevation_deg
         Of the lamp, degrees.
     per_stop
-        At how many each picture is held.
+        How many beams each of their pixels has: angles of a hold, times points of a pixel.
     levels
         How often the cube is halved for its start.
     """
@@ -101,14 +101,14 @@ def _solver(
 def job_memory(job: Job) -> int:
     """`memory_needed` of a job."""
     rig = job.targets.rig
-    views = rig.views
+    asked, views = beams(rig, job.recipe, job.grid), rig.views
     steepest = float(np.max(np.abs(views.elevations_deg)))
-    per_stop = len(held(rig, job.recipe, job.grid)) // len(rig)
-    mixed = 0 if rig.fading.is_none else _MIXED * per_stop * len(views) * math.prod(views.picture_shape)
+    per_stop = len(asked.views) // len(views)
+    mixed = 0 if rig.fading.is_none else _MIXED * len(asked.views) * math.prod(asked.picture_shape)
     return mixed + memory_needed(
         job.recipe.solver,
         job.grid,
-        views.picture_shape,
+        asked.picture_shape,
         len(views),
         0.0 if job.level else steepest or _ANY,
         per_stop=per_stop,
@@ -178,6 +178,6 @@ def _seconds_of_products(problem: Problem) -> float:
 
 def _work(job: Job, targets: Targets, grid: Grid) -> tuple[float, float]:
     """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
-    rows, columns = targets.rig.picture_shape
-    pixels = len(held(targets.rig, job.recipe, grid).views) * rows * columns * job.channels
+    asked = beams(targets.rig, job.recipe, grid)
+    pixels = len(asked.views) * math.prod(asked.picture_shape) * job.channels
     return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)

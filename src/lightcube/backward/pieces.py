@@ -19,6 +19,8 @@ from lightcube.solvers.contract import Progress, Result
 FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
 #: Checkpoints that take long are rarer: between two lie so many times as many seconds as one took, at most so many.
 _PATIENCE, _LATEST_S = 20.0, 60.0
+#: Pictures are enough so much above what is asked for, dB: what is cast is looked at more and more rarely.
+_SPARE_DB, _FIRST_LOOK, _LATER_LOOK = 0.5, 8, 1.15
 #: What is kept of a finished piece, beside its figures: voxels ``(channel, z, y, x)``, and its lamps' powers. Those are
 #: in a checkpoint too, beside the solver's own arrays, none of which is called so.
 VOXELS, POWERS = "extinction", "lamp-powers"
@@ -191,6 +193,14 @@ def _bundle(problem: Problem, result: Result, stop_reason: str) -> dict[str, NDA
     return bundle if result.lower_bound is None else bundle | {"lower_bound": np.array(result.lower_bound)}
 
 
+def _is_look(iteration: int) -> bool:
+    """Whether what is cast is looked at after so many iterations: the same ones wherever a solver goes on."""
+    look = _FIRST_LOOK
+    while look < iteration:
+        look = int(look * _LATER_LOOK) + 1
+    return look == iteration
+
+
 class _Watch:
     """What the solver of a piece calls after each iteration: checkpoints, and the caller's callback.
 
@@ -214,13 +224,13 @@ class _Watch:
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
         self._wanted = -1.0  # an exact 0 is not enough by itself
         if not self._level and job.recipe.solver.residual == "display" and job.recipe.enough_db < np.inf:
-            weight = float(np.sum(problem.weights, dtype=np.float64))
-            self._wanted = 0.5 * 10 ** (-job.recipe.enough_db / 10) * weight
+            self._wanted = 10 ** (-(job.recipe.enough_db + _SPARE_DB) / 10)
         self.enough = self.stopped = False
 
     def __call__(self, progress: Progress) -> bool:
         """Tell the solver whether it is to stop."""
-        self.enough = progress.residual <= self._wanted
+        if self._wanted > 0 and _is_look(progress.iteration):
+            self.enough = self._problem.error(progress.x, progress.lamp_powers) <= self._wanted
         asked = self._callback is not None and bool(self._callback(self._step(progress)))
         if self.enough:  # finished, whatever the callback says of the pieces to come
             return True
@@ -242,6 +252,6 @@ class _Watch:
             return Step(0, self._most, done, progress.residual, None, window)
 
         def shown() -> NDArray[np.float32]:
-            return self._problem.shown(progress.absorbance, progress.lamp_powers)
+            return self._problem.shown(progress.x, progress.lamp_powers)
 
         return Step(progress.iteration, progress.iterations, done, progress.residual, shown, window)

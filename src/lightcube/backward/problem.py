@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.backward.mat import framed, widened
 from lightcube.backward.recipe import Powers, Recipe
 from lightcube.backward.units import Part
 from lightcube.kernels.layout import (
@@ -13,13 +14,16 @@ from lightcube.kernels.layout import (
     columns_from_volume,
     volume_from_columns,
 )
+from lightcube.optics.arrays import Images
 from lightcube.optics.grid import Grid, dense_step_deg
-from lightcube.optics.law import Mixture, shown_light
+from lightcube.optics.law import Mixture
+from lightcube.optics.light import judged, sampled
 from lightcube.optics.rig import Rig
-from lightcube.optics.transfer import Transfer, decode
+from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
+from lightcube.projection.shadows import shadows
 from lightcube.solvers.contract import Lighting, Wanted
 
 Floats = NDArray[np.floating[Any]]
@@ -44,10 +48,12 @@ class Problem:
         Colours and slices of the cube; their columns are all that is here.
     rows
         Rows of the pictures that the part is seen in.
-    stops, per_stop
-        Pictures, and at how many angles each of them is asked for.
-    transfer
-        How display values follow from light.
+    targets
+        What is wanted at the stops themselves.
+    per_stop
+        At how many angles each picture is asked for.
+    judge
+        The rig of the targets by the beams that what is cast is judged by, and which power each of its views has.
     """
 
     matrix: Projector
@@ -56,9 +62,9 @@ class Problem:
     lighting: Lighting
     part: Part
     rows: slice
-    stops: int
+    targets: Targets
     per_stop: int
-    transfer: Transfer
+    judge: tuple[Rig, NDArray[np.intp]]
 
     @property
     def channels(self) -> int:
@@ -70,6 +76,10 @@ class Problem:
         """Slices of the part."""
         return self.part.slices.stop - self.part.slices.start
 
+    @property
+    def _voxels(self) -> int:
+        return self.matrix.grid.shape[1] * self.matrix.grid.shape[2]
+
     def extinction(self, x: Floats) -> Floats:
         """``(channel, z, y, x)`` of the unknowns `x`: those of the part."""
         return volume_from_unknowns(x, (self.slices, *self.matrix.grid.shape[1:]), self.channels)
@@ -80,24 +90,41 @@ class Problem:
 
     def wanted(self, lamp_bounds: tuple[Floats, Floats]) -> Wanted:
         """What a solver is to reach with lamps whose powers are within these bounds, each ``(lamps, channels)``."""
-        return Wanted(self.light, self.weights, self.lighting, lamp_bounds, self.transfer)
+        return Wanted(self.light, self.weights, self.lighting, lamp_bounds, self.targets.transfer)
 
-    def shown(self, absorbance: Floats, powers: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
-        """What ``A x`` and the lamps' powers, ``(lamps, channels)``, show at the stops themselves, linear light.
+    def shown(self, x: Floats, powers: Floats) -> Images:
+        """What unknowns `x` and lamps of powers ``(lamps, channels)`` show at the stops, as it is judged, linear light.
 
         ``(stop, row, column, channel)`` of the part: `rows` and colours only.
         """
-        shape = self.rows.stop - self.rows.start, self.matrix.views.picture_shape[1]
-        of_views = powers[self.lighting.lamp]
-        mixture = self.lighting.mixture or Mixture.of_whole_views(*of_views.shape)
-        at_stops = np.arange(self.stops) * self.per_stop + self.per_stop // 2
-        return shown_light(mixture, of_views, absorbance, shape, at_stops).astype(np.float32, copy=False)
+        rig, lamp = self.judge
+        columns = x.reshape(self._voxels, -1)
+        return np.stack(
+            list(
+                shadows(
+                    columns, self.matrix.grid, rig, np.asarray(powers[lamp], np.float64), self.rows, self.part.colours
+                )
+            )
+        ).astype(np.float32, copy=False)
+
+    def error(self, x: Floats, powers: Floats) -> float:
+        """The mean squared difference, in display values, of what is `shown` from what is wanted."""
+        targets, weight = self.targets, self.targets.weight[:, self.rows]
+        wanted = encode(targets.pictures[:, self.rows, :, self.part.colours], targets.transfer)
+        off = np.mean((encode(self.shown(x, powers), targets.transfer) - wanted) ** 2, axis=-1, dtype=np.float64)
+        total = float(np.sum(weight, dtype=np.float64))
+        return float(np.sum(weight * off)) / total if total else 0.0
 
     def pixels(self, rejected: NDArray[np.int64]) -> NDArray[np.int64]:
         """(stop, row, column, channel) of rejected (equation, column) pairs, each once."""
         flat = rejected[:, 0] * self.light.shape[1] + rejected[:, 1]
         rows, colours = self.rows, self.part.colours
-        shape = (self.stops * self.per_stop, self.matrix.views.picture_shape[1], rows.stop - rows.start, self.channels)
+        shape = (
+            len(self.targets) * self.per_stop,
+            self.matrix.views.picture_shape[1],
+            rows.stop - rows.start,
+            self.channels,
+        )
         view, column, lifted, channel = np.unravel_index(flat, shape)
         pixels = [view // self.per_stop, rows.stop - 1 - lifted, column, colours.start + channel]
         return np.unique(np.stack(pixels, axis=1).astype(np.int64), axis=0)
@@ -120,17 +147,17 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
 
     Only the columns of `part` are made: None = all colours and slices; some slices only where `is_level`.
 
-    Pixels darker than the screen's black are wanted at it. The ends of a hold, with nothing to hold on to beyond,
-    count twice: else they are what falls apart first (measured).
+    Pixels darker than the screen's black are wanted at it. The ends of a hold by thin beams, with nothing to hold on to
+    beyond, count twice: else they are what falls apart first (measured).
     """
-    rig = held(targets.rig, recipe, grid)
+    wanted, rig = framed(targets, grid, recipe.mat), beams(targets.rig, recipe, grid)
     views, per_stop = rig.views, len(rig) // len(targets)
-    heard = np.repeat(targets.weight > 0, per_stop, axis=0)
+    heard = np.repeat(wanted.weight > 0, per_stop, axis=0)
     matrix = Projector(grid, views, heard[rig.sums.picture])
     darkest = decode(targets.rig.screens.black[targets.rig.stops.screen].astype(np.float32), targets.transfer)
     high, channels = views.picture_shape[0], targets.pictures.shape[-1]
     part = part or Part(slice(0, channels), slice(0, grid.shape[0]))
-    rows = slice(0, high)
+    rows = slice(0, high)  # of the pictures, which have no mat above and below where a part has some slices only
     if part.slices != slice(0, grid.shape[0]):
         rows = slice(high - part.slices.stop, high - part.slices.start)
 
@@ -139,27 +166,38 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
         return columns.reshape(columns.shape[0] * (1 if matrix.level else high), -1)
 
     importance = np.ones(per_stop, recipe.dtype)
-    if per_stop > 1:
+    if per_stop > 1 and recipe.beams.is_thin:
         importance[[0, -1]] = 2
-    weights = block(np.repeat(targets.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
+    weights = block(np.repeat(wanted.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
     weights *= np.repeat(np.tile(importance, len(targets)), len(weights) // (len(targets) * per_stop))[:, None]
     mixture = None if rig.is_thin else Mixture.of(rig, channels, part.colours, rows)
     return Problem(
         matrix=matrix,
-        light=block(np.maximum(targets.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
+        light=block(np.maximum(wanted.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
         weights=weights,
         lighting=Lighting(lamp_numbers(targets.rig, rig, recipe.powers), mixture),
         part=part,
         rows=rows,
-        stops=len(targets),
+        targets=targets,
         per_stop=per_stop,
-        transfer=targets.transfer,
+        judge=_judge(targets.rig, recipe, grid),
     )
 
 
+def _judge(rig: Rig, recipe: Recipe, grid: Grid) -> tuple[Rig, NDArray[np.intp]]:
+    """The beams that what is cast is judged by, the thin ones where it is solved for them, and the power of each."""
+    judge = rig if recipe.beams.is_thin else judged(rig, grid)
+    return judge, lamp_numbers(rig, judge, recipe.powers)
+
+
 def held(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
-    """Every picture at the angles that a hold asks for, those of a picture in a row."""
-    return rig.held(recipe.hold_deg, dense_step_deg(grid))
+    """Every picture at the angles that a hold asks for, those of a picture in a row; fewer where light is averaged."""
+    return rig.held(recipe.hold_deg, dense_step_deg(grid), to_the_ends=recipe.beams.is_thin)
+
+
+def beams(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
+    """The views that a recipe asks for: pictures with their mats, at all angles of a hold, at all points of a pixel."""
+    return sampled(held(widened(rig, grid, recipe.mat), recipe, grid), grid, recipe.beams)
 
 
 def lamp_numbers(rig: Rig, held_rig: Rig, powers: Powers) -> NDArray[np.intp]:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Literal
 
 import numpy as np
 
+from lightcube.backward.mat import Mat
 from lightcube.errors import InputError
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.cube import Cube
+from lightcube.optics.light import Light
 from lightcube.optics.material import Material
 from lightcube.solvers import find_method
 from lightcube.solvers.contract import Solver
@@ -22,8 +24,16 @@ from lightcube.solvers.method import Method
 Powers = Literal["per-picture", "shared", "coarse"]
 #: For a look, for use, and for the last tenth of a dB.
 Quality = Literal["draft", "normal", "best"]
-#: At most so many passes of method display, and the PSNR of all pixels, dB, that is enough.
-QUALITIES: Mapping[Quality, tuple[int, float]] = {"draft": (30, 36.0), "normal": (200, 42.0), "best": (1000, math.inf)}
+#: At most so many passes of method display, the PSNR of all pixels, dB, that is enough, and how fine light is.
+QUALITIES: Mapping[Quality, tuple[int, float, Light]] = {
+    "draft": (30, 36.0, Light(5, 4)),
+    "normal": (200, 42.0, Light()),
+    "best": (400, math.inf, Light(34, 15)),
+}
+
+
+#: What a printer can lay down, and costs nothing where light is averaged: a voxel absorbs a factor e at most.
+BUILDABLE = Material(1.0, "voxel")
 
 
 @dataclass(frozen=True)
@@ -42,12 +52,17 @@ class Recipe:
         Degrees on either side of its stop over which each picture shall stand, at most half the way to the next one:
         it is asked for at several angles, under one lamp power.
     material
-        What bounds the extinction.
+        What bounds the extinction; None = as usual: what absorbs e^-1 along a voxel's side, or nothing by thin beams.
+    light
+        Over how many points of a pixel its light is averaged; None = as usual, ``Light()``, or ``Light.thin()`` by
+        methods that know no light that adds up.
+    mat
+        What surrounds the pictures on screens without edges; None = whatever suits them best.
     passes
         At most so many at full size; None = the method's own number.
     enough_db
-        Method display stops as soon as the mean squared difference of all weighted pixels (the too dark ones
-        linearised) is as small as at this PSNR, dB.
+        Method display stops as soon as the mean squared difference of all weighted pixels, as they are cast, is as
+        small as at this PSNR, dB, and half a decibel more.
     dtype
         Of the computation: ``"float32"`` or ``"float64"``.
 
@@ -60,7 +75,9 @@ class Recipe:
     method: str | Solver | Method = "display"
     powers: Powers = "per-picture"
     hold_deg: float = 0.0
-    material: Material = field(default_factory=Material)
+    material: Material | None = None
+    light: Light | None = None
+    mat: Mat | None = None
     passes: int | None = None
     enough_db: float = math.inf
     dtype: str = "float32"
@@ -71,6 +88,13 @@ class Recipe:
         solver = self.solver
         if not solver.chooses_lamps and self.powers != "per-picture":
             raise InputError(f"method {solver.name} cannot choose lamp powers: use method display")
+        if not solver.takes_sums and not self.beams.is_thin:
+            raise InputError(
+                f"method {solver.name} cannot do with light that adds up over a pixel's area: give it Light.thin(), or "
+                "use method display"
+            )
+        if self.mat is not None and not solver.chooses_lamps:
+            raise InputError(f"method {solver.name} frames no pictures with a mat: use method display, or no mat")
         if not self.hold_deg >= 0:
             raise InputError(f"a hold must be a number of degrees of at least 0, not {self.hold_deg:g}")
         if self.passes is not None and self.passes < 1:
@@ -82,23 +106,36 @@ class Recipe:
     @checked
     def of_quality(cls, quality: Quality, **more: Any) -> Recipe:
         """So many passes, or fewer where the pictures are good enough before; `more` are the other fields."""
-        passes, enough = QUALITIES[quality]
-        return cls(passes=passes, enough_db=enough, **more)
+        passes, enough, light = QUALITIES[quality]
+        return cls(**{"passes": passes, "enough_db": enough, "light": light, **more})
+
+    @property
+    def beams(self) -> Light:
+        """How fine light is, never None."""
+        return self.light or (Light() if self.solver.takes_sums else Light.thin())
 
     @property
     def solver(self) -> Method:
         """The method that is meant, and what is to be known of it."""
         return find_method(self.method)
 
+    @property
+    def stuff(self) -> Material:
+        """What bounds the extinction, never None."""
+        return self.material or (Material() if self.beams.is_thin else BUILDABLE)
+
     def by_display(self, passes: int) -> Recipe:
         """The same powers, hold and material by so many passes of method display: what a rehearsal solves."""
-        return replace(self, method="display", passes=passes, enough_db=math.inf, dtype=Recipe().dtype)
+        return replace(
+            self, method="display", passes=passes, enough_db=math.inf, dtype=Recipe().dtype, light=self.beams
+        )
 
     def plain(self) -> dict[str, str | float | None]:
         """Every field by name, as JSON has it: infinity, which it has not, is None."""
         flat = {each.name: getattr(self, each.name) for each in fields(self)}
-        del flat["material"]
-        flat |= {"method": self.solver.name, **asdict(self.material)}
+        del flat["material"], flat["light"], flat["mat"]
+        flat |= {"method": self.solver.name, **asdict(self.stuff), **asdict(self.beams)}
+        flat |= {f"mat_{each.name}": None if self.mat is None else getattr(self.mat, each.name) for each in fields(Mat)}
         return {name: None if value in _NONE else value for name, value in flat.items()}
 
 
@@ -114,7 +151,7 @@ def _precision(dtype: Any) -> str:
 
 
 _NONE = (None, math.inf)
-_MATERIAL = tuple(each.name for each in fields(Material))
+_MATERIAL, _LIGHT, _MAT = (tuple(each.name for each in fields(part)) for part in (Material, Light, Mat))
 
 
 def from_plain(said: Mapping[str, Any]) -> Recipe:
@@ -125,10 +162,14 @@ def from_plain(said: Mapping[str, Any]) -> Recipe:
     InputError
         Where a value cannot be.
     """
-    own = {each.name for each in fields(Recipe)} - {"material"}
+    own = {each.name for each in fields(Recipe)} - {"material", "light", "mat"}
     given = {name: value for name, value in said.items() if value is not None}
-    material = Material(**{name: given[name] for name in _MATERIAL if name in given})
-    return Recipe(material=material, **{name: given[name] for name in own if name in given})
+    material = Material(**{name: given[name] for name in _MATERIAL if name in given}) if "per" in given else None
+    light = Light(**{name: given[name] for name in _LIGHT if name in given}) if "points" in given else None
+    mat = (
+        Mat(**{name: given[f"mat_{name}"] for name in _MAT if f"mat_{name}" in given}) if "mat_tone" in given else None
+    )
+    return Recipe(material=material, light=light, mat=mat, **{name: given[name] for name in own if name in given})
 
 
 def recipe_of(cube: Cube) -> Recipe:

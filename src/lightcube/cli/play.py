@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from lightcube import io
 from lightcube.cli import arguments
 from lightcube.cli.console import done, err, progress
-from lightcube.cli.fields import flag
 from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, threaded
 from lightcube.errors import InputError
 from lightcube.jobs.reading import load
+from lightcube.optics.light import Beams
 from lightcube.verbs import playing, words
 
 
@@ -43,8 +43,9 @@ def play(
     room: Annotated[
         bool, typer.Option("--room", help="Show the room in perspective: cube, lamps, and screens with their shadows.")
     ] = False,
-    lamp_samples: Annotated[int, flag("lamp_samples")] = 1,
-    pixel_samples: Annotated[int, flag("pixel_samples")] = 1,
+    light: Annotated[
+        Beams, typer.Option(help="What a wall shows, averaged over pixels, or the paper's thin beams.")
+    ] = "area",
     fps: Annotated[float, FPS] = 25.0,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
@@ -56,7 +57,7 @@ def play(
         raise InputError("--target shows the picture's window: leave out --whole-shadow")
     if room and (target or whole_shadow or screens):
         raise InputError("--room shows all there is: leave out --screens, --target and --whole-shadow")
-    loaded = playing.with_samples(load(cube), lamp_samples, pixel_samples)
+    loaded = load(cube)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
         raise InputError(f"{cube} has several screens: leave out --target, and see score --sheet")
@@ -66,12 +67,12 @@ def play(
     if room:
         show = playing.of_room(loaded, np.unique(turned) if stops else turned)
     elif screens or (many and not stops):
-        show = playing.of_screens(loaded, np.unique(turned) if stops else turned)
+        show = playing.of_screens(loaded, np.unique(turned) if stops else turned, light=light)
     elif stops:
-        show = playing.of_stops(loaded, target=target, whole_shadow=whole_shadow)
+        show = playing.of_stops(loaded, target=target, whole_shadow=whole_shadow, light=light)
     else:
-        show = playing.of_turn(loaded, turned, target=target, whole_shadow=whole_shadow)
-    for sentence in words.unsampled(loaded.rig):
+        show = playing.of_turn(loaded, turned, target=target, whole_shadow=whole_shadow, light=light)
+    for sentence in words.unsampled(loaded.rig, light):
         if not as_json:
             err.print(sentence)
     with progress("playing", as_json=as_json) as advance:

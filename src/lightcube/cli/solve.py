@@ -102,5 +102,5 @@ def _asked(
     with err.status("rehearsing"), compiling(as_json=as_json):
         planned = planning()
         order = solving.another_order(planned)
-    job = solving.job(planned, options, memory=memory, units=units)
+    job = solving.job(planned, memory=memory, units=units)
     return job, lambda: [*words.in_short(planned, order), *([] if options.paper else words.what_to_change(planned))]

@@ -3,30 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.forward.turning import moment
 from lightcube.kernels.layout import columns_from_volume
-from lightcube.optics.arrays import Images, Numbers, Reals
+from lightcube.optics.arrays import Floats, Images, Numbers, Reals
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
-from lightcube.optics.law import Mixture, shown_light
+from lightcube.optics.light import Beams, judged
 from lightcube.optics.rig import Rig
-from lightcube.projection.projector import Projector
-
-#: Views that are computed together: enough for all threads, few enough to bound memory.
-_BATCH = 16
+from lightcube.projection.shadows import shadows
 
 
 @checked
-def cast(cube: Cube, rig: Rig | None = None, lamp_powers: Reals | None = None) -> Iterator[Images]:
+def cast(
+    cube: Cube, rig: Rig | None = None, lamp_powers: Reals | None = None, *, light: Beams = "area"
+) -> Iterator[Images]:
     """Yield what the screen shows in each picture, ``(row, column, channel)`` float32 linear light, never clipped.
 
-    Pixels that are not on their screen are black; a beam that misses the cube shows the lamp's power.
+    A pixel shows the mean of the light over its area, and over its lamp's disc, at the points that all is judged by
+    (`lightcube.optics.light.judged`). Pixels that are not on their screen are black; a beam that misses the cube shows
+    the lamp's power.
 
     Parameters
     ----------
@@ -34,6 +33,8 @@ def cast(cube: Cube, rig: Rig | None = None, lamp_powers: Reals | None = None) -
         Lamps and screens; None = those that the cube was made for.
     lamp_powers
         ``(pairs, channels)``, of the rig's ``pairs``; None = the cube's.
+    light
+        ``"thin"``: the beam through each pixel's middle alone, as in the paper.
     """
     powers = cube.powers if lamp_powers is None else np.asarray(lamp_powers, np.float64)
     shape = len((rig or cube.rig).pairs), len(cube.extinction)
@@ -42,11 +43,17 @@ def cast(cube: Cube, rig: Rig | None = None, lamp_powers: Reals | None = None) -
         raise InputError(f"a rig of {colours} colours does not fit a cube of {shape[1]}: give one of as many")
     if powers.shape != shape:
         raise InputError(f"lamp powers for this rig have shape {shape}, not {powers.shape}: give one for each pair")
-    return _cast(columns_from_volume(cube.extinction), cube, rig or cube.rig, powers)
+    return _cast(columns_from_volume(cube.extinction), cube, rig or cube.rig, powers, light)
+
+
+def _cast(columns: Floats, cube: Cube, rig: Rig, powers: Reals, light: Beams) -> Iterator[Images]:
+    """Yield what `cast` does, of the cube's extinction as `columns_from_volume` lays it out."""
+    lit = rig if light == "thin" else judged(rig, cube.grid)
+    return shadows(columns, cube.grid, lit, powers[lit.pair])
 
 
 @checked
-def play(cube: Cube, angles_deg: Numbers | None = None, *, whole_shadow: bool = False) -> Images:
+def play(cube: Cube, angles_deg: Numbers | None = None, *, whole_shadow: bool = False, light: Beams = "area") -> Images:
     """What the screen shows, ``(picture, row, column, channel)`` float32 linear light, lamp included, never clipped.
 
     Parameters
@@ -56,20 +63,22 @@ def play(cube: Cube, angles_deg: Numbers | None = None, *, whole_shadow: bool = 
         pictures of an angle follow each other (`lightcube.forward.turning.moment`).
     whole_shadow
         Show the whole shadow and its surroundings instead of the picture, where the screen has no edges.
+    light
+        As `cast` takes it.
     """
-    return player(cube, whole_shadow=whole_shadow)(angles_deg)
+    return player(cube, whole_shadow=whole_shadow, light=light)(angles_deg)
 
 
 @checked
-def player(cube: Cube, *, whole_shadow: bool = False) -> Callable[[Numbers | None], Images]:
+def player(cube: Cube, *, whole_shadow: bool = False, light: Beams = "area") -> Callable[[Numbers | None], Images]:
     """Make a function of the angles that shows what `play` does, fast enough for a cube that is turned by hand.
 
     The cube is laid out for casting once, which takes as much memory again.
 
     Parameters
     ----------
-    whole_shadow
-        As `play` takes it.
+    whole_shadow, light
+        As `play` takes them.
     """
     columns = columns_from_volume(cube.extinction)
 
@@ -78,34 +87,6 @@ def player(cube: Cube, *, whole_shadow: bool = False) -> Callable[[Numbers | Non
             now, powers = cube.rig.whole(cube.grid) if whole_shadow else cube.rig, cube.powers
         else:
             now, powers = moment(cube, angles_deg, whole_shadow=whole_shadow)
-        return np.stack(list(_cast(columns, cube, now, powers)))
+        return np.stack(list(_cast(columns, cube, now, powers, light)))
 
     return show
-
-
-def _cast(columns: NDArray[np.floating], cube: Cube, rig: Rig, lamp_powers: Reals) -> Iterator[Images]:
-    """Yield what `cast` does, of the cube's extinction as `columns_from_volume` lays it out, a few views at a time."""
-    inside, channels = rig.inside, lamp_powers.shape[1]
-    all_inside = bool(np.all(inside))
-    powers, picture = lamp_powers[rig.pair], rig.sums.picture
-    begun = None
-    for batch in _batches(rig):
-        own = picture[batch]
-        matrix = Projector(cube.grid, rig.views.take(batch), None if all_inside else inside[own])
-        absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
-        light = shown_light(Mixture.of(rig, channels, views=batch), powers[batch], absorbance, rig.picture_shape)
-        if begun is not None:
-            light[0] += begun
-        if batch.stop < len(picture) and picture[batch.stop] == own[-1]:  # more views of the same picture follow
-            begun = light[0]
-            continue
-        begun = None
-        yield from light if all_inside else light * inside[own[0] : own[-1] + 1, ..., None]
-
-
-def _batches(rig: Rig) -> Iterator[slice]:
-    """A few views at a time: of pictures of one view each, or of one picture."""
-    starts = [0, len(rig)] if len(rig) == len(rig.views) else rig.starts.tolist()
-    for start, end in pairwise(starts):
-        for first in range(start, end, _BATCH):
-            yield slice(first, min(first + _BATCH, end))

@@ -209,24 +209,10 @@ def stage_pictures(path: str | Path) -> list[Path]:
 
 
 @checked
-def read_stage_targets(
-    path: str | Path, *, lamp_samples: int = 1, pixel_samples: int = 1, transfer: Transfer = "srgb"
-) -> tuple[Stage, Targets]:
-    """Read a stage file as `read_stage` does, and fit its pictures to their screens.
-
-    Parameters
-    ----------
-    lamp_samples, pixel_samples
-        As in `lightcube.optics.rig.Rig.sampled`.
-
-    Raises
-    ------
-    InputError
-        As from `read_stage`, and where a number of samples is out of its range.
-    """
+def read_stage_targets(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage, Targets]:
+    """Read a stage file, and raise as `read_stage` does, and fit its pictures to their screens."""
     stage, pictures, fits = read_stage(path, transfer=transfer)
-    rig = stage.rig().sampled(lamp=lamp_samples, pixel=pixel_samples)
-    return stage, fit(pictures, rig, fits)
+    return stage, fit(pictures, stage.rig(), fits)
 
 
 @contextmanager

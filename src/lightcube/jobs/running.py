@@ -8,25 +8,27 @@ from lightcube.events import Progress, Said, Tell
 from lightcube.jobs.partial import DiskStore
 from lightcube.scoring import metrics
 
-#: Seconds between two looks at the screen: one costs as much as half a pass.
-_LOOK_S = 1.0
+#: Seconds between two looks at the screen at least, and so many times as long as one took.
+_LOOK_S, _PATIENCE = 1.0, 10.0
 
 
 def run(job: Job, pieces: list[str], store: DiskStore, tell: Tell) -> bool:
     """Solve what is not finished of some pieces of a job; False where `tell` stopped it."""
     resumed, done = not store.is_empty(), store.names()
-    began, first, looked = time.monotonic(), -1.0, 0.0
+    began, first, next_look = time.monotonic(), -1.0, 0.0
 
     def watching(step: Step) -> bool:
-        nonlocal first, looked
+        nonlocal first, next_look
         if first < 0:
             first = step.done
             if resumed:
                 tell(_resumed(step, len(done.intersection(job.unit_names)), job.units))
         figures = {}
-        if step.shown is not None and time.monotonic() - looked > _LOOK_S:
+        looking = time.monotonic()
+        if step.shown is not None and looking > next_look:
             figures["PSNR"] = metrics.mean_psnr(step.shown(), job.targets, step.window)
-            looked = time.monotonic()
+            now = time.monotonic()
+            next_look = now + max(_LOOK_S, _PATIENCE * (now - looking))
         left = (time.monotonic() - began) * (1 - step.done) / (step.done - first) if step.done > first else None
         return bool(tell(Progress(round(step.done * step.iterations), step.iterations, figures, left)))
 

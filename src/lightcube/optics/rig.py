@@ -245,15 +245,17 @@ class Rig:
         return replace(self, views=views, stops=replace(self.stops, angle_deg=self.stops.angle_deg + angles_deg))
 
     @checked
-    def held(self, hold_deg: float, step_deg: float) -> Rig:
+    def held(self, hold_deg: float, step_deg: float, *, to_the_ends: bool = True) -> Rig:
         """Every picture at several angles within `hold_deg` degrees of its stop, at most `step_deg` apart, in a row.
+
+        They are those of `lightcube.optics.views.hold_offsets_deg`.
 
         Raises
         ------
         InputError
             Where `hold_deg` is negative, or wider than half the way to the nearest other stop of a screen.
         """
-        offsets = hold_offsets_deg(hold_deg, self.widest_hold_deg, step_deg)
+        offsets = hold_offsets_deg(hold_deg, self.widest_hold_deg, step_deg, to_the_ends=to_the_ends)
         if len(offsets) == 1:
             return self
         return self.take(np.repeat(np.arange(len(self)), len(offsets))).turned(np.tile(offsets, len(self)))
@@ -290,35 +292,33 @@ class Rig:
         stops = replace(moved.stops, angle_deg=now)
         return replace(moved, sums=replace(moved.sums, share=share), stops=stops), shown % len(self)
 
-    @checked
-    def sampled(self, *, lamp: int = 1, pixel: int = 1) -> Rig:
-        """Each view as several, whose mean is the light of a lamp's whole disc on a whole pixel.
+    def split(self, points: Sequence[Reals]) -> Rig:
+        """Each view as several, of which each has an equal share of its light.
 
         Parameters
         ----------
-        lamp
-            Points that the disc of a lamp with a size is sampled at, spread evenly over it like a sunflower's seeds
-            (H. Vogel, A better way to construct the sunflower head, 1979). The disc faces the cube's middle.
-        pixel
-            Points along each side of a pixel that it is averaged over; 1 = its middle.
+        points
+            For each view ``(count, 4)``: how far its pixels move right and down, in pixels, and where in the lamp's
+            disc, of radius 1, its light comes from. The disc faces the cube's middle; a lamp without one stays.
         """
-        if not 1 <= lamp <= 1024 or not 1 <= pixel <= 16:
-            raise InputError("take 1 to 1024 samples of a lamp's disc, and 1 to 16 along the side of a pixel")
-        seeds = [_seeds(*each, lamp) for each in zip(self.views.lamps, self.sums.disc_deg, strict=True)]
-        fine = (np.arange(pixel) + 0.5) / pixel - 0.5
-        down, right = (each.ravel() for each in np.meshgrid(fine, fine, indexing="ij"))
-        copies = np.array([len(each) * len(fine) ** 2 for each in seeds])
-        kept = np.repeat(np.arange(len(self.views)), copies)
-        copied = self._with_views(kept)
-        lamps = np.concatenate([np.repeat(each, len(fine) ** 2, axis=0) for each in seeds])
-        spread = np.concatenate([np.tile(np.stack([right, down], axis=1), (len(each), 1)) for each in seeds])
-        steps = copied.views.column_steps_mm, copied.views.row_steps_mm
-        origins_mm = copied.views.origins_mm + spread[:, :1] * steps[0] + spread[:, 1:] * steps[1]
-        share = copied.sums.share / copies[kept, None]
-        sums = replace(copied.sums, share=share, picture=self.sums.picture[kept])
-        if lamp > 1:
-            sums = replace(sums, disc_deg=np.zeros(len(kept)))
-        views = Views(lamps, origins_mm, *steps, self.picture_shape)
+        counts = np.array([len(each) for each in points])
+        kept = np.repeat(np.arange(len(self.views)), counts)
+        copied, moved = self._with_views(kept), np.concatenate(list(points))
+        views = copied.views
+        origins_mm = views.origins_mm + moved[:, :1] * views.column_steps_mm + moved[:, 1:2] * views.row_steps_mm
+        lamps = np.concatenate(
+            [
+                _in_disc(lamp, disc_deg, each[:, 2:])
+                for lamp, disc_deg, each in zip(self.views.lamps, self.sums.disc_deg, points, strict=True)
+            ]
+        )
+        sums = replace(
+            copied.sums,
+            share=copied.sums.share / counts[kept, None],
+            picture=self.sums.picture[kept],
+            disc_deg=np.zeros(len(kept)),
+        )
+        views = replace(views, lamps=lamps, origins_mm=origins_mm)
         return Rig(views, sums, copied.fading, copied.turning, self.stops, self.lamps, self.screens)
 
     @checked
@@ -414,17 +414,12 @@ def _taken(part: Any, chosen: Counts) -> Any:
     return replace(part, **{each.name: getattr(part, each.name)[chosen] for each in fields(part)})
 
 
-def _seeds(lamp: Reals, disc_deg: float, samples: int) -> Reals:
-    """Points of a lamp's disc, homogeneous, ``(samples, 4)``; the lamp itself where that is a point."""
-    if disc_deg == 0 or samples == 1:
-        return lamp[None]
-    number = np.arange(samples) + 0.5
-    radius = math.tan(math.radians(disc_deg / 2)) * np.sqrt(number / samples) * np.linalg.norm(lamp[:3])
-    turn = number * (math.pi * (3 - math.sqrt(5)))
+def _in_disc(lamp: Reals, disc_deg: float, places: Reals) -> Reals:
+    """Points of a lamp's disc, homogeneous, ``(count, 4)``, at `places` in a disc of radius 1."""
+    if disc_deg == 0:
+        return np.tile(lamp, (len(places), 1))
+    radius = math.tan(math.radians(disc_deg / 2)) * np.linalg.norm(lamp[:3])
     aside = np.cross(lamp[:3], (0.0, 0.0, 1.0) if np.hypot(lamp[0], lamp[1]) > abs(lamp[2]) else (1.0, 0.0, 0.0))
     beside = np.cross(lamp[:3], aside)
-    disc = sum(
-        np.outer(radius * wave(turn), way / np.linalg.norm(way)) for wave, way in ((np.cos, aside), (np.sin, beside))
-    )
-    disc -= np.mean(disc, axis=0)  # the mean of a few seeds is not quite the middle
-    return np.asarray(lamp + np.column_stack([disc, np.zeros(samples)]))
+    ways = np.stack([way / np.linalg.norm(way) for way in (aside, beside)])
+    return np.asarray(lamp + np.column_stack([radius * places @ ways, np.zeros(len(places))]))

@@ -95,7 +95,7 @@ def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Or
     """
     raised(targets.rig, grid)
     recipe = recipe or Recipe()
-    bound = Material(recipe.material.most(grid))
+    bound = Material(recipe.stuff.most(grid))
     drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0)
     draft, small = _draft(targets, grid)
     seen = _features(draft, _tiles(1, draft.rig.picture_shape)).reshape(len(targets), -1)

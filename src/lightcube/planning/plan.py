@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
+from lightcube.backward.mat import Mat
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.checks import check_fields, checked
@@ -122,7 +123,7 @@ def plan(
     n
         Voxels along the longest side of the cube.
     recipe
-        How it will be solved; None = ``Recipe()``.
+        How it will be solved; None = ``Recipe(mat=Mat())``.
     size_mm
         Length of that side.
     shape
@@ -155,7 +156,7 @@ def plan(
             f"a cube of {n} voxels with pictures {picture_width} of its width: give at least 1 voxel, and a width "
             "above 0 and at most 1.41"
         )
-    asked, table = recipe or Recipe(), turntable or Turntable()
+    asked, table = recipe or Recipe(mat=Mat()), turntable or Turntable()
 
     def predicted(width: float) -> Plan:
         grid, rig = _cube_for(pictures, shape or n, size_mm, table, width)
@@ -175,7 +176,7 @@ def plan(
 
 
 def plan_stage(
-    stage: Stage, pictures: Pictures, ways: Fit | tuple[Fit, ...] = "crop", recipe: Recipe | None = None, *, rig: Rig
+    stage: Stage, pictures: Pictures, ways: Fit | tuple[Fit, ...] = "crop", recipe: Recipe | None = None
 ) -> Plan:
     """The plan of a room that says all there is, so that nothing is chosen.
 
@@ -185,10 +186,9 @@ def plan_stage(
         As `lightcube.read_stage` gives them.
     recipe
         How it will be solved; None = ``Recipe()``.
-    rig
-        The stage's, or that with samples of its lamps and pixels.
     """
-    asked, targets = recipe or Recipe(), fitted(pictures, rig, ways)
+    asked, rig = recipe or Recipe(), stage.rig()
+    targets = fitted(pictures, rig, ways)
     made = Plan(pictures, targets, stage.grid, asked, ways, Prediction.unknown(len(targets)), stage=stage)
     return made.with_targets(targets) if is_measured(rig, stage.grid) and not made.impossible else made
 

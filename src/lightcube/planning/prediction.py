@@ -135,7 +135,7 @@ def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
     held(targets.rig, recipe, grid)
     small, small_grid = reduced(targets, grid, _width(targets, grid, hold_deg))
     width = max(small_grid.shape[1:])
-    bound = Material(recipe.material.most(grid))
+    bound = Material(recipe.stuff.most(grid))
     rehearsed = replace(recipe.by_display(PASSES), material=bound, hold_deg=_small_hold(targets, grid, hold_deg, width))
     cube = solving.solve(small, small_grid, rehearsed).cube
     shown = encode(np.stack(list(cast(cube))), small.transfer)

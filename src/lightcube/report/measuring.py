@@ -1,6 +1,6 @@
 """What a report says of a cube, measured: scores, pictures to look at, curves, disturbances, pre-flight."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ from lightcube.planning.consistency import advice, check
 from lightcube.planning.feasibility import doubtful
 from lightcube.planning.reachable import sentences
 from lightcube.scoring.between import Curve, curve
-from lightcube.scoring.metrics import check_same_views, score_pictures
+from lightcube.scoring.metrics import check_same_views, score
 from lightcube.scoring.robust import robust
 
 Levels = NDArray[np.uint8]
@@ -90,8 +90,11 @@ def measure(
     of = rest + (0 if between is None else len(between.angles_deg))
     left = robust(cube, targets, callback=lambda done, _: tell(of - rest + done, of))
     pictures: dict[int, list[Levels]] = {number: [] for number in chosen(targets)}
-    shown = cast(cube)
-    scores = score_pictures(_kept(shown, targets, pictures), targets)
+    scores = score(cube, targets)
+    for number, picture in enumerate(cast(cube)):
+        if number in pictures:
+            rows, columns = targets.rig.stops.window[number]
+            pictures[number] = [each[:rows, :columns] for each in triple(picture, targets, number)]
     tell(of, of)
     facts = check(targets, cube.grid) if cube.rig.is_thin and cube.rig.elevation_deg is not None else None
     said = sentences(targets) if facts is None else advice(facts)
@@ -105,17 +108,6 @@ def chosen(targets: Targets, most: int = MOST) -> list[int]:
     rows, columns = targets.rig.picture_shape
     room = min(len(targets), max(1, most // (rows * columns)))
     return [int(number) for number in np.unique(np.linspace(0, len(targets) - 1, room).round())]
-
-
-def _kept(
-    shown: Iterable[NDArray[np.float32]], targets: Targets, pictures: dict[int, list[Levels]]
-) -> Iterator[NDArray[np.float32]]:
-    """Yield pictures as they come, and keep those to be looked at."""
-    for number, picture in enumerate(shown):
-        if number in pictures:
-            rows, columns = targets.rig.stops.window[number]
-            pictures[number] = [each[:rows, :columns] for each in triple(picture, targets, number)]
-        yield picture
 
 
 def _apart(cube: Cube, targets: Targets) -> int | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,15 @@ from numpy.typing import NDArray
 from skimage import color
 from skimage import metrics as similarities
 
+from lightcube.backward.mat import judged_pixels, widened
+from lightcube.backward.recipe import recipe_of
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
-from lightcube.optics.arrays import Images
+from lightcube.optics.arrays import Images, Reals
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
-from lightcube.optics.transfer import encode
+from lightcube.optics.light import judged_one_by_one
+from lightcube.optics.transfer import Transfer, encode
 from lightcube.pictures.fitting import targets_of
 from lightcube.pictures.targets import Targets
 
@@ -33,7 +37,11 @@ def psnr(shown: Display, wanted: Display, weight: Display) -> float:
     ``-10 log10(mean squared difference)``, pixels weighted by `weight` ``(row, column)``.
     """
     squares = np.mean((shown.astype(np.float64) - wanted) ** 2, axis=-1)
-    error = float(np.sum(weight * squares) / np.sum(weight))
+    return psnr_of(float(np.sum(weight * squares) / np.sum(weight)))
+
+
+def psnr_of(error: float) -> float:
+    """PSNR in dB, at most 100, of a mean squared difference of display values."""
     return BEST_DB if error <= 10 ** (-BEST_DB / 10) else -10 * float(np.log10(error))
 
 
@@ -63,7 +71,10 @@ def delta_e(shown: Display, wanted: Display, weight: Display) -> float:
 
 @checked
 def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
-    """Compare what the cube really casts at its stops with what was wanted.
+    """Compare what a wall shows of the cube at its stops with what was wanted.
+
+    A wall's pixel is the mean of the light over its area (`lightcube.optics.light`). Beside it stand the thin beams
+    through the pixels' middles, which the paper has, and the **grain**: how much light varies inside pixels.
 
     Parameters
     ----------
@@ -74,7 +85,10 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
     Returns
     -------
     ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``pictures``, a list with ``name, angle_deg, psnr, ssim,
-    delta_e`` of each.
+    delta_e`` of each; ``thin_psnr_mean, thin_psnr_min`` of the thin beams; ``grain_rms``, how far a pixel's beams are
+    off the pixel's value (root of the mean square, display values), and ``grain_db``, how much lower the PSNR of all
+    beams one by one is than that of their means; and where the pictures have mats ``mat_rms``, how far those are off
+    their tone (root of the mean square, display values).
 
     Raises
     ------
@@ -83,7 +97,67 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
     """
     wanted = targets_of(cube) if targets is None else targets
     check_same_views(cube, wanted)
-    return score_pictures(cast(cube), wanted)
+    seen = Seen.of(cube, wanted.transfer)
+    figures = score_pictures(seen.light, wanted)
+    thin = [picture["psnr"] for picture in score_pictures(cast(cube, light="thin"), wanted)["pictures"]]
+    beams = [psnr_of(error) for error in seen.errors(encode(wanted.pictures, wanted.transfer), wanted.weight)]
+    grain = float(np.mean(seen.errors(encode(seen.light, wanted.transfer), wanted.weight)))
+    return {
+        **figures,
+        "thin_psnr_mean": float(np.mean(thin)),
+        "thin_psnr_min": float(np.min(thin)),
+        "grain_rms": float(np.sqrt(max(grain, 0.0))),
+        "grain_db": max(figures["psnr_mean"] - float(np.mean(beams)), 0.0),
+        **_mat(cube),
+    }
+
+
+def _mat(cube: Cube) -> dict[str, float]:
+    """How far the mats of a cube's pictures are off their tone, where they have any."""
+    mat = recipe_of(cube).mat
+    chosen = None if mat is None else judged_pixels(cube.rig, cube.grid, mat)
+    if mat is None or chosen is None or not np.any(chosen):
+        return {}
+    error = 0.0
+    for picture, weight in zip(cast(cube, widened(cube.rig, cube.grid, mat)), chosen, strict=True):
+        error += float(np.sum(weight[..., None] * (encode(picture, cube.transfer) - mat.tone) ** 2))
+    return {"mat_rms": float(np.sqrt(error / (np.sum(chosen) * len(cube.extinction))))}
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What a wall shows of a cube at its stops, and within pixels, ``(picture, row, column, channel)``.
+
+    Parameters
+    ----------
+    light
+        The mean over a pixel, linear light.
+    display, squares
+        The mean of its beams' display values, and of their squares.
+    """
+
+    light: Images
+    display: Display
+    squares: Display
+
+    @classmethod
+    def of(cls, cube: Cube, transfer: Transfer) -> Seen:
+        """Cast a cube at all points of its pixels."""
+        rigs = judged_one_by_one(cube.rig, cube.grid)
+        shape = len(cube.rig), *cube.rig.picture_shape, len(cube.extinction)
+        sums = np.zeros((3, *shape))
+        for rig in rigs:
+            for index, picture in enumerate(cast(cube, rig, light="thin")):
+                display = encode(picture, transfer)
+                for total, value in zip(sums, (picture, display, display.astype(np.float64) ** 2), strict=True):
+                    total[index] += value
+        light, display, squares = sums / len(rigs)
+        return cls(light.astype(np.float32), display, squares)
+
+    def errors(self, wanted: Display, weight: Display) -> Reals:
+        """Of each picture, the mean squared difference of all its beams, one by one, from display values `wanted`."""
+        off = np.mean(self.squares - 2 * wanted * self.display + wanted.astype(np.float64) ** 2, axis=-1)
+        return np.asarray(np.sum(weight * off, axis=(1, 2)) / np.sum(weight, axis=(1, 2)))
 
 
 def score_pictures(shown: Iterable[Images], targets: Targets) -> dict[str, Any]:

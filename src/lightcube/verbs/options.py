@@ -1,12 +1,14 @@
 """What may be said of a cube before it is solved."""
 
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from lightcube.backward.mat import TONES, Mat
 from lightcube.backward.recipe import Powers, Quality, Recipe
 from lightcube.errors import InputError
+from lightcube.optics.light import Beams, Light
 from lightcube.optics.material import Material
 from lightcube.optics.tables import power_bounds
 from lightcube.optics.transfer import Transfer
@@ -15,6 +17,8 @@ from lightcube.pictures.turntable import Turntable
 from lightcube.planning.plan import Arrangement
 from lightcube.solvers import METHODS
 
+#: What surrounds the pictures: a mat of a tone, or whatever suits them best.
+Surround = Literal["dark", "grey", "light", "none"]
 #: Voxels along the longest side of a cube, unless something else is said.
 DEFAULT_N = 128
 
@@ -54,7 +58,7 @@ class Options:
         Arrangement, Option("Whether pictures stand as given, or in the order that gives the best ones.")
     ] = "given"
     shift: Annotated[int, Option("Let pictures stand up to so many pixels higher, lower or aside, in turn.", 0)] = 0
-    quality: Annotated[Quality | None, Option("At most 30, 200 or 1000 passes.  [default: normal]")] = None
+    quality: Annotated[Quality | None, Option("At most 30, 200 or 400 passes.  [default: normal]")] = None
     method: Annotated[str, Option(f"One of {', '.join(METHODS)}.")] = "display"
     iterations: Annotated[int | None, Option("At most so many passes, instead of --quality.")] = None
     powers: Annotated[
@@ -68,12 +72,18 @@ class Options:
         Option("Degrees around its stop over which each picture shall stand; default what costs below 1 dB."),
     ] = None
     black: Annotated[float | None, Option("Display value, 0.002 to 1, that the screen cannot be darker than.")] = None
-    max_extinction: Annotated[float | None, Option("Largest extinction of the material, 1/mm; default none.")] = None
+    max_extinction: Annotated[
+        float | None,
+        Option("Largest extinction of the material, 1/mm; default absorbs a factor e along a voxel, thin beams: none."),
+    ] = None
+    mat: Annotated[Surround | None, Option("Calm surround of each picture.  [default: dark; thin beams: none]")] = None
     transfer: Annotated[Transfer, Option("How picture values become linear light.")] = "srgb"
-    lamp_samples: Annotated[
-        int, Option("Points at which a stage's lamps of a size are sampled, for soft shadows.", 1)
-    ] = 1
-    pixel_samples: Annotated[int, Option("Points along a side that a stage's pixels are averaged over.", 1)] = 1
+    light: Annotated[
+        Beams | None, Option("Whether light is averaged over pixels or, as in the paper, thin beams.  [default: area]")
+    ] = None
+    points: Annotated[
+        int | None, Option("Average over so many points of each pixel.  [default: 13, level 7; best: 34, 15]", 1)
+    ] = None
 
     @property
     def voxels(self) -> tuple[int, int, int]:
@@ -120,6 +130,9 @@ class Options:
             "--lamp-max": self.lamp_max,
             "--hold-deg": self.hold_deg,
             "--shift": self.shift or None,
+            "--light": None if self.light == "thin" else self.light,
+            "--points": self.points,
+            "--mat": None if self.mat == "none" else self.mat,
         }
         contradiction = [name for name, value in said.items() if value is not None]
         if contradiction:
@@ -128,6 +141,7 @@ class Options:
                 "wide as the cube, no hold): leave out one of the two"
             )
         level = replace(self, elevation_deg=0.0, span_deg=180.0, hold_deg=0.0, lamp_power=1.0, picture_width=1.0)
+        level = replace(level, light="thin")
         return replace(level, shape=self.voxels, n=None)
 
     @property
@@ -142,9 +156,20 @@ class Options:
             "powers": self.powers,
             "hold_deg": self.hold_deg,
             "material": None if self.max_extinction is None else Material(self.max_extinction),
+            "light": self._beams,
+            "mat": Mat(TONES[self.mat]) if self.mat in TONES else None,
             "passes": self.iterations,
         }
         said = {name: value for name, value in said.items() if value is not None}
         if self.iterations is None and self.method == "display":
             return Recipe.of_quality(self.quality or "normal", **said)
         return Recipe(**said)
+
+    @property
+    def _beams(self) -> Light | None:
+        """How fine light is, where that is said."""
+        if self.light == "thin" and self.points is not None:
+            raise InputError(f"--light thin is one beam a pixel, not --points {self.points}: leave out one of the two")
+        if self.light == "thin":
+            return Light.thin()
+        return None if self.points is None else Light(self.points, self.points)

@@ -13,8 +13,7 @@ from lightcube.pictures.targets import Targets
 
 def _of_stage(path: str, cube: Cube) -> Targets:
     """The pictures of a stage file, as wanted of a cube that was made on it; `InputError` where it was on another."""
-    made = {name: int(cube.provenance.get(name, 1)) for name in ("lamp_samples", "pixel_samples")}
-    _, targets = io.read_stage_targets(path, transfer=cube.transfer, **made)
+    _, targets = io.read_stage_targets(path, transfer=cube.transfer)
     rig = targets.rig
     same = rig.picture_shape == cube.rig.picture_shape and len(rig.views) == len(cube.rig.views)
     if not (same and np.allclose(rig.views.lamps, cube.rig.views.lamps)):

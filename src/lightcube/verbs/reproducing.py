@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.backward.job import Job
+from lightcube.backward.mat import TONES, Mat
 from lightcube.backward.needs import MEMORY, fewest_units
-from lightcube.backward.recipe import QUALITIES, Recipe, recipe_of
+from lightcube.backward.recipe import QUALITIES, Quality, Recipe, recipe_of
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
+from lightcube.optics.light import Light
 from lightcube.optics.rig import turntable
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK
@@ -105,9 +107,6 @@ def _lamp(cube: Cube) -> Iterator[str]:
 
 def _stage_options(cube: Cube) -> Iterator[str]:
     """What the command line says beside a stage's file."""
-    for name in ("lamp_samples", "pixel_samples"):
-        if name in cube.provenance:
-            yield from (f"--{name.replace('_', '-')}", str(cube.provenance[name]))
     if cube.hold_deg:
         yield from ("--hold-deg", _number(cube.hold_deg))
 
@@ -119,19 +118,54 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from ("--method", made.solver.name)
     if made.powers != usual.powers:
         yield from ("--powers", made.powers)
-    if made.material != usual.material:
-        yield from ("--max-extinction", _number(made.material.most(cube.grid)))
-    yield from _passes(cube.provenance, made.solver.name, command)
+    if made.stuff != usual.stuff:
+        yield from ("--max-extinction", _number(made.stuff.most(cube.grid)))
+    yield from _mat(made, command)
+    quality = _quality(made) if "passes" in cube.provenance else None
+    yield from _light(made.beams, quality, command)
+    if quality is None:
+        yield from _passes(cube.provenance, command)
+    elif quality != "normal":
+        yield from ("--quality", quality)
 
 
-def _passes(made: Mapping[str, Any], method: str, command: Command) -> Iterator[str]:
-    """How many passes at most, and which PSNR is enough; the number of passes itself where no more is known."""
+def _mat(made: Recipe, command: Command) -> Iterator[str]:
+    """What surrounds the pictures, where that is not as usual."""
+    usual = None if made.beams.is_thin or not made.solver.chooses_lamps else Mat()
+    if made.mat == usual:
+        return
+    names = [name for name, tone in TONES.items() if made.mat == Mat(tone)]
+    if made.mat is not None and not names:
+        command.doubts.append(f"No option says a mat of {made.mat!r}.")
+        return
+    yield from ("--mat", names[0] if names else "none")
+
+
+def _quality(made: Recipe) -> Quality | None:
+    """The quality whose passes a cube was solved by."""
+    meant = {quality: (passes, enough) for quality, (passes, enough, _) in QUALITIES.items()}
+    found = [quality for quality, asked in meant.items() if asked == (made.passes, made.enough_db)]
+    return found[0] if found and made.method == "display" else None
+
+
+def _light(light: Light, quality: Quality | None, command: Command) -> Iterator[str]:
+    """How fine light is, where nothing that is said already says it."""
+    if light == (QUALITIES[quality][2] if quality else Light()):
+        return
+    if light.is_thin:
+        yield from ("--light", "thin")
+        return
+    if light.points != light.row_points:
+        command.doubts.append(
+            f"No option says {light.points} points a pixel, and {light.row_points} where light is level."
+        )
+    yield from ("--points", str(light.points))
+
+
+def _passes(made: Mapping[str, Any], command: Command) -> Iterator[str]:
+    """How many passes at most; the number of passes itself where no more is known."""
     if "passes" in made:
         passes, enough = made["passes"], made.get("enough_db") or math.inf
-        for quality, meant in QUALITIES.items():
-            if method == "display" and meant == (passes, enough):
-                yield from () if quality == "normal" else ("--quality", quality)
-                return
         if enough < math.inf:
             command.doubts.append(
                 f"No option says at most {passes} passes, or fewer where a PSNR of {enough:g} dB is reached."

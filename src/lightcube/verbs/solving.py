@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from lightcube import io
 from lightcube.backward.job import Job
+from lightcube.backward.mat import Mat
 from lightcube.backward.needs import expected_passes, job_memory, memory_needed, seconds_a_pass
 from lightcube.backward.solving import make_job
 from lightcube.backward.units import most_units
@@ -50,16 +51,15 @@ def _read_stage(source: str, options: Options) -> Callable[[], Plan]:
             option = name.replace("_", "-")
             raise InputError(f"--{option} is not for a stage, and {source} is one that says all there is: leave it out")
     stage, pictures, ways = io.read_stage(source, transfer=options.transfer)
-    rig = stage.rig().sampled(lamp=options.lamp_samples, pixel=options.pixel_samples)
-    return partial(plan_stage, stage, pictures, ways, recipe, rig=rig)
+    return partial(plan_stage, stage, pictures, ways, recipe)
 
 
 def _read_pictures(source: str, options: Options) -> Callable[[], Plan]:
     """Read pictures, which become as wide and are held as long as is good for them where nothing else is said."""
     options = options.as_in_the_paper() if options.paper else options
-    if max(options.lamp_samples, options.pixel_samples) > 1:
-        raise InputError("--lamp-samples and --pixel-samples are for a stage: describe lamp and screen in a stage file")
-    recipe, shape, turntable = options.recipe, options.voxels, options.turntable
+    shape, turntable, recipe = options.voxels, options.turntable, options.recipe
+    if options.mat is None and recipe.solver.chooses_lamps and not recipe.beams.is_thin:
+        recipe = replace(recipe, mat=Mat())
     check_memory(memory_needed(recipe.solver, Grid(shape), (1, 1), 1, units=3))
     return partial(
         plan,
@@ -86,12 +86,13 @@ def another_order(planned: Plan) -> "Order | None":
     return best_order(planned.targets, planned.grid, planned.recipe)
 
 
-def job(planned: Plan, options: Options, *, memory: int | None = None, units: int | None = None) -> Job:
+def job(planned: Plan, *, memory: int | None = None, units: int | None = None) -> Job:
     """Settle all that decides the cube; `InputError` where it cannot be, or does not fit into `memory` bytes."""
     if planned.impossible:
         raise InputError(f"on this stage {planned.impossible[0]}")
-    provenance = {**_origin(planned), **_samples(options)}
-    made = make_job(planned.targets, planned.grid, planned.recipe, units=units, memory=memory, provenance=provenance)
+    made = make_job(
+        planned.targets, planned.grid, planned.recipe, units=units, memory=memory, provenance=_origin(planned)
+    )
     needed = job_memory(made)
     if memory is not None and needed > memory:
         raise InputError(
@@ -113,11 +114,6 @@ def _origin(planned: Plan) -> dict[str, Any]:
     if planned.order is not None:
         known["order"] = [int(picture) for picture in planned.order.pictures]
     return known
-
-
-def _samples(options: Options) -> dict[str, int]:
-    """How finely lamps and pixels were sampled, where they were."""
-    return {name: value for name in ("lamp_samples", "pixel_samples") if (value := getattr(options, name)) > 1}
 
 
 def divided(made: Job, output: str, workers: int, memory: int | None = None) -> Job:

@@ -7,6 +7,7 @@ import numpy as np
 
 from lightcube.backward.problem import held
 from lightcube.jobs.publishing import Published
+from lightcube.optics.light import Beams
 from lightcube.optics.rig import Rig
 from lightcube.optics.stage import Stage
 from lightcube.optics.tables import POWER_MOST
@@ -92,7 +93,12 @@ def in_short(planned: Plan, order: "Order | None") -> list[str]:
     if hold_deg:
         angles = len(held(planned.targets.rig, planned.recipe, planned.grid)) // len(planned.targets)
         lines.append(f"held {hold_deg:g} degrees either way: {angles} angles a picture, and as many times the work")
-    return [*lines, *gain(planned, order), *planned.doubtful, *unsampled(planned.targets.rig)]
+    return [
+        *lines,
+        *gain(planned, order),
+        *planned.doubtful,
+        *unsampled(planned.targets.rig, "thin" if planned.recipe.beams.is_thin else "area"),
+    ]
 
 
 def _wanted(planned: Plan) -> str:
@@ -110,12 +116,12 @@ def _wanted(planned: Plan) -> str:
     return ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items()) + views
 
 
-def unsampled(rig: Rig) -> list[str]:
-    """A sentence where lamps have a size that is not minded."""
-    if not np.any(rig.sums.disc_deg):
+def unsampled(rig: Rig, light: Beams) -> list[str]:
+    """A sentence where lamps have a size that thin beams do not mind."""
+    if light != "thin" or not np.any(rig.sums.disc_deg):
         return []
     names = dict.fromkeys(rig.lamps.names[lamp] for lamp in rig.sums.lamp[rig.sums.disc_deg > 0])
-    return [f"the size of lamp {', '.join(map(repr, names))} is not minded: --lamp-samples 16 does"]
+    return [f"thin beams do not mind the size of lamp {', '.join(map(repr, names))}: leave out --light thin"]
 
 
 def expected(planned: Plan) -> str:

@@ -1,0 +1,193 @@
+"""Light on areas: a pixel shows the mean of the light over its square, and over its lamp's disc where that has a size.
+
+One beam through a pixel's middle is the paper's model, *thin*; a wall, a camera and an eye see means. Means are taken
+over points, each of which is a view of its own: the same room with the pixels moved by a fraction of their size.
+
+Points are a lattice of rank 1, ``((i + 1/2) / N, ((g i + s) mod N + 1/2) / N)`` for i = 0 ... N - 1, with the whole
+numbers g and s of least centred discrepancy: the error of a mean is bounded by that times how much the light varies
+(F. J. Hickernell, A generalized discrepancy and quadrature error bound, Math. Comp. 67 (1998) 299-322). How near cubes
+come to their pictures follows it closely (docs/light.md). Where the lamp is level and a pixel is exactly one slice
+high, light does not change from the bottom of a pixel to its top, and points lie side by side instead.
+
+What is cast is judged at other points than any that a cube is solved for: a cube does best where it is looked at.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+
+from lightcube.errors import InputError
+from lightcube.optics.arrays import Counts, Reals, locked
+from lightcube.optics.checks import check_fields
+from lightcube.optics.grid import PARALLEL, Grid
+from lightcube.optics.rig import Rig
+
+#: Means over areas, or the one beam through each pixel's middle.
+Beams = Literal["area", "thin"]
+#: Points of a pixel that what is cast is judged at: a Fibonacci lattice; side by side; and of a lamp's disc.
+JUDGE, JUDGE_ROW, JUDGE_DISC = 55, 16, 16
+_JUDGE_STEP = 34
+#: No more points are taken of a pixel.
+MOST_POINTS = 1024
+#: Lattices of more points are chosen among so many.
+_TRIED = 2048
+#: The part of a golden turn: what the seeds of a sunflower lie apart.
+_GOLDEN = math.pi * (3 - math.sqrt(5))
+
+
+@dataclass(frozen=True)
+class Light:
+    """How finely light is averaged over pixels, and over lamps that have a size, where a cube is solved.
+
+    Parameters
+    ----------
+    points
+        Of each pixel, 1 to 1024; 1 = the beam through its middle.
+    row_points
+        Where the lamp is level and a pixel is exactly one slice high: so many along its row. An odd multiple of 16
+        would have the points that all is judged by, and is one more.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> lc.Light(), lc.Light.thin().is_thin
+    (Light(points=13, row_points=7), True)
+    """
+
+    points: int = 13
+    row_points: int = 7
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        for count in (self.points, self.row_points):
+            if not 1 <= count <= MOST_POINTS:
+                raise InputError(f"a pixel is averaged over 1 to {MOST_POINTS} points, not {count}")
+
+    @classmethod
+    def thin(cls) -> Light:
+        """One beam through the middle of each pixel, from the middle of each lamp: the paper's model."""
+        return cls(1, 1)
+
+    @property
+    def is_thin(self) -> bool:
+        """Whether there is one beam a pixel."""
+        return self.points == self.row_points == 1
+
+
+def sampled(rig: Rig, grid: Grid, light: Light) -> Rig:
+    """Each view as several, whose mean is its light over areas; where light is thin, the rig as it is.
+
+    Parameters
+    ----------
+    grid
+        The cube in whose slices pixels may be one high.
+    """
+    if light.is_thin:
+        return rig
+    if is_in_slices(rig, grid):
+        return rig.split([_bare(_unlike_the_judge(light.row_points))] * len(rig.views))
+    points, disc = lattice(light.points), seeds(light.points)
+    soft = np.hstack([points, disc[_stirred(light.points)]])
+    return rig.split([soft if disc_deg else _bare(points) for disc_deg in rig.sums.disc_deg])
+
+
+def judged(rig: Rig, grid: Grid) -> Rig:
+    """Each view as those that what is cast is judged by: 55 points a pixel, 16 in a row, times 16 of a lamp's disc."""
+    return _judged(rig, judge_points(rig, grid))
+
+
+def judged_one_by_one(rig: Rig, grid: Grid) -> list[Rig]:
+    """The rig at each of the points of a pixel that it is judged by: the mean of their pictures is `judged`'s."""
+    return [_judged(rig, point[None]) for point in judge_points(rig, grid)]
+
+
+def _judged(rig: Rig, points: Reals) -> Rig:
+    soft = np.hstack([np.repeat(points, JUDGE_DISC, axis=0), np.tile(seeds(JUDGE_DISC), (len(points), 1))])
+    return rig.split([soft if disc_deg else _bare(points) for disc_deg in rig.sums.disc_deg])
+
+
+def judge_points(rig: Rig, grid: Grid) -> Reals:
+    """``(55, 2)`` or, in a row, ``(16, 2)``: right and down from a pixel's middle, in pixels."""
+    return side_by_side(JUDGE_ROW) if is_in_slices(rig, grid) else _rank_1(JUDGE, _JUDGE_STEP, 0)
+
+
+def is_in_slices(rig: Rig, grid: Grid) -> bool:
+    """Whether all light is parallel, level, without a disc, and each pixel as high as the slice that it is before."""
+    views, side = rig.views, grid.voxel_mm
+    rows, _ = views.picture_shape
+    level = np.abs(views.lamps[:, 2]) < PARALLEL * np.linalg.norm(views.lamps[:, :3], axis=1)
+    upright = np.all(np.abs(views.row_steps_mm - np.array([0.0, 0.0, -side])) < 1e-9 * side, axis=1)
+    upright &= np.abs(views.column_steps_mm[:, 2]) < 1e-9 * side
+    lowest = views.origins_mm[:, 2] / side - (rows - 1) / 2 + grid.shape[0] / 2
+    between = np.abs(np.remainder(lowest, 1) - 0.5) < 1e-9
+    return bool(np.all((views.lamps[:, 3] == 0) & level & upright & between & (rig.sums.disc_deg == 0)))
+
+
+def side_by_side(count: int) -> Reals:
+    """``(count, 2)``: midpoints along a pixel's row."""
+    return np.stack([(np.arange(count) + 0.5) / count - 0.5, np.zeros(count)], axis=1)
+
+
+@lru_cache(maxsize=64)
+def lattice(count: int) -> Reals:
+    """``(count, 2)``: points of a pixel, right and down from its middle, of least discrepancy; none of the judge's."""
+    if count == 1:
+        return locked(np.zeros((1, 2)))
+    steps = [step for step in range(1, count) if math.gcd(step, count) == 1] or [1]
+    pairs = [(step, start) for step in steps for start in range(count)]
+    pairs = pairs[:: max(1, len(pairs) // _TRIED)]
+    judge = {tuple(point) for point in np.round(_rank_1(JUDGE, _JUDGE_STEP, 0), 9)}
+    best = math.inf, np.zeros((count, 2))
+    for step, start in pairs:
+        points = _rank_1(count, step, start)
+        discrepancy = _centred_discrepancy(points)
+        if discrepancy < best[0] - 1e-12 and not judge.intersection(map(tuple, np.round(points, 9))):
+            best = discrepancy, points
+    return locked(best[1])
+
+
+def seeds(count: int) -> Reals:
+    """``(count, 2)``: points spread evenly over a disc of radius 1, like a sunflower's seeds; their mean is its middle.
+
+    H. Vogel, A better way to construct the sunflower head, Math. Biosciences 44 (1979) 179-189.
+    """
+    number = np.arange(count) + 0.5
+    radius, turn = np.sqrt(number / count), number * _GOLDEN
+    disc = radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    return np.asarray(disc - np.mean(disc, axis=0))
+
+
+def _rank_1(count: int, step: int, start: int) -> Reals:
+    """Points of a lattice of rank 1 about 0, ``(count, 2)``."""
+    number = np.arange(count)
+    return np.stack([number + 0.5, (step * number + start) % count + 0.5], axis=1) / count - 0.5
+
+
+def _centred_discrepancy(points: Reals) -> float:
+    """The square of the centred discrepancy of points in ``[-1/2, 1/2]^2`` (Hickernell's equation 5.1c)."""
+    away, count = np.abs(points), len(points)
+    apart = np.abs(points[:, None] - points)
+    one = np.prod(1 + (away - away**2) / 2, axis=1).sum()
+    two = np.prod(1 + (away[:, None] + away - apart) / 2, axis=2).sum()
+    return float((13 / 12) ** 2 - 2 / count * one + two / count**2)
+
+
+def _stirred(count: int) -> Counts:
+    """An order of a disc's seeds in which points of a pixel that are neighbours have seeds at every distance."""
+    step = next(step for step in range(max(1, round(count * 0.382)), 2 * count + 2) if math.gcd(step, count) == 1)
+    return step * np.arange(count) % count
+
+
+def _unlike_the_judge(count: int) -> Reals:
+    """Midpoints along a row; one more of them where the judge's would be among them."""
+    return side_by_side(count + 1 if count % (2 * JUDGE_ROW) == JUDGE_ROW else count)
+
+
+def _bare(points: Reals) -> Reals:
+    """Points of pixels under the middle of a lamp."""
+    return np.hstack([points, np.zeros_like(points)])

@@ -1,0 +1,17 @@
+"""The paper's thin beams, one through the middle of each pixel: what is exact is known of those."""
+
+from functools import partial
+from typing import Any
+
+from lightcube.backward.recipe import Recipe
+from lightcube.forward import casting
+from lightcube.optics.light import Light
+
+cast = partial(casting.cast, light="thin")
+play = partial(casting.play, light="thin")
+player = partial(casting.player, light="thin")
+
+
+def thin_recipe(**options: Any) -> Recipe:
+    """A recipe of thin beams."""
+    return Recipe(**{"light": Light.thin()} | options)
