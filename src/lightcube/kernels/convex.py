@@ -31,7 +31,12 @@ def _run(rows: int, columns: int) -> int:
 @compiled
 def _repeat(few: Array, many: Array) -> None:
     """Fill `many` with copies of `few`."""
-    many.reshape(-1, len(few))[:] = few
+    done = min(len(few), len(many))
+    many[:done] = few[:done]
+    while done < len(many):  # twice as many each time: long copies are quick
+        more = min(done, len(many) - done)
+        many[done : done + more] = many[:more]
+        done += more
 
 
 @compiled
