@@ -27,8 +27,7 @@ def step(
     lines = max(1, min(_RUN // columns, rows // _PARTS))
     patterns = np.tile(ahead, lines), np.tile(stride, lines)
     sums = np.zeros((_PARTS, lines * columns))
-    flat = (each.reshape(-1) for each in (x, before, slopes, steps))
-    tasks.run(_step, _PARTS, x.size, rows, *flat, *patterns, lower, upper, sums)
+    tasks.run(_step, _PARTS, x.size, x, before, slopes, steps, *patterns, lower, upper, sums)
     return added(added(sums).reshape(lines, columns))
 
 
@@ -36,7 +35,6 @@ def step(
 def _step(
     first: int,
     last: int,
-    rows: int,
     x: Array,
     before: Array,
     slopes: Array,
@@ -47,12 +45,13 @@ def _step(
     upper: float,
     sums: Array,
 ) -> None:
-    size = len(x)
+    rows, columns = x.shape
+    now, old, pull, length = x.reshape(-1), before.reshape(-1), slopes.reshape(-1), steps.reshape(-1)
     for part in range(first, last):
-        stop = (part + 1) * rows // _PARTS * (size // rows)
-        for start in range(part * rows // _PARTS * (size // rows), stop, len(ahead)):
+        stop = (part + 1) * rows // _PARTS * columns
+        for start in range(part * rows // _PARTS * columns, stop, len(ahead)):
             here = slice(start, min(start + len(ahead), stop))
-            _step_run(x[here], before[here], slopes[here], steps[here], ahead, stride, lower, upper, sums[part])
+            _step_run(now[here], old[here], pull[here], length[here], ahead, stride, lower, upper, sums[part])
 
 
 @compiled(error_model="numpy")  # else a division could end in an error, which no vector can
