@@ -16,16 +16,19 @@ if not INTERPRETED:
 def some_views(
     counts: tuple[int, ...], channels: int, pixels: int, dtype: str, kind: str
 ) -> tuple[Mixture, np.ndarray]:
-    """A mixture whose pixels and views are all different, whose views are, or whose views are alike; and absorbance."""
+    """A mixture whose pixels differ, but for the first, or whose views do, or whose views are alike; and absorbance."""
     random = np.random.default_rng(pixels)
     views = sum(counts)
     shares = random.uniform(0.05, 1, (views, channels))
     light, shadow = random.uniform(0.2, 1.5, (views, pixels)), random.uniform(0, 1, (views, pixels))
-    if kind != "pixels":
+    if kind == "views":
         light, shadow = light[:, :1], shadow[:, :1]
-    if kind == "alike":
+    elif kind == "alike":
+        light, shadow = light[:, :1], shadow[:, :1]
         shares[:], light[:], shadow[:] = 1 / 7, 1, 1
-        shares[-1] = light[1] = shadow[-2] = 0.5  # but for these
+        shares[-1, -1] = light[-3] = shadow[1] = 0.5  # but for these
+    else:
+        shares[:], light[:, 0], shadow[:, 0] = shares[0], light[0, 0], shadow[0, 0]
     numbers = (np.ascontiguousarray(each, dtype) for each in (shares, light, shadow))
     absorbance = random.exponential(2.0, (views, pixels * channels)).astype(dtype)
     return Mixture(np.cumsum([0, *counts]), *numbers), absorbance

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lightcube.kernels import display
 from lightcube.kernels import objective as kernels
 from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.transfer import encode
@@ -152,6 +153,28 @@ def test_no_second_derivative_exceeds_its_bound(
             least = min(least, float(gap[0] / diagonal[:, entry].max()))
     assert above > 0  # it is not convex
     assert room is None or least < 0.05  # and the bounds are near somewhere
+
+
+def test_bounds_are_what_their_formula_says() -> None:
+    """A view counts as a part of all light on the screen, whichever lamp it has."""
+    sums, mixture = random_sums()
+    screen, absorbance, lamp = some_screen((sums, mixture))
+    found = curved(screen, absorbance, lamp).reshape(-1, ENTRIES)
+    colours, pixels = np.arange(ENTRIES) % CHANNELS, np.arange(ENTRIES) // CHANNELS
+    full = (np.exp(lamp)[sums.lamp] * mixture.share)[:, colours] * mixture.light[:, pixels]
+    dark = full * mixture.shadow[:, pixels]
+    through = dark * np.exp(-absorbance.reshape(-1, ENTRIES))
+    for picture, first in enumerate(mixture.starts[:-1]):
+        views = slice(first, mixture.starts[picture + 1])
+        light = np.sum((full - dark + through)[views], axis=0)
+        parts = np.maximum(through[views] / light, 0.2 * dark[views] / np.sum(full[views], axis=0))
+        for i in range(ENTRIES):
+            u, goal, weight = np.log(light[i]) + 0.1, screen.wanted[picture, i], screen.weights[picture, i]
+            s = parts[:, i]
+            first_slope = max(display.pull(float(u), float(goal), screen.curve)[0], 0)
+            bend = display.curvature(float(u), float(goal), screen.curve)
+            expected = weight * (s * np.sum(s) * bend + np.minimum(s, np.abs(2 * s * (1 - s))) * first_slope)
+            np.testing.assert_allclose(found[views, i], expected, rtol=1e-6, atol=1e-12)
 
 
 def test_lamps_are_pulled_as_the_objective_falls() -> None:

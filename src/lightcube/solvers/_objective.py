@@ -119,7 +119,7 @@ class Objective:
         else:
             objective.descend(*self._data(joint_ax, lamp), self._of_groups(slopes))
         joint.spread(self.views, absorbance, self._of_groups(joint_ax), self._of_groups(slopes), absorbance)
-        return ax
+        return absorbance.reshape(ax.shape)
 
     def curved(self, values: Floats, ax: Floats, joint_ax: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
