@@ -11,6 +11,7 @@ from lightcube.kernels.stacked import GROUP, TILE
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import turntable_views
 from lightcube.projection.projector import Projector, dot_test
+from tests.conftest import INTERPRETED
 from tests.helpers import plain
 
 #: Longer than a tile, one more than two tiles, and shorter.
@@ -26,6 +27,12 @@ def compiled_add_rows(target, at, source, base, columns, places, shifts, weights
 def compiled_exp(numbers, out):  # type: ignore[no-untyped-def]
     for i in range(len(numbers)):
         out[i] = exponential.exp(numbers[i])
+
+
+@njit
+def compiled_log(numbers, out):  # type: ignore[no-untyped-def]
+    for i in range(len(numbers)):
+        out[i] = exponential.log(numbers[i])
 
 
 @settings(max_examples=60)
@@ -62,6 +69,27 @@ def test_exponential_is_exact_to_two_units_in_the_last_place() -> None:
     compiled_exp(numbers, out)
     exact = np.exp(numbers.astype(np.float64))
     assert np.all(np.abs(out - exact) <= 2 * np.spacing(exact.astype(np.float32)))
+
+
+def test_logarithm_is_exact_to_two_units_in_the_last_place() -> None:
+    """Also near 1, where it is nearly 0, and where a number's exponent changes."""
+    far = np.exp(np.linspace(-87, 88, 20_001)).astype(np.float32)
+    near = np.float32(1) + np.linspace(-0.4, 0.6, 20_001, dtype=np.float32) ** 3
+    numbers = np.concatenate([far, near, np.float32(2) ** np.arange(-126, 128, dtype=np.float32)])
+    out = np.empty_like(numbers)
+    compiled_log(numbers, out)
+    exact = np.log(numbers.astype(np.float64))
+    assert np.all(np.abs(out - exact) <= 2 * np.spacing(np.abs(exact).astype(np.float32)))
+
+
+def test_logarithm_of_nothing_is_a_number() -> None:
+    numbers = np.array([0, 1e-42, np.finfo(np.float32).tiny], np.float32)
+    out = np.empty_like(numbers)
+    compiled_log(numbers[2:], out[2:])
+    assert out[2] == pytest.approx(-87.3365, abs=1e-4)
+    if not INTERPRETED:
+        compiled_log(numbers, out)
+        assert np.all(out == out[2])
 
 
 def test_exponential_ends_in_0_and_in_numbers() -> None:

@@ -96,12 +96,16 @@ def of_mixture() -> list[Any]:
     random = np.random.default_rng(0)
     views, pixels = 60, 300
     lit = random.random((2, views, pixels), dtype=np.float32)
-    sums = Lighting(np.arange(views) // 25, Mixture(np.array([0, 50, 60]), random.random((views, 3)), *lit))
+    mixture = Mixture(np.array([0, 50, 60]), random.random((views, 3)), *lit)
     matrix = DenseOperator(random.random((views * pixels, 4)).astype(np.float32))
     wanted = random.uniform(0.1, 9, (2 * pixels, 3)).astype(np.float32)
-    lamps = np.full((3, 3), 0.01), np.full((3, 3), 4.0)
-    result = display_values(matrix, Wanted(wanted, lighting=sums, lamp_bounds=lamps), iterations=6)
-    return [result.x, result.lamp_powers, result.residuals]
+    found = []
+    for lamp in (np.arange(views) // 25, np.arange(views) // 50):  # several lamps for a picture, and one for each
+        lamps = np.full((lamp[-1] + 1, 3), 0.01), np.full((lamp[-1] + 1, 3), 4.0)
+        wish = Wanted(wanted, lighting=Lighting(lamp, mixture), lamp_bounds=lamps)
+        result = display_values(matrix, wish, iterations=6)
+        found += [result.x, result.lamp_powers, result.residuals]
+    return found
 
 
 def of_light() -> list[Any]:

@@ -10,6 +10,7 @@ from scipy.sparse import csr_array
 from lightcube.kernels import convex, descent, display, momentum
 from lightcube.solvers.contract import Floats, Lighting, Wanted
 from lightcube.solvers.display import display_values
+from tests.conftest import INTERPRETED
 from tests.helpers.solver_problems import full_rank
 
 
@@ -32,6 +33,35 @@ def test_momentum_is_what_its_formulas_say() -> None:
     np.testing.assert_allclose(slopes, -weights * value * slope)
 
     ahead = np.array([0.0, 1.0, 0.5, 1.0])
+    expected = now + ahead * (now - last)
+    momentum.run_ahead(last, now, ahead)
+    np.testing.assert_allclose(last, expected)
+
+
+#: Fewer columns than fill a vector, walked as one run with others; rows that are no whole runs; more than a run has.
+BLOCKS = [(70, 4), (50_000, 3), (7, 1), (130, 700)] if not INTERPRETED else [(70, 4), (7, 1)]
+
+
+@pytest.mark.parametrize("shape", BLOCKS)
+def test_a_step_is_what_its_formulas_say(shape: tuple[int, int]) -> None:
+    """Kept between the bounds; what has no step stays."""
+    random = np.random.default_rng(4)
+    x, before, slopes = (random.normal(size=shape) for _ in range(3))
+    steps = random.random(shape) * (random.random(shape) < 0.9)
+    ahead, stride = random.choice([0.0, 1.0], shape[1]), random.uniform(0.5, 1.3, shape[1])
+    start = x + ahead * (x - before)
+    expected = np.where(steps > 0, np.clip(start - stride * steps * slopes, -1.0, 0.8), x)
+    uphill = np.divide((start - expected) * (expected - x), steps, out=np.zeros(shape), where=steps > 0)
+    found = descent.step(x.copy(), before, ahead, slopes, steps, stride, -1.0, 0.8)
+    np.testing.assert_allclose(before, expected)
+    np.testing.assert_allclose(found, np.sum(uphill, axis=0), rtol=1e-9)
+
+
+@pytest.mark.parametrize("shape", BLOCKS)
+def test_momentum_leads_on_by_what_each_column_is_given(shape: tuple[int, int]) -> None:
+    random = np.random.default_rng(5)
+    last, now = random.normal(size=(2, *shape))
+    ahead = random.uniform(0, 1, shape[1])
     expected = now + ahead * (now - last)
     momentum.run_ahead(last, now, ahead)
     np.testing.assert_allclose(last, expected)

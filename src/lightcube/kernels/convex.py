@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lightcube.kernels import tasks
 from lightcube.kernels.compiled import compiled
+from lightcube.kernels.descent import added
 from lightcube.kernels.display import Curve, curvature, pull, residual
 
 Array = NDArray[Any]
@@ -19,7 +20,7 @@ Array = NDArray[Any]
 #: Entries of a run at most, but one row at least; parts that a block's rows are divided into.
 _RUN, _PARTS = 1024, 64
 #: The last step of a lamp may be so long, in ln P, by Newton's method and by bisection.
-_SMALL, _TINY = 3e-4, 1e-6
+_SMALL, _TINY = 2e-3, 1e-6
 
 
 @compiled
@@ -31,15 +32,12 @@ def _run(rows: int, columns: int) -> int:
 @compiled
 def _repeat(few: Array, many: Array) -> None:
     """Fill `many` with copies of `few`."""
-    many.reshape(-1, len(few))[:] = few
-
-
-@compiled
-def _flatten(weights: Array, row: int, end: int, heavy: Array) -> None:
-    """Write rows of `weights`, in whatever memory they lie, to `heavy`, one after the other."""
-    columns = weights.shape[1]
-    for each in range(row, end):
-        heavy[(each - row) * columns : (each - row + 1) * columns] = weights[each]
+    done = min(len(few), len(many))
+    many[:done] = few[:done]
+    while done < len(many):  # twice as many each time: long copies are quick
+        more = min(done, len(many) - done)
+        many[done : done + more] = many[:more]
+        done += more
 
 
 @compiled
@@ -59,18 +57,10 @@ def _stretches(first: int, last: int, view_of_row: Array, columns: int) -> list[
 
 
 @compiled
-def _room(absorbance: Array) -> tuple[Array, Array]:
-    """Room for `bright` and `heavy` of the longest run."""
+def _room(absorbance: Array) -> Array:
+    """Room for `bright` of the longest run."""
     rows, columns = absorbance.shape
-    room = _run(rows // _PARTS + 1, columns) * columns
-    return np.empty(room, absorbance.dtype), np.empty(room, absorbance.dtype)
-
-
-@compiled
-def _prepare(lamp: Array, weights: Array, row: int, end: int, bright: Array, heavy: Array) -> None:
-    """Write the ln P and the weight of each entry of a run of rows."""
-    _repeat(lamp, bright)
-    _flatten(weights, row, end, heavy)
+    return np.empty(_run(rows // _PARTS + 1, columns) * columns, absorbance.dtype)
 
 
 @compiled
@@ -106,10 +96,11 @@ def _descend(
 ) -> None:
     columns = absorbance.shape[1]
     now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), slopes.reshape(-1)
-    bright, heavy = _room(absorbance)
+    bright = _room(absorbance)
     for _, row, end in _stretches(first_part, last_part, view_of_row, columns):
         here = slice(row * columns, end * columns)
-        _prepare(lamp[view_of_row[row]], weights, row, end, bright, heavy)
+        heavy = weights[row:end].ravel()
+        _repeat(lamp[view_of_row[row]], bright)
         _descend_run(bright, now[here], aim[here], heavy, curve)
         out[here] = bright[: (end - row) * columns]
 
@@ -135,10 +126,8 @@ def arrive(
     room = _PARTS, _run(rows // _PARTS + 1, columns) * columns
     sums, least = np.zeros(room), np.full(room, np.inf, now.dtype)
     tasks.run(_arrive, _PARTS, 4 * now.size, last, now, lamp, view_of_row, wanted, weights, curve, sums, least)
-    total, lowest = np.zeros(columns), np.full(columns, np.inf)
-    data = sums.reshape(-1, columns), least.reshape(-1, columns), total, lowest
-    tasks.run(_of_columns, columns, sums.size, *data)
-    return 0.5 * total, lowest
+    total = added(added(sums).reshape(-1, columns))
+    return 0.5 * total, least.min(axis=0).reshape(-1, columns).min(axis=0).astype(np.float64)
 
 
 @compiled
@@ -157,20 +146,12 @@ def _arrive(
 ) -> None:
     columns = now.shape[1]
     before, after, aim = last.reshape(-1), now.reshape(-1), wanted.reshape(-1)
-    bright, heavy = _room(now)
+    bright = _room(now)
     for part, row, end in _stretches(first_part, last_part, view_of_row, columns):
         here = slice(row * columns, end * columns)
-        _prepare(lamp[view_of_row[row]], weights, row, end, bright, heavy)
+        heavy = weights[row:end].ravel()
+        _repeat(lamp[view_of_row[row]], bright)
         _arrive_run(bright, before[here], after[here], aim[here], heavy, curve, sums[part], least[part])
-
-
-@compiled
-def _of_columns(first: int, last: int, sums: Array, least: Array, total: Array, lowest: Array) -> None:
-    """Write the sum of all lines, in their order, and the least number for each column."""
-    for line in range(len(sums)):
-        for column in range(first, last):
-            total[column] += sums[line, column]
-            lowest[column] = min(lowest[column], least[line, column])
 
 
 @compiled
@@ -213,10 +194,11 @@ def _curvatures(
 ) -> None:
     columns = absorbance.shape[1]
     now, aim, out = absorbance.reshape(-1), wanted.reshape(-1), values.reshape(-1)
-    bright, heavy = _room(absorbance)
+    bright = _room(absorbance)
     for _, row, end in _stretches(first_part, last_part, view_of_row, columns):
         here = slice(row * columns, end * columns)
-        _prepare(lamp[view_of_row[row]], weights, row, end, bright, heavy)
+        heavy = weights[row:end].ravel()
+        _repeat(lamp[view_of_row[row]], bright)
         _curve_run(bright, now[here], aim[here], heavy, curve, room, out[here])
 
 
@@ -238,7 +220,7 @@ def _pulls(
     columns = absorbance.shape[1]
     now, aim = absorbance.reshape(-1), wanted.reshape(-1)
     run = _run(len(rows), columns)
-    bright, heavy = np.empty(run * columns, now.dtype), np.empty(run * columns, now.dtype)
+    bright = np.empty(run * columns, now.dtype)
     slopes, bends = np.zeros(run * columns), np.zeros(run * columns)
     _repeat(lamp.astype(now.dtype), bright)
     k = 0
@@ -246,7 +228,7 @@ def _pulls(
         row, end = rows[k], k + 1
         while end < len(rows) and end - k < run and rows[end] == row + end - k:
             end += 1
-        _flatten(weights, row, row + end - k, heavy)
+        heavy = weights[row : row + end - k].ravel()
         here = slice(row * columns, (row + end - k) * columns)
         _pull_run(bright, now[here], aim[here], heavy, curve, slopes, bends)
         k = end

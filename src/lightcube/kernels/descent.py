@@ -10,8 +10,8 @@ from lightcube.kernels.compiled import compiled
 
 Array = NDArray[Any]
 
-#: Parts that rows are divided into where they are summed.
-_PARTS = 64
+#: Parts that rows are divided into where they are summed; few columns are walked as one long run of so many numbers.
+_PARTS, _RUN = 64, 512
 
 
 def step(
@@ -23,9 +23,12 @@ def step(
     what is returned is the sum of ``(y - new) (new - x) / steps``. Arrays are ``(unknowns, columns)``, but ``ahead``
     and ``stride`` one number per column; unknowns with a step of 0 stay where they are.
     """
-    sums = np.zeros((_PARTS, x.shape[1]))
-    tasks.run(_step, _PARTS, 2 * x.size, x, before, ahead, slopes, steps, stride, lower, upper, sums)
-    return added(sums)
+    rows, columns = x.shape
+    lines = max(1, min(_RUN // columns, rows // _PARTS))
+    patterns = np.tile(ahead, lines), np.tile(stride, lines)
+    sums = np.zeros((_PARTS, lines * columns))
+    tasks.run(_step, _PARTS, x.size, x, before, slopes, steps, *patterns, lower, upper, sums)
+    return added(added(sums).reshape(lines, columns))
 
 
 @compiled
@@ -34,27 +37,41 @@ def _step(
     last: int,
     x: Array,
     before: Array,
-    ahead: Array,
     slopes: Array,
     steps: Array,
+    ahead: Array,
     stride: Array,
     lower: float,
     upper: float,
     sums: Array,
 ) -> None:
     rows, columns = x.shape
+    now, old, pull, length = x.reshape(-1), before.reshape(-1), slopes.reshape(-1), steps.reshape(-1)
     for part in range(first, last):
-        for row in range(part * rows // _PARTS, (part + 1) * rows // _PARTS):
-            for column in range(columns):
-                here = x[row, column]
-                length = steps[row, column]
-                if length == 0:
-                    before[row, column] = here
-                    continue
-                start = here + ahead[column] * (here - before[row, column])
-                new = min(max(start - stride[column] * length * slopes[row, column], lower), upper)
-                sums[part, column] += (start - new) * (new - here) / length
-                before[row, column] = new
+        stop = (part + 1) * rows // _PARTS * columns
+        for start in range(part * rows // _PARTS * columns, stop, len(ahead)):
+            here = slice(start, min(start + len(ahead), stop))
+            _step_run(now[here], old[here], pull[here], length[here], ahead, stride, lower, upper, sums[part])
+
+
+@compiled(error_model="numpy")  # else a division could end in an error, which no vector can
+def _step_run(
+    x: Array,
+    before: Array,
+    slopes: Array,
+    steps: Array,
+    ahead: Array,
+    stride: Array,
+    lower: float,
+    upper: float,
+    sums: Array,
+) -> None:
+    for i in range(len(x)):
+        here, length = x[i], steps[i]
+        start = here + ahead[i] * (here - before[i])
+        new = min(max(start - stride[i] * length * slopes[i], lower), upper)
+        before[i] = new if length > 0 else here
+        sums[i] += (start - new) * (new - here) / length if length > 0 else 0
 
 
 @compiled

@@ -1,7 +1,7 @@
 """The law of light, compiled: what a screen shows where the light of several views adds up (`lightcube.optics.law`).
 
 Absorbance is ``(views, entries)``; entry i of a view is of pixel ``i // channels`` and colour ``i % channels``. Here
-light is added up; `lightcube.kernels.objective` has loops of its own, of logarithms and derivatives, over the same law.
+light is added up; `lightcube.kernels.joint` has loops of its own, of logarithms and derivatives, over the same law.
 Results do not depend on the number of threads.
 """
 

@@ -55,27 +55,35 @@ class ConvexObjective:
         """Return P of ln P, within the bounds to the last digit."""
         return np.clip(np.exp(lamp), *self.bounds)
 
-    def best_lamp(self, ax: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the best ln P for absorbance `ax`, found from `start`."""
+    def joint(self, ax: Floats) -> Floats:
+        """Return the absorbance of each picture's light: that of its one view."""
+        return ax
+
+    def best_lamp(self, joint: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the best ln P for absorbance `joint`, found from `start`."""
         if np.array_equal(self.low, self.high):
             return self.low
         lamp = start.copy()
         data = (self.rows, self.starts, self.wanted, self.weights, self.curve)
-        convex.fit_lamp(ax, *data, self.low, self.high, lamp)
+        convex.fit_lamp(joint, *data, self.low, self.high, lamp)
         return lamp
 
     def arrive(
-        self, last: Floats, ax: Floats, lamp: NDArray[np.float64]
+        self, last: Floats, ax: Floats, joint: Floats, lamp: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
         return convex.arrive(last, ax, lamp.astype(ax.dtype), self.lamps, self.wanted, self.weights, self.curve)
 
-    def descend(self, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+    def descend(self, ax: Floats, joint: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Write over `ax`, and return, the objective's derivative by the absorbance."""
-        convex.descend(ax, lamp.astype(ax.dtype), self.lamps, self.wanted, self.weights, self.curve, ax)
+        self.slopes(ax, lamp, ax)
         return ax
 
-    def curved(self, values: Floats, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+    def slopes(self, ax: Floats, lamp: NDArray[np.float64], slopes: Floats) -> None:
+        """Write the objective's derivative by the absorbance to `slopes`, which may be `ax` itself."""
+        convex.descend(ax, lamp.astype(ax.dtype), self.lamps, self.wanted, self.weights, self.curve, slopes)
+
+    def curved(self, values: Floats, ax: Floats, joint: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
         data = (self.lamps, self.wanted, self.weights, self.curve)
         convex.curvatures(ax, lamp.astype(ax.dtype), *data, ax.dtype.type(ROOM), values)
@@ -90,7 +98,7 @@ class ConvexObjective:
         lower, upper = bounds
         if lower == -np.inf:
             return 0.0
-        pull = self.descend(ax, lamp)
+        pull = self.descend(ax, ax, lamp)
         np.negative(pull, out=pull)
         if upper == np.inf:
             self._make_feasible(A, pull)

@@ -7,61 +7,94 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.kernels import display, light, objective
+from lightcube.kernels import display, joint, light, objective
+from lightcube.kernels.layout import empty
+from lightcube.optics.arrays import Counts
 from lightcube.optics.law import Mixture
-from lightcube.solvers._convex import ROOM
-from lightcube.solvers.contract import Floats, Operator, Wanted
+from lightcube.solvers._convex import ROOM, ConvexObjective
+from lightcube.solvers.contract import Floats, Lighting, Operator, Wanted
 
-#: Newton's steps for the lamps' powers in each pass, at most; the longest one, and one so short that it is the last.
+#: Newton's steps for the powers of several lamps in each pass, at most; the longest one, and one so short that it is
+#: the last.
 _STEPS, _LONGEST, _SHORT = 10, 1.0, 1e-3
 
 
 @dataclass(frozen=True)
 class Objective:
-    """What is wanted of the screen, and the views that add up on it; lamp powers as ln P, ``(lamps, channels)``."""
+    """What is wanted of the screen, and the views that add up on it; lamp powers as ln P, ``(lamps, channels)``.
 
-    mixture: Mixture
-    #: ``(views,)``.
-    lamp_of_view: NDArray[np.integer[Any]]
+    Views of a picture and a lamp that follow each other are a group, and act as one view of their joint absorbance
+    (`lightcube.kernels.joint`): lamps are found for these, and the objective is a function of them.
+    """
+
+    #: How views add up to groups, powers being their shares.
+    views: light.Mixture
+    #: The groups of picture p are ``starts[p]`` to before ``starts[p + 1]``, and each has one lamp.
+    starts: Counts
+    lamps: NDArray[np.integer[Any]]
     #: ln light, ``(pictures, entries)``.
     wanted: Floats
     weights: Floats
+    #: Bounds on ln P, and the same as powers.
     low: NDArray[np.float64]
     high: NDArray[np.float64]
-    #: The same as powers.
     bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
     curve: display.Curve
     #: Columns of the matrix equation.
     columns: int
+    #: Of the joint absorbance, where each picture is one group.
+    single: ConvexObjective | None
 
     @classmethod
     def of(cls, wanted: Wanted, mixture: Mixture) -> "Objective":
         """Lay out what is wanted of pictures that views add up to."""
         low, high = wanted.lamp_bounds
-        pictures = wanted.lighting.pictures
+        pictures, dtype, lamps = wanted.lighting.pictures, wanted.light.dtype, wanted.lighting.lamp
+        columns = wanted.light.shape[1]
         logs = np.log(wanted.light).reshape(pictures, -1)
         heavy = np.ascontiguousarray(wanted.weights).reshape(pictures, -1) * _lit(mixture, logs.shape[1])
-        curve = display.curve(wanted.transfer == "srgb", wanted.light.dtype.type)
-        columns = wanted.light.shape[1]
-        return cls(mixture, wanted.lighting.lamp, logs, heavy, np.log(low), np.log(high), (low, high), curve, columns)
+        picture = np.repeat(np.arange(pictures), np.diff(mixture.starts))
+        first = np.flatnonzero(np.diff(picture * len(low) + lamps, prepend=-1))  # of each group
+        starts = np.searchsorted(first, mixture.starts)
+        parts = (each.astype(dtype, copy=False) for each in (mixture.share, mixture.light, mixture.shadow))
+        return cls(
+            views=light.Mixture(np.append(first, len(lamps)), *parts),
+            starts=starts,
+            lamps=lamps[first],
+            wanted=logs,
+            weights=heavy,
+            low=np.log(low),
+            high=np.log(high),
+            bounds=(low, high),
+            curve=display.curve(wanted.transfer == "srgb", dtype.type),
+            columns=columns,
+            single=_single(wanted, heavy, lamps[first]) if len(first) == pictures else None,
+        )
 
     def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return P of ln P, within the bounds to the last digit."""
         return np.clip(np.exp(lamp), *self.bounds)
 
-    def best_lamp(self, ax: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return better ln P for absorbance `ax`, found from `start` by a few bounded steps."""
+    def joint(self, ax: Floats) -> Floats:
+        """Return the joint absorbance of all groups, ``(groups * equations of a view, columns)``."""
+        found = empty((len(self.lamps), self.wanted.shape[1]), ax.dtype)
+        joint.join(self.views, self._of_views(ax), found)
+        return found.reshape(-1, self.columns)
+
+    def best_lamp(self, joint: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the best ln P for a joint absorbance, found from `start`.
+
+        Where several lamps shine on a picture, better ones, by a few bounded steps.
+        """
+        if self.single is not None:
+            return self.single.best_lamp(joint, start)
         lamp = np.clip(start, self.low, self.high)
         if np.array_equal(self.low, self.high):
             return lamp
-        groups = np.cumsum(np.diff(self._picture * len(self.low) + self.lamp_of_view, prepend=-1) != 0) - 1
-        lamp_of_group = self.lamp_of_view[np.unique(groups, return_index=True)[1]]
         for _ in range(_STEPS):
-            sums = np.zeros((2, objective.PARTS, len(lamp_of_group), lamp.shape[1]))
-            objective.pulls(self._mixed(lamp, ax), groups, *self._data(ax), sums)
             pulls = np.zeros((2, *lamp.shape))
-            for both, found in zip(pulls, sums.sum(axis=1), strict=True):
-                np.add.at(both, lamp_of_group, found)
+            for both, of_groups in zip(pulls, objective.pulls(*self._data(joint, lamp)), strict=True):
+                np.add.at(both, self.lamps, of_groups)
             step = np.clip(-pulls[0] / (pulls[1] + 1e-30), -_LONGEST, _LONGEST)
             moved = np.clip(lamp + step, self.low, self.high) - lamp
             lamp += moved
@@ -70,36 +103,53 @@ class Objective:
         return lamp
 
     def arrive(
-        self, last: Floats, ax: Floats, lamp: NDArray[np.float64]
+        self, last: Floats, ax: Floats, joint_ax: Floats, lamp: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
-        before = last.reshape(len(self.lamp_of_view), -1)
-        return objective.arrive(self._mixed(lamp, ax), before, *self._data(ax))
+        least = joint.least_ahead(last, ax)
+        if self.single is not None:
+            return self.single.arrive(joint_ax, joint_ax, joint_ax, lamp)[0], least
+        return objective.arrive(*self._data(joint_ax, lamp)), least
 
-    def descend(self, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+    def descend(self, ax: Floats, joint_ax: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Write over `ax`, and return, the objective's derivative by the absorbance."""
-        data = self._data(ax)
-        objective.descend(self._mixed(lamp, ax), *data, data[0])
-        return ax
+        slopes, absorbance = np.empty_like(joint_ax), self._of_views(ax)
+        if self.single is not None:
+            self.single.slopes(joint_ax, lamp, slopes)
+        else:
+            objective.descend(*self._data(joint_ax, lamp), self._of_groups(slopes))
+        joint.spread(self.views, absorbance, self._of_groups(joint_ax), self._of_groups(slopes), absorbance)
+        return absorbance.reshape(ax.shape)
 
-    def curved(self, values: Floats, ax: Floats, lamp: NDArray[np.float64]) -> Floats:
+    def curved(self, values: Floats, ax: Floats, joint_ax: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
-        room = ax.dtype.type(ROOM)
-        objective.curvatures(self._mixed(lamp, ax), *self._data(ax), room, values.reshape(len(self.lamp_of_view), -1))
+        room, data = ax.dtype.type(ROOM), self._data(joint_ax, lamp)
+        objective.curvatures(*data, room, self.views, self._of_views(ax), self._of_views(values))
         return values
 
     def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: tuple[float, float]) -> None:
         """No bound is known: the problem is not convex."""
 
-    @property
-    def _picture(self) -> NDArray[np.intp]:
-        return np.repeat(np.arange(len(self.wanted)), np.diff(self.mixture.starts))
+    def _of_views(self, block: Floats) -> Floats:
+        return block.reshape(len(self.views.powers), -1)
 
-    def _mixed(self, lamp: NDArray[np.float64], ax: Floats) -> light.Mixture:
-        return self.mixture.under(np.exp(lamp)[self.lamp_of_view], ax.dtype)
+    def _of_groups(self, block: Floats) -> Floats:
+        return block.reshape(len(self.lamps), -1)
 
-    def _data(self, ax: Floats) -> tuple[Floats, int, Floats, Floats, display.Curve]:
-        return ax.reshape(len(self.lamp_of_view), -1), self.columns, self.wanted, self.weights, self.curve
+    def _data(
+        self, joint: Floats, lamp: NDArray[np.float64]
+    ) -> tuple[Counts, Floats, Floats, int, Floats, Floats, display.Curve]:
+        """The groups, their powers and joint absorbance, and what is wanted, as loops take them."""
+        powers = np.exp(lamp)[self.lamps].astype(joint.dtype)
+        return self.starts, powers, self._of_groups(joint), self.columns, self.wanted, self.weights, self.curve
+
+
+def _single(wanted: Wanted, weights: Floats, lamps: NDArray[np.integer[Any]]) -> ConvexObjective:
+    """The objective as a function of the joint absorbance, of pictures of one group each."""
+    views = Lighting(lamps)
+    return ConvexObjective.of(
+        Wanted(wanted.light, weights.reshape(wanted.light.shape), views, wanted.lamp_bounds, wanted.transfer)
+    )
 
 
 def _lit(mixture: Mixture, entries: int) -> NDArray[np.bool_]:

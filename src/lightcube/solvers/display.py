@@ -68,8 +68,10 @@ def display_values(
     Notes
     -----
     Where views add up the ln light is that of a sum, ``u = ln sum_v P_v (1 - a_v (1 - e^-(A x)_v))``: the objective is
-    no longer convex, no lower bound is known, and lamps are found by bounded Newton steps, a few in each pass. All
-    else is the same, with curvatures that bound those of the sum (`lightcube.kernels.objective`).
+    no longer convex, and no lower bound is known. Views under one lamp act as one view of their joint absorbance
+    (`lightcube.kernels.joint`), whose lamp is found as exactly as any; where several lamps shine on a picture, theirs
+    are found by bounded Newton steps, a few in each pass. All else is the same, with curvatures that bound those of the
+    sum (`lightcube.kernels.objective`).
 
     References
     ----------
@@ -95,21 +97,24 @@ def display_values(
     ay = A.forward(at.before) if np.any(at.ahead) else copied(ax)
     momentum.run_ahead(ay, ax, at.ahead)
     if state is None:
-        at.lamp = goal.best_lamp(ay, at.lamp)
+        at.lamp = goal.best_lamp(goal.joint(ay), at.lamp)
     enough = _PERFECT * float(np.sum(goal.weights, dtype=np.float64))
     stop_reason = at.stop_reason(iterations, enough)
     while not stop_reason:
+        joint = goal.joint(ay)
         if np.any(at.ahead):  # else these are the lamps already
-            at.lamp = goal.best_lamp(ay, at.lamp)
+            at.lamp = goal.best_lamp(joint, at.lamp)
         if at.iteration + 1 == at.renewal:
-            at.renew(A, goal, ay)
-        slopes = goal.descend(ay, at.lamp)
+            at.renew(A, goal, ay, joint)
+        slopes = goal.descend(ay, joint, at.lamp)
         uphill = descent.step(at.x, at.before, at.ahead, A.adjoint(slopes), at.steps, at.stride, *limits) > 0
-        del ay, slopes  # make room
+        del ay, slopes, joint  # make room
         at.x, at.before = at.before, at.x
         a_new = A.forward(at.x)
-        at.lamp = goal.best_lamp(a_new, at.lamp)
-        objective, least = goal.arrive(ax, a_new, at.lamp)
+        joint = goal.joint(a_new)
+        at.lamp = goal.best_lamp(joint, at.lamp)
+        objective, least = goal.arrive(ax, a_new, joint, at.lamp)
+        del joint
         at.judge(objective, uphill, least)
         momentum.run_ahead(ax, a_new, at.ahead)
         ax, ay = a_new, ax
@@ -184,11 +189,11 @@ class _State:
         """How many are done."""
         return len(self.history)
 
-    def renew(self, A: Operator, goal: ConvexObjective | Objective, ay: Floats) -> None:
+    def renew(self, A: Operator, goal: ConvexObjective | Objective, ay: Floats, joint: Floats) -> None:
         """Take the metric of where the solver stands now."""
         expected = self.steps
         descent.expect(self.x, _EXPECTED, expected)
-        self.steps = A.adjoint(goal.curved(A.forward(expected), ay, self.lamp))
+        self.steps = A.adjoint(goal.curved(A.forward(expected), ay, joint, self.lamp))
         descent.divide(expected, self.steps)
         self.renewal = int((self.iteration + 1) * _RENEWAL) + 1
 
