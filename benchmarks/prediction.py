@@ -67,7 +67,7 @@ ORIGINALS: tuple[tuple[Callable[[], Any], ...], ...] = (
     ),
 )
 #: Passes of the real cubes.
-PASSES = 150
+PASSES = 100
 SCENES = ("juggler", "carousel", "bloom", "gems")
 Rng = np.random.Generator
 

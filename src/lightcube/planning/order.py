@@ -23,6 +23,7 @@ from lightcube.optics.views import Views
 from lightcube.pictures.resampling import shares
 from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
+from lightcube.planning.prediction import POINTS
 from lightcube.projection.projector import Projector
 from lightcube.scoring.metrics import mean_psnr
 
@@ -96,7 +97,9 @@ def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Or
     raised(targets.rig, grid)
     recipe = recipe or Recipe()
     bound = Material(recipe.stuff.most(grid))
-    drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0)
+    drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0, mat=None)
+    if not recipe.beams.is_thin:
+        drafted = replace(drafted, light=POINTS)
     draft, small = _draft(targets, grid)
     seen = _features(draft, _tiles(1, draft.rig.picture_shape)).reshape(len(targets), -1)
     canonical = np.lexsort(seen.T[::-1])

@@ -33,13 +33,15 @@ from typing import Any
 import numpy as np
 
 from lightcube.backward import solving
+from lightcube.backward.mat import widened
 from lightcube.backward.problem import held
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
 from lightcube.optics.arrays import Images, Reals, keep, locked
 from lightcube.optics.checks import check_fields, checked
-from lightcube.optics.grid import Grid, dense_step_deg, nearest, raster_shape
+from lightcube.optics.grid import Grid, nearest, raster_shape
+from lightcube.optics.light import Light, is_in_slices
 from lightcube.optics.material import Material
 from lightcube.optics.transfer import encode
 from lightcube.pictures.resampling import shares
@@ -47,8 +49,8 @@ from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
 from lightcube.scoring.metrics import BEST_DB, psnr
 
-#: Passes of a rehearsal, and its work: pictures times pixels times the cube's width, in voxels.
-PASSES, WORK = 150, 150_000
+#: Passes of a rehearsal, points of a pixel in it, and its work: beams times the cube's width, in voxels.
+PASSES, POINTS, WORK = 60, Light(5, 4), 1_000_000
 #: A small cube is at least so wide, in voxels.
 _LEAST = 20
 #: The fitted law, see above.
@@ -133,12 +135,14 @@ def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
     solving.check_targets(targets, grid)
     hold_deg = recipe.hold_deg
     held(targets.rig, recipe, grid)
-    small, small_grid = reduced(targets, grid, _width(targets, grid, hold_deg))
+    small, small_grid = reduced(targets, grid, _width(targets, grid, recipe))
     width = max(small_grid.shape[1:])
     bound = Material(recipe.stuff.most(grid))
-    rehearsed = replace(recipe.by_display(PASSES), material=bound, hold_deg=_small_hold(targets, grid, hold_deg, width))
+    light = recipe.beams if recipe.beams.is_thin else POINTS
+    rehearsed = replace(recipe.by_display(PASSES), material=bound, light=light)
+    rehearsed = replace(rehearsed, hold_deg=_small_hold(targets, grid, hold_deg, width))
     cube = solving.solve(small, small_grid, rehearsed).cube
-    shown = encode(np.stack(list(cast(cube))), small.transfer)
+    shown = encode(np.stack(list(cast(cube, light="thin" if light.is_thin else "area"))), small.transfer)
     wanted = encode(small.pictures, small.transfer)
     reached = [psnr(*each) for each in zip(shown, wanted, small.weight, strict=True)]
     return np.array(reached), width
@@ -169,18 +173,13 @@ def reduced(targets: Targets, grid: Grid, width: int) -> tuple[Targets, Grid]:
     return small, Grid(shape, grid.voxel_mm * ratio)
 
 
-def _width(targets: Targets, grid: Grid, hold_deg: float) -> int:
-    """Width of the small cube: what takes the work of a rehearsal, or somewhat more where pictures are held."""
+def _width(targets: Targets, grid: Grid, recipe: Recipe) -> int:
+    """Width of the small cube: what takes the work of a rehearsal, at two angles where pictures are held."""
     across = max(grid.shape[1:])
-    rows, columns = targets.rig.picture_shape
-
-    def affordable(angles_deg: float) -> int:
-        work = len(targets) * angles_deg * rows * columns * across
-        return min(across, max(_LEAST, round(across * (WORK / work) ** (1 / 3))))
-
-    width = affordable(1.0)
-    small = targets.rig.held(_small_hold(targets, grid, hold_deg, width), dense_step_deg(Grid((1, width, width))))
-    return affordable(math.sqrt(len(small) / len(targets)))
+    pixels = math.prod(widened(targets.rig, grid, recipe.mat).picture_shape)
+    points = 1 if recipe.beams.is_thin else POINTS.row_points if is_in_slices(targets.rig, grid) else POINTS.points
+    work = len(targets) * points * (2 if recipe.hold_deg else 1) * pixels * across
+    return min(across, max(_LEAST, round(across * (WORK / work) ** (1 / 3))))
 
 
 def _small_hold(targets: Targets, grid: Grid, hold_deg: float, width: int) -> float:

@@ -74,7 +74,7 @@ class Options:
     black: Annotated[float | None, Option("Display value, 0.002 to 1, that the screen cannot be darker than.")] = None
     max_extinction: Annotated[
         float | None,
-        Option("Largest extinction of the material, 1/mm; default absorbs a factor e along a voxel, thin beams: none."),
+        Option("Largest extinction of the material, 1/mm; default an absorbance of 3 along a voxel, thin beams: none."),
     ] = None
     mat: Annotated[Surround | None, Option("Calm surround of each picture.  [default: dark; thin beams: none]")] = None
     transfer: Annotated[Transfer, Option("How picture values become linear light.")] = "srgb"
