@@ -111,16 +111,21 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
 
 
 def _views(rig: Rig, channels: int) -> list[dict[str, Any]]:
+    """One for each picture and point of a lamp: the samples of pixels are one, as the page itself averages over these."""
     views = rig.views
+    keys = np.column_stack([rig.sums.picture, rig.sums.lamp, views.lamps])
+    _, first, own = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    samples = np.bincount(own)[own, None]
+    origins_mm = np.stack([np.bincount(own, axis)[own] for axis in views.origins_mm.T], axis=1) / samples
     columns = {
         "picture": rig.sums.picture,
         "lamp": rig.sums.lamp,
         "pair": rig.pair,
         "light": views.lamps,
-        "origin": views.origins_mm,
+        "origin": origins_mm,
         "right": views.column_steps_mm,
         "down": views.row_steps_mm,
-        "share": rig.sums.of_colours(channels),
+        "share": samples * rig.sums.of_colours(channels),
         "reach_mm": rig.fading.reach_mm,
         "falloff_mm": rig.fading.falloff_mm,
         "full_at_mm": rig.fading.full_at_mm,
@@ -128,7 +133,7 @@ def _views(rig: Rig, channels: int) -> list[dict[str, Any]]:
         "turning": rig.turning.turns,
         "way": rig.turning.way,
     }
-    return [{name: _plain(column[view].tolist()) for name, column in columns.items()} for view in range(len(views))]
+    return [{name: _plain(column[view].tolist()) for name, column in columns.items()} for view in np.sort(first)]
 
 
 def _plain(value: Any) -> Any:
