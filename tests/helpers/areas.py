@@ -1,0 +1,60 @@
+"""Light on whole pixels: the plain average of thin beams that the page's own casting is held against."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.forward.casting import cast
+from lightcube.forward.turning import moment
+from lightcube.optics.cube import Cube
+
+Points = Sequence[tuple[float, float]]
+
+
+def square(count: int, step: int) -> Points:
+    """Points of a pixel, across and down from its middle in its sides: a lattice on all of it."""
+    return [((i + 0.5) / count - 0.5, ((step * i) % count + 0.5) / count - 0.5) for i in range(count)]
+
+
+def row(count: int) -> Points:
+    """The middles of equal parts of its width."""
+    return [((i + 0.5) / count - 0.5, 0.0) for i in range(count)]
+
+
+THIN: Points = [(0.0, 0.0)]
+JUDGED, JUDGED_LEVEL = square(55, 34), row(16)
+
+
+def judged(cube: Cube, angles_deg: Sequence[float], *, whole: bool = False) -> NDArray[Any]:
+    """What a cube shows on pixels one slice of it high, by the points that it is judged with."""
+    points = JUDGED_LEVEL if cube.rig.elevation_deg == 0 else JUDGED
+    return averaged(cube, angles_deg, points, whole=whole)
+
+
+def averaged(
+    cube: Cube, angles_deg: Sequence[float], points: Points, *, parts: int = 1, whole: bool = False
+) -> NDArray[Any]:
+    """Mean light over points of each pixel, or of each of its parts, ``(picture, row, column, channel)``."""
+    middles = [(part + 0.5) / parts - 0.5 for part in range(parts)]
+    cells = [
+        [
+            np.mean([_moved(cube, angles_deg, x + across / parts, y + down / parts, whole) for across, down in points], 0)
+            for x in middles
+        ]
+        for y in middles
+    ]
+    along = np.stack([np.stack(each, axis=3) for each in cells], axis=2)  # picture, row, part, column, part, channel
+    pictures, rows, _, columns, _, channels = along.shape
+    return along.reshape(pictures, rows * parts, columns * parts, channels)
+
+
+def _moved(cube: Cube, angles_deg: Sequence[float], across: float, down: float, whole: bool) -> NDArray[Any]:
+    """Thin beams beside the pixels' middles."""
+    rig, powers = moment(cube, angles_deg, whole_shadow=whole)
+    views = rig.views
+    origins_mm = views.origins_mm + across * views.column_steps_mm + down * views.row_steps_mm
+    moved = replace(rig, views=replace(views, origins_mm=origins_mm))
+    return np.stack(list(cast(cube, moved, powers))).astype(np.float64)
