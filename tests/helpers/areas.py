@@ -14,18 +14,18 @@ from lightcube.optics.cube import Cube
 Points = Sequence[tuple[float, float]]
 
 
-def square(count: int, step: int) -> Points:
+def over_square(count: int, step: int) -> Points:
     """Points of a pixel, across and down from its middle in its sides: a lattice on all of it."""
     return [((i + 0.5) / count - 0.5, ((step * i) % count + 0.5) / count - 0.5) for i in range(count)]
 
 
-def row(count: int) -> Points:
+def along_row(count: int) -> Points:
     """The middles of equal parts of its width."""
     return [((i + 0.5) / count - 0.5, 0.0) for i in range(count)]
 
 
 THIN: Points = [(0.0, 0.0)]
-JUDGED, JUDGED_LEVEL = square(55, 34), row(16)
+JUDGED, JUDGED_LEVEL = over_square(55, 34), along_row(16)
 
 
 def judged(cube: Cube, angles_deg: Sequence[float], *, whole: bool = False) -> NDArray[Any]:
@@ -39,16 +39,15 @@ def averaged(
 ) -> NDArray[Any]:
     """Mean light over points of each pixel, or of each of its parts, ``(picture, row, column, channel)``."""
     middles = [(part + 0.5) / parts - 0.5 for part in range(parts)]
-    cells = [
-        [
-            np.mean([_moved(cube, angles_deg, x + across / parts, y + down / parts, whole) for across, down in points], 0)
-            for x in middles
-        ]
-        for y in middles
-    ]
-    along = np.stack([np.stack(each, axis=3) for each in cells], axis=2)  # picture, row, part, column, part, channel
-    pictures, rows, _, columns, _, channels = along.shape
-    return along.reshape(pictures, rows * parts, columns * parts, channels)
+    light: Any = 0
+    for i, j in np.ndindex(parts, parts):
+        own = [(middles[j] + across / parts, middles[i] + down / parts) for across, down in points]
+        mean = np.mean([_moved(cube, angles_deg, *point, whole) for point in own], axis=0)
+        if i == j == 0:
+            pictures, rows, columns, channels = mean.shape
+            light = np.empty((pictures, rows * parts, columns * parts, channels))
+        light[:, i::parts, j::parts] = mean
+    return light
 
 
 def _moved(cube: Cube, angles_deg: Sequence[float], across: float, down: float, whole: bool) -> NDArray[Any]:

@@ -48,7 +48,10 @@ def test_a_switch_shows_thin_beams(visit: Open) -> None:
     tab, cube = visit(), turning()
     switch = tab.get_by_role("button", name="Thin beams")
     assert switch.get_attribute("aria-pressed") == "false"
-    for turn_on, turn_off in ((switch.click, lambda: tab.keyboard.press("b")), (lambda: tab.keyboard.press("b"), switch.click)):
+    for turn_on, turn_off in (
+        (switch.click, lambda: tab.keyboard.press("b")),
+        (lambda: tab.keyboard.press("b"), switch.click),
+    ):
         turn_on()
         assert np.abs(shown(tab) - right(cube, STOPS[0], thin=True)[0]).max() <= 0.55
         assert switch.get_attribute("aria-pressed") == "true"
@@ -102,13 +105,13 @@ def test_the_whole_shadow_has_a_line_around_the_picture(visit: Open) -> None:
 
 
 def passed(cube: Cube, views: Views, row: int, column: int, points: Points) -> tuple[int, np.ndarray]:
-    """How many voxels the beams through a pixel's points meet, and the mean part of the light that these let through."""
+    """How many voxels the beams through points of a pixel meet, and the part of the light that is left on average."""
     met, left = np.zeros(GRID.shape, bool), np.zeros(3)
     for across, down in points:
         lengths = lengths_of_beam(GRID, *beam_of_pixel(views, 0, row + down, column + across))
         met |= lengths > 1e-9
         left += np.exp(-np.einsum("zyx,czyx->c", lengths, cube.extinction)) / len(points)
-    return np.count_nonzero(met), left
+    return int(np.count_nonzero(met)), left
 
 
 @pytest.mark.parametrize("thin", [False, True])

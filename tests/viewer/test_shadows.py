@@ -19,15 +19,16 @@ from lightcube.optics.transfer import Transfer, decode, encode
 from lightcube.viewer import packing
 from lightcube.viewer.description import describe
 from lightcube.viewer.packing import pack
-from tests.helpers.areas import JUDGED, THIN, Points, averaged, judged, square
+from tests.helpers.areas import JUDGED, THIN, Points, averaged, judged, over_square
 
 Run = Callable[..., Any]
 #: Levels of 255 that a shadow may be off: half of one by rounding, and what single precision costs.
 OFF = 0.5 + 0.05
 
 MODULES = (
-    "model/data.js", "model/stage.js", "model/area.js", "room/camera.js", "model/cast.js", "room/gpu.js", "room/flat.js",
-)  # fmt: skip
+    *("model/data.js", "model/stage.js", "model/area.js", "model/cast.js"),
+    *("room/camera.js", "room/gpu.js", "room/flat.js"),
+)
 START = """(async () => {
   const { scene, voxels, angles_deg, whole, kind, parts } = argument;
   const beams = { THIN, QUICK, JUDGED }[argument.beams];
@@ -75,9 +76,7 @@ def worst(
     """The largest difference from the packed cube's light, averaged over points or as it is judged, levels of 255."""
     packed = pack(cube).cube
     right = (
-        judged(packed, angles_deg, whole=whole)
-        if points is None
-        else averaged(packed, angles_deg, points, whole=whole)
+        judged(packed, angles_deg, whole=whole) if points is None else averaged(packed, angles_deg, points, whole=whole)
     )
     pictures = [picture for at_angle in shown for picture in at_angle]
     assert len(pictures) == len(right)
@@ -316,7 +315,7 @@ def test_the_picture_in_the_room_is_the_shadow(evaluate: Run, parts: int, kind: 
     rows, columns = parts * rows, parts * columns
     inside = (across > 0) & (across < columns - 1) & (below > 0) & (below < rows - 1) & (chords(found, cube.grid) < -1)
     assert np.count_nonzero(inside) > 500
-    points = square(8, 5) if parts == 3 else JUDGED
+    points = over_square(8, 5) if parts == 3 else JUDGED
     light = averaged(pack(cube).cube, [0.0], points, parts=parts)[0]
     shadow = 255 * encode(np.clip(light, 0, 1))
     wanted = np.stack(

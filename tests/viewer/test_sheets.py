@@ -14,7 +14,7 @@ from lightcube.optics.transfer import encode
 from lightcube.optics.views import Views
 from lightcube.viewer.packing import Packed
 from tests.helpers import plain
-from tests.helpers.areas import JUDGED_LEVEL, THIN, Points, averaged, judged, row, square
+from tests.helpers.areas import JUDGED_LEVEL, THIN, Points, along_row, averaged, judged, over_square
 from tests.helpers.paging import ANGLES, GRID, PLAIN, Evaluate, asked, held_in_a_page, nearly, on_table, paged, table
 from tests.projection.test_rays import lamps_for, lit, screens_for
 
@@ -86,7 +86,8 @@ def test_a_beam_to_the_lamp_itself_meets_nothing(evaluate: Evaluate) -> None:
 SHEETS = """argument.angles_deg.flatMap((angle) => exposures(scene, angle)).flatMap((exposure) =>
   exposure.views.flatMap((view, number) => [0, 1, 2].map((row) => {
     const points = pointsOf(cube, exposure, { THIN, QUICK, JUDGED }[argument.beams]);
-    const facts = Array.from({ length: exposure.window[1] }, (_, c) => pixelFacts(cube, exposure, number, row, c, points))
+    const columns = [...Array(exposure.window[1]).keys()];
+    const facts = columns.map((column) => pixelFacts(cube, exposure, number, row, column, points))
       .map(({ voxels, left }) => ({ voxels: [...voxels], left }));
     return { row, number, exposure, sheet: sheetOf(cube, exposure, number, row, points), facts };
   })))"""
@@ -111,8 +112,8 @@ def sheets_of(
     ("name", "beams", "points"),
     [
         *((name, "THIN", THIN) for name in ("level", "raised, moved", "stage")),
-        *(("level", "QUICK", row(5)), ("level", "JUDGED", JUDGED_LEVEL)),
-        *(("raised, moved", "QUICK", square(8, 5)), ("stage", "QUICK", square(8, 5))),
+        *(("level", "QUICK", along_row(5)), ("level", "JUDGED", JUDGED_LEVEL)),
+        *(("raised, moved", "QUICK", over_square(8, 5)), ("stage", "QUICK", over_square(8, 5))),
     ],
 )
 def test_what_a_pixel_meets_is_rows_of_the_matrix(evaluate: Evaluate, name: str, beams: str, points: Points) -> None:
@@ -138,7 +139,7 @@ def test_a_sheet_shows_its_row_of_the_screen(evaluate: Evaluate, name: str, beam
     thin = beams == "THIN"
     count = 1 if thin else 5
     means = averaged(cube, angles_deg, THIN) if thin else judged(cube, angles_deg)
-    apart = np.stack([averaged(cube, angles_deg, [point]) for point in row(count)], axis=3)
+    apart = np.stack([averaged(cube, angles_deg, [point]) for point in along_row(count)], axis=3)
     means, apart = (np.clip(encode(each, cube.transfer), 0, 1) for each in (means, apart))
     picture = -1
     for each in found:

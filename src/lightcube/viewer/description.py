@@ -111,7 +111,7 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
 
 
 def _views(rig: Rig, channels: int) -> list[dict[str, Any]]:
-    """One for each picture and point of a lamp: the samples of pixels are one, as the page itself averages over these."""
+    """One for each picture and point of a lamp: samples of pixels are one, as the page averages over these itself."""
     views = rig.views
     keys = np.column_stack([rig.sums.picture, rig.sums.lamp, views.lamps])
     _, first, own = np.unique(keys, axis=0, return_index=True, return_inverse=True)
