@@ -38,15 +38,11 @@ def averaged(
     cube: Cube, angles_deg: Sequence[float], points: Points, *, parts: int = 1, whole: bool = False
 ) -> NDArray[Any]:
     """Mean light over points of each pixel, or of each of its parts, ``(picture, row, column, channel)``."""
+    light = _moved(cube, angles_deg, 0, 0, whole).repeat(parts, axis=1).repeat(parts, axis=2)
     middles = [(part + 0.5) / parts - 0.5 for part in range(parts)]
-    light: Any = 0
     for i, j in np.ndindex(parts, parts):
         own = [(middles[j] + across / parts, middles[i] + down / parts) for across, down in points]
-        mean = np.mean([_moved(cube, angles_deg, *point, whole) for point in own], axis=0)
-        if i == j == 0:
-            pictures, rows, columns, channels = mean.shape
-            light = np.empty((pictures, rows * parts, columns * parts, channels))
-        light[:, i::parts, j::parts] = mean
+        light[:, i::parts, j::parts] = np.mean([_moved(cube, angles_deg, *point, whole) for point in own], axis=0)
     return light
 
 

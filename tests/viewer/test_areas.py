@@ -1,5 +1,6 @@
 """Light falls on areas: which beams make a pixel, how finely one sees it, and how one comes near."""
 
+import json
 from typing import Any
 
 import numpy as np
@@ -126,24 +127,22 @@ def test_it_is_cast_finely_when_still_and_near(evaluate: Evaluate) -> None:
 
 
 def test_coming_near_leads_to_the_pixel(evaluate: Evaluate) -> None:
-    """It stays where it is seen, so many times as near; on the way back one comes to where one began."""
-    found = ask(
+    """It stays where it is seen, so many times as near, and on the way back too; farther, one looks at the middle."""
+    steps = [(1.5, True), (2, True), (1.2, True), (1 / 1.2, False), (0.5, False), (1 / 1.5, False)]
+    told = ask(
         evaluate,
-        """(() => {
-      const told = [[seen(), far()]];
-      for (const factor of [1.5, 2, 1.2]) { view.zoom(factor, whole); told.push([seen(), far()]); }
-      for (const factor of [0.9, 0.5, 0.5, 0.9]) view.zoom(factor, null);
-      view.zoom(view.orbit().distance / view.base().distance, null);
-      const back = [seen(), far()];
-      return { told, back, most: (view.zoom(100, whole), far()) };
-    })()""",
+        f"""{json.dumps(steps)}.map(([factor, to]) => {{
+          view.zoom(factor, to ? whole : null);
+          return [seen(), far()];
+        }}).concat([[seen(), far()], (view.zoom(100, whole), [seen(), far()])])""",
     )
-    places, away = (np.array([each[i] for each in found["told"]]) for i in (0, 1))
+    places, away = (np.array([each[i] for each in told]) for i in (0, 1))
     nearly(places, np.broadcast_to(places[0], places.shape), 1e-9)
-    nearly(away, away[0] / np.cumprod([1, 1.5, 2, 1.2]), 1e-9)
-    nearly(found["back"][0], places[0], 1e-9)
-    nearly(found["back"][1], away[0], 1e-9)
-    nearly(found["most"], away[0] / 5, 1e-9)
+    nearly(away, away[-2] / np.array([1.5, 3, 3.6, 3, 1.5, 1, 1, 5]), 1e-9)
+    expression = "[0.5, 1.9, 1 / 1.9, 2].map((factor) => { view.zoom(factor, whole); return view.orbit(); })"
+    farther = ask(evaluate, expression)
+    base = farther[-1]["target"]
+    assert all(orbit["target"] == pytest.approx(base, abs=1e-9) for orbit in farther)
 
 
 def test_with_no_pixel_one_comes_near_to_the_middle(evaluate: Evaluate) -> None:

@@ -77,13 +77,13 @@ export class RoomView {
   /** Go nearer (factor above 1), to a pixel {screen, row, column} or to the middle, or farther, back from where one is. */
   zoom(factor, pixel) {
     const { far, aside } = this.away;
-    const next = clampTo(far / factor, NEAREST, FARTHEST);
-    if (next > far) this.away.aside = far < 1 ? scaled(aside, Math.max(0, (1 - next) / (1 - far))) : [0, 0, 0];
+    this.away.far = clampTo(far / factor, NEAREST, FARTHEST);
+    const [before, after] = [far, this.away.far].map((each) => Math.min(each, 1)); // farther, one looks at the middle
+    if (after > before) this.away.aside = scaled(aside, (1 - after) / (1 - before));
     else if (pixel !== null) {
-      const way = sub(middleOfPixel(this.room, pixel), this.orbit().target);
-      this.away.aside = add(aside, scaled(way, 1 - next / far)); // so that the pixel stays where it is seen
+      const way = sub(middleOfPixel(this.room, pixel), add(this.base().target, aside));
+      this.away.aside = add(aside, scaled(way, 1 - after / before)); // so that the pixel stays where it is seen
     }
-    this.away.far = next;
   }
 
   /** Put the eye back where it began. */
