@@ -19,9 +19,9 @@ __all__ = ["pages", "visit"]
 @pytest.mark.parametrize(
     ("name", "wanted"),
     [
-        ("level", [THIN, along_row(5), JUDGED_LEVEL]),
-        ("level, moved, held", [THIN, along_row(5), JUDGED_LEVEL]),
-        *((name, [THIN, over_square(8, 5), JUDGED]) for name in ("raised", "one colour", "stage", "lamps go round")),
+        ("level", [THIN, along_row(3), JUDGED_LEVEL]),
+        ("level, moved, held", [THIN, along_row(3), JUDGED_LEVEL]),
+        *((name, [THIN, over_square(3, 2), JUDGED]) for name in ("raised", "one colour", "stage", "lamps go round")),
     ],
 )
 def test_beams_are_those_of_the_judge(evaluate: Evaluate, name: str, wanted: list[Points]) -> None:
@@ -85,7 +85,7 @@ ROOM = """(async () => {
   const asked = [];
   const { cast } = view.renderer;
   view.renderer.cast = (exposures, beams, parts) => {
-    asked.push([{ 1: "thin", 8: "quick", 55: "judged" }[beams.square], parts]);
+    asked.push([{ 1: "thin", 3: "quick", 55: "judged" }[beams.square], parts]);
     cast(exposures, beams, parts);
   };
   const look = { whole: false, thin: false };

@@ -112,8 +112,8 @@ def sheets_of(
     ("name", "beams", "points"),
     [
         *((name, "THIN", THIN) for name in ("level", "raised, moved", "stage")),
-        *(("level", "QUICK", along_row(5)), ("level", "JUDGED", JUDGED_LEVEL)),
-        *(("raised, moved", "QUICK", over_square(8, 5)), ("stage", "QUICK", over_square(8, 5))),
+        *(("level", "QUICK", along_row(3)), ("level", "JUDGED", JUDGED_LEVEL)),
+        *(("raised, moved", "QUICK", over_square(3, 2)), ("stage", "QUICK", over_square(3, 2))),
     ],
 )
 def test_what_a_pixel_meets_is_rows_of_the_matrix(evaluate: Evaluate, name: str, beams: str, points: Points) -> None:

@@ -11,7 +11,7 @@ const NONE = 1e-9;
  * bottom, and `least` is for a part of a pixel.
  */
 export const JUDGED = { square: 55, row: 16, least: 3 };
-export const QUICK = { square: 8, row: 5, least: 1 };
+export const QUICK = { square: 3, row: 3, least: 1 };
 export const THIN = { square: 1, row: 1, least: 1 };
 
 /**
