@@ -8,7 +8,7 @@ const AT_STOPS = "At each stop of the turntable its shadow is another picture.";
 const ON_SCREENS = "Its shadows are pictures.";
 const GESTURES = [
   ["right drag · Shift drag · two fingers", "move the eye"],
-  ["wheel · pinch", "go nearer, on a screen to what is pointed at, or farther"],
+  ["wheel · pinch", "go nearer to what is pointed at, or farther"],
   ["double click", "put the eye back"],
   ["point at a screen", "choose the scan-line"],
 ];
@@ -23,7 +23,7 @@ const KEYS = [
   ["arrows on “shown”", "choose the scan-line's row and pixel"],
   ["+ −", "nearer, farther"],
   ["W", "whole shadow"],
-  ["B", "one thin beam in each pixel, as in the paper"],
+  ["B", "thin beams, as in the paper"],
   ["F", "full screen"],
   ["T", "light or dark"],
   ["?", "this list"],
