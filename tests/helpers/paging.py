@@ -22,7 +22,7 @@ Array = NDArray[Any]
 
 GRID = Grid((3, 5, 7), 1.3)
 RANDOM = np.random.default_rng(7)
-ALL = ("model/data.js", "model/stage.js", "model/cast.js", "model/sheet.js")
+ALL = ("model/data.js", "model/stage.js", "model/area.js", "model/cast.js", "model/sheet.js")
 #: The scene and the voxels of an argument, for an expression to go on with.
 GIVEN = """(async () => {
   const scene = await readScene(fromBase64(argument.scene));
@@ -40,9 +40,9 @@ def on_table(rig: Rig, channels: int = 3, **more: Any) -> Cube:
     return Cube(extinction.astype(np.float32), GRID, rig, powers, **more)
 
 
-def on_stage(stage: Stage, *, lamp_samples: int = 1, pixel_samples: int = 1, **more: Any) -> Cube:
+def on_stage(stage: Stage, *, lamp_samples: int = 1, **more: Any) -> Cube:
     """A random cube on a stage, under random powers."""
-    rig = divided(stage.rig(), lamp=lamp_samples, pixel=pixel_samples)
+    rig = divided(stage.rig(), lamp=lamp_samples)
     extinction = np.random.default_rng(3).gamma(0.5, 0.2, (3, *GRID.shape))
     powers = np.random.default_rng(4).uniform(0.5, 3, (len(rig.pairs), 3))
     return Cube(extinction.astype(np.float32), GRID, rig, powers, **more)
@@ -86,7 +86,7 @@ CUBES = {
     "raised, moved": on_table(shifted(table(5, 95, 270, elevation_deg=30))),
     "one colour": on_table(table(10, 75, 140, elevation_deg=10), channels=1),
     "stage": on_stage(TURNING, hold_deg=5.0),
-    "soft lamps": on_stage(TURNING, lamp_samples=3, pixel_samples=2),
+    "soft lamps": on_stage(TURNING, lamp_samples=3),
     "far wall": on_stage(FAR),
     "lamps go round": on_stage(replace(TURNING, cube_turns=False, axis=(0.3, 1.0, -0.2))),
 }

@@ -13,8 +13,8 @@ from lightcube.optics.views import Views
 Array = NDArray[np.floating[Any]]
 
 
-def beam_of_pixel(views: Views, view: int, row: int, column: int) -> tuple[Array, Array, float, float]:
-    """The pixel, the way light comes to it (a unit vector), and from where to where its beam runs along it, in mm.
+def beam_of_pixel(views: Views, view: int, row: float, column: float) -> tuple[Array, Array, float, float]:
+    """A place of the raster, the way light comes to it (a unit vector), and from where to where its beam runs, in mm.
 
     From the definition of `Views`: parallel light runs all along the line, a point lamp's from the lamp to the pixel.
     """

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
@@ -15,6 +14,7 @@ from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import encode
 from lightcube.viewer.packing import pack
 from lightcube.viewer.page import page
+from tests.helpers.areas import THIN, averaged, judged
 from tests.helpers.browser import opened
 from tests.viewer.test_shadows import glass, on_stage
 
@@ -153,5 +153,8 @@ def shown(tab: Any) -> np.ndarray:
     return np.array(levels).reshape(rows, columns, 4)[..., :3]
 
 
-def right(cube: Cube, where: float, *, whole: bool = False) -> np.ndarray:
-    return 255 * encode(np.clip(play(pack(cube).cube, [where], whole_shadow=whole), 0, 1).astype(float), cube.transfer)
+def right(cube: Cube, where: float, *, whole: bool = False, thin: bool = False) -> np.ndarray:
+    """Levels of the whole pixels, or of the thin beams through their middles, for each screen."""
+    packed = pack(cube).cube
+    light = averaged(packed, [where], THIN, whole=whole) if thin else judged(packed, [where], whole=whole)
+    return 255 * encode(np.clip(light, 0, 1), cube.transfer)

@@ -1,11 +1,14 @@
-"""The page's cards: the shown picture is what `play` casts, and what a beam passes is what the matrix says."""
+"""The page's cards: pictures shown are means over pixels, and what a pixel's beams pass is what the matrix says."""
 
 import re
 
 import numpy as np
 import pytest
 
+from lightcube.optics.cube import Cube
+from lightcube.optics.views import Views
 from lightcube.viewer.packing import pack
+from tests.helpers.areas import JUDGED, THIN, Points
 from tests.helpers.plain import beam_of_pixel, lengths_of_beam
 from tests.helpers.visiting import (
     COLUMNS,
@@ -29,7 +32,7 @@ from tests.helpers.visiting import (
 __all__ = ["pages", "visit"]
 
 
-def test_the_shown_picture_is_what_play_casts(visit: Open) -> None:
+def test_the_shown_picture_is_a_mean_over_pixels(visit: Open) -> None:
     tab, cube = visit(), turning()
     for where in (10.0, 17.3, 130.0, 245.0):
         turned_to(tab, where)
@@ -38,6 +41,28 @@ def test_the_shown_picture_is_what_play_casts(visit: Open) -> None:
     assert np.abs(shown(tab) - right(cube, where, whole=True)[0]).max() <= 0.55
     tab.keyboard.press("w")
     assert np.abs(shown(tab) - right(cube, where)[0]).max() <= 0.55
+
+
+def test_a_switch_shows_thin_beams(visit: Open) -> None:
+    """By mouse and by key, in its place beside the others; what was shown comes back."""
+    tab, cube = visit(), turning()
+    switch = tab.get_by_role("button", name="Thin beams")
+    assert switch.get_attribute("aria-pressed") == "false"
+    for turn_on, turn_off in (
+        (switch.click, lambda: tab.keyboard.press("b")),
+        (lambda: tab.keyboard.press("b"), switch.click),
+    ):
+        turn_on()
+        assert np.abs(shown(tab) - right(cube, STOPS[0], thin=True)[0]).max() <= 0.55
+        assert switch.get_attribute("aria-pressed") == "true"
+        assert tab.locator("figcaption").all_inner_texts() == ["wanted", "shown, thin beams"]
+        assert "dB" not in tab.locator(".compare .facts").inner_text()  # a score is of all light
+        turn_off()
+        assert np.abs(shown(tab) - right(cube, STOPS[0])[0]).max() <= 0.55
+        assert switch.get_attribute("aria-pressed") == "false"
+        assert tab.locator("figcaption").all_inner_texts() == ["wanted", "shown"]
+        assert "dB" in tab.locator(".compare .facts").inner_text()
+    assert np.abs(right(cube, STOPS[0]) - right(cube, STOPS[0], thin=True)).max() > 10
 
 
 def test_a_stage_has_a_tab_for_every_screen(visit: Open) -> None:
@@ -79,10 +104,23 @@ def test_the_whole_shadow_has_a_line_around_the_picture(visit: Open) -> None:
     assert np.abs(framed - right(cube, STOPS[0])[0]).max() <= 0.55
 
 
+def passed(cube: Cube, views: Views, row: int, column: int, points: Points) -> tuple[int, np.ndarray]:
+    """How many voxels the beams through points of a pixel meet, and the part of the light that is left on average."""
+    met, left = np.zeros(GRID.shape, bool), np.zeros(3)
+    for across, down in points:
+        lengths = lengths_of_beam(GRID, *beam_of_pixel(views, 0, row + down, column + across))
+        met |= lengths > 1e-9
+        left += np.exp(-np.einsum("zyx,czyx->c", lengths, cube.extinction)) / len(points)
+    return int(np.count_nonzero(met)), left
+
+
+@pytest.mark.parametrize("thin", [False, True])
 @pytest.mark.parametrize("where", STOPS[:2])
-def test_a_beam_says_what_it_passes(visit: Open, where: float) -> None:
+def test_a_pixel_says_what_its_light_passes(visit: Open, where: float, thin: bool) -> None:
     tab, cube = visit(width=1440, height=900), turning()
     turned_to(tab, where)
+    if thin:
+        tab.keyboard.press("b")
     views = cube.rig.views.take([STOPS.index(where)])
     box = tab.locator(".choose canvas").bounding_box()
     for row, column in [(0, 0), (5, 2), (7, 9)]:
@@ -90,11 +128,11 @@ def test_a_beam_says_what_it_passes(visit: Open, where: float) -> None:
             box["x"] + (column + 0.5) / COLUMNS * box["width"], box["y"] + (row + 0.5) / ROWS * box["height"]
         )
         rested(tab)
-        lengths = lengths_of_beam(GRID, *beam_of_pixel(views, 0, row, column))
-        left = np.exp(-np.einsum("zyx,czyx->c", lengths, pack(cube).cube.extinction))
+        count, left = passed(pack(cube).cube, views, row, column, THIN if thin else JUDGED)
         said = tab.locator(".scanline > .facts").inner_text()
         numbers = [float(each) for each in re.findall(r"[\d.]+(?=[ ;])", said)]
-        assert numbers[:2] == [column + 1, np.count_nonzero(lengths > 1e-9)]
+        assert ("on average" in said) is not thin
+        assert numbers[:2] == [column + 1, count]
         assert numbers[2:] == pytest.approx(100 * left, abs=0.51)
         assert tab.locator(".scanline header .facts").inner_text() == f"row {row + 1} of {ROWS}"
 
@@ -108,7 +146,7 @@ def test_the_keys_choose_a_row(visit: Open) -> None:
         rested(tab)
         assert chooser.get_attribute("aria-valuetext") == said
     assert angle_deg(tab) == STOPS[0]
-    assert "Pixel 7 passes" in tab.locator(".scanline > .facts").inner_text()
+    assert "The light of pixel 7 passes" in tab.locator(".scanline > .facts").inner_text()
 
 
 def test_pointing_at_the_slice_chooses_a_beam(visit: Open) -> None:
@@ -119,5 +157,5 @@ def test_pointing_at_the_slice_chooses_a_beam(visit: Open) -> None:
     for part in (0.45, 0.55):
         tab.mouse.move(box["x"] + box["width"] / 2, box["y"] + part * box["height"])
         rested(tab)
-        said.append(int(re.findall(r"Pixel (\d+)", tab.locator(".scanline > .facts").inner_text())[0]))
+        said.append(int(re.findall(r"pixel (\d+)", tab.locator(".scanline > .facts").inner_text())[0]))
     assert said[0] <= COLUMNS / 2 < said[1]

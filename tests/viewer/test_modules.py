@@ -2,6 +2,7 @@
 
 import re
 import zipfile
+from dataclasses import replace
 from graphlib import TopologicalSorter
 from pathlib import Path
 from typing import Any
@@ -12,12 +13,24 @@ from hatchling.builders.wheel import WheelBuilder
 
 import lightcube
 from lightcube.drawing.standing import drawn, standing
-from lightcube.forward.casting import play
 from lightcube.forward.turning import moment
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import rotations
 from lightcube.viewer import modules
-from tests.helpers.paging import ANGLES, CUBES, GIVEN, PLAIN, RANDOM, Evaluate, asked, held_in_a_page, nearly
+from lightcube.viewer.description import describe
+from tests.helpers.areas import THIN, averaged, judged
+from tests.helpers.paging import (
+    ANGLES,
+    CUBES,
+    GIVEN,
+    PLAIN,
+    RANDOM,
+    Evaluate,
+    asked,
+    held_in_a_page,
+    nearly,
+    paged,
+)
 
 WEB = Path(lightcube.__file__).parent / "viewer" / "web"
 MODULES = sorted(file.relative_to(WEB).as_posix() for file in WEB.rglob("*.js"))
@@ -107,8 +120,8 @@ APART = """new Promise((done, failed) => {
 })"""
 TOLD = """{
   at: momentOf(scene, new Turning(stops(scene), true), exposures(scene, 10), { place: 0, row: 1, column: null }),
-  pictures: exposures(scene, 10).map((exposure) => castPicture(cube, exposure)),
-  sheet: sheetOf(cube, exposures(scene, 10)[0], 0, 1),
+  pictures: exposures(scene, 10).map((exposure) => castPicture(cube, exposure, [[0, 0]])),
+  sheet: sheetOf(cube, exposures(scene, 10)[0], 0, 1, [[0, 0]]),
   room: standing(scene, 10),
   page: typeof document + typeof window,
 }"""
@@ -264,17 +277,30 @@ def test_exposures_are_those_of_python(evaluate: Evaluate, name: str) -> None:
     np.testing.assert_array_equal(dark, np.all(powers[rig.pair] * rig.sums.share == 0, axis=1))
 
 
+def test_a_lamp_with_a_size_is_as_many_views_as_all_is_judged_by() -> None:
+    """A page averages over pixels itself."""
+    cube = CUBES["raised"]
+    soft = replace(cube, rig=replace(cube.rig, sums=replace(cube.rig.sums, disc_deg=cube.rig.sums.disc_deg + 2)))
+    plain, several = (describe(each, paged(each)[1], "")["views"] for each in (cube, soft))
+    assert len(several) == JUDGE_DISC * len(plain)
+    for k, view in enumerate(plain):
+        own = several[k * JUDGE_DISC : (k + 1) * JUDGE_DISC]
+        assert {each["picture"] for each in own} == {view["picture"]}
+        nearly(np.mean([each["light"] for each in own], axis=0), view["light"], 1e-9)
+        nearly(np.sum([each["share"] for each in own], axis=0), view["share"], 1e-9)
+
+
 @pytest.mark.parametrize("name", ["raised", "level, moved, held"])
 def test_a_whole_shadow_has_its_middle_in_the_middle(evaluate: Evaluate, name: str) -> None:
     """And shows what Python does, on the screen's plane."""
     cube, packed, data = held_in_a_page(name)
     expression = """argument.angles_deg.map((angle) => {
       const [exposure] = exposures(scene, angle, true);
-      return { exposure, room: standing(scene, angle, true), picture: castPicture(cube, exposure) };
+      return { exposure, room: standing(scene, angle, true), picture: castPicture(cube, exposure, [[0, 0]]) };
     })"""
     found = asked(evaluate, data, expression, angles_deg=ANGLES)
     rig = moment(cube, ANGLES, whole_shadow=True)[0]
-    wanted = play(packed.cube, ANGLES, whole_shadow=True)
+    wanted = averaged(packed.cube, ANGLES, THIN, whole=True)
     for i, each in enumerate(found):
         exposure, room = each["exposure"], each["room"]
         assert tuple(exposure["raster"]) == tuple(exposure["window"]) == rig.picture_shape
@@ -323,14 +349,17 @@ def test_all_stand_where_python_puts_them(evaluate: Evaluate, name: str) -> None
 # model/cast.js
 
 
+@pytest.mark.parametrize("beams", ["THIN", "JUDGED"])
 @pytest.mark.parametrize("name", CUBES)
-def test_pictures_are_those_of_play(evaluate: Evaluate, name: str) -> None:
+def test_pictures_are_plain_averages(evaluate: Evaluate, name: str, beams: str) -> None:
     _, packed, data = held_in_a_page(name)
-    expression = """argument.angles_deg.flatMap((angle) => exposures(scene, angle)).map((exposure) => {
-      return { light: castPicture(cube, exposure), row: castRow(cube, exposure, 1) };
-    })"""
+    expression = f"""argument.angles_deg.flatMap((angle) => exposures(scene, angle)).map((exposure) => {{
+      const points = pointsOf(cube, exposure, {beams});
+      return {{ light: castPicture(cube, exposure, points), row: castRow(cube, exposure, 1, points) }};
+    }})"""
     found = asked(evaluate, data, expression, angles_deg=ANGLES)
-    wanted = np.broadcast_to(play(packed.cube, ANGLES), (*play(packed.cube, ANGLES).shape[:3], 3))
+    light = averaged(packed.cube, ANGLES, THIN) if beams == "THIN" else judged(packed.cube, ANGLES)
+    wanted = np.broadcast_to(light, (*light.shape[:3], 3))
     assert len(found) == len(wanted)
     assert np.ptp(wanted) > 0.5
     for each, picture in zip(found, wanted, strict=True):

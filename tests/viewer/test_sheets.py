@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from lightcube.drawing.standing import drawn
-from lightcube.forward.casting import play
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
@@ -15,6 +14,7 @@ from lightcube.optics.transfer import encode
 from lightcube.optics.views import Views
 from lightcube.viewer.packing import Packed
 from tests.helpers import plain
+from tests.helpers.areas import JUDGED_LEVEL, THIN, Points, along_row, averaged, judged, over_square
 from tests.helpers.paging import ANGLES, GRID, PLAIN, Evaluate, asked, held_in_a_page, nearly, on_table, paged, table
 from tests.projection.test_rays import lamps_for, lit, screens_for
 
@@ -84,51 +84,77 @@ def test_a_beam_to_the_lamp_itself_meets_nothing(evaluate: Evaluate) -> None:
 
 
 SHEETS = """argument.angles_deg.flatMap((angle) => exposures(scene, angle)).flatMap((exposure) =>
-  exposure.views.flatMap((view, number) => [0, 1, 2].map((row) => ({
-    row, number, exposure, sheet: sheetOf(cube, exposure, number, row),
-    facts: Array.from({ length: exposure.window[1] }, (_, c) => beamFacts(cube, exposure, number, row, c)),
-  }))))"""
+  exposure.views.flatMap((view, number) => [0, 1, 2].map((row) => {
+    const points = pointsOf(cube, exposure, { THIN, QUICK, JUDGED }[argument.beams]);
+    const columns = [...Array(exposure.window[1]).keys()];
+    const facts = columns.map((column) => pixelFacts(cube, exposure, number, row, column, points))
+      .map(({ voxels, left }) => ({ voxels: [...voxels], left }));
+    return { row, number, exposure, sheet: sheetOf(cube, exposure, number, row, points), facts };
+  })))"""
 
 
-def sheets(evaluate: Evaluate, name: str, angles_deg: tuple[float, ...]) -> tuple[Cube, list[Any], list[Views]]:
+def sheets(
+    evaluate: Evaluate, name: str, angles_deg: tuple[float, ...], beams: str = "THIN"
+) -> tuple[Cube, list[Any], list[Views]]:
     """The packed cube, its sheets, and for each of them its view by itself."""
-    return sheets_of(evaluate, *held_in_a_page(name)[1:], angles_deg)
+    return sheets_of(evaluate, *held_in_a_page(name)[1:], angles_deg, beams)
 
 
 def sheets_of(
-    evaluate: Evaluate, packed: Packed, data: dict[str, str], angles_deg: tuple[float, ...]
+    evaluate: Evaluate, packed: Packed, data: dict[str, str], angles_deg: tuple[float, ...], beams: str = "THIN"
 ) -> tuple[Cube, list[Any], list[Views]]:
-    found = asked(evaluate, data, SHEETS, angles_deg=angles_deg)
+    found = asked(evaluate, data, SHEETS, angles_deg=angles_deg, beams=beams)
     views = moment(drawn(packed.cube), angles_deg)[0].views
     return packed.cube, found, [views.take([i // 3]) for i in range(len(found))]
 
 
-@pytest.mark.parametrize("name", ["level", "raised, moved", "stage"])
-def test_what_a_beam_meets_is_a_row_of_the_matrix(evaluate: Evaluate, name: str) -> None:
-    cube, found, alone = sheets(evaluate, name, (10.0, 102.5))
+@pytest.mark.parametrize(
+    ("name", "beams", "points"),
+    [
+        *((name, "THIN", THIN) for name in ("level", "raised, moved", "stage")),
+        *(("level", "QUICK", along_row(3)), ("level", "JUDGED", JUDGED_LEVEL)),
+        *(("raised, moved", "QUICK", over_square(3, 2)), ("stage", "QUICK", over_square(3, 2))),
+    ],
+)
+def test_what_a_pixel_meets_is_rows_of_the_matrix(evaluate: Evaluate, name: str, beams: str, points: Points) -> None:
+    """All voxels of all its beams, and the mean of what these let through."""
+    cube, found, alone = sheets(evaluate, name, (10.0, 102.5), beams)
     for each, view in zip(found, alone, strict=True):
         for column, facts in enumerate(each["facts"]):
-            lengths = plain.lengths_of_beam(GRID, *plain.beam_of_pixel(view, 0, each["row"], column))
-            met = np.zeros(GRID.shape)
-            np.add.at(met.reshape(-1), np.array(facts["voxels"], int), facts["lengths"])
-            nearly(met, lengths, 1e-9)
-            assert facts["left"] == [1, 1, 1] or facts["voxels"]
-            nearly(facts["left"], np.exp(-np.einsum("zyx,czyx->c", lengths, cube.extinction)), 1e-6)
+            lengths = [
+                plain.lengths_of_beam(GRID, *plain.beam_of_pixel(view, 0, each["row"] + down, column + across))
+                for across, down in points
+            ]
+            met = np.flatnonzero(np.max(lengths, axis=0) > 1e-9)
+            assert sorted(facts["voxels"]) == met.tolist()
+            nearly(facts["left"], np.exp(-np.einsum("pzyx,czyx->pc", lengths, cube.extinction)).mean(axis=0), 1e-6)
 
 
+@pytest.mark.parametrize("beams", ["THIN", "JUDGED"])
 @pytest.mark.parametrize("name", ["level, moved, held", "raised", "one colour", "stage", "lamps go round"])
-def test_a_sheet_shows_its_row_of_the_screen(evaluate: Evaluate, name: str) -> None:
-    cube, found, _ = sheets(evaluate, name, (43.7, 130.0))
-    wanted = np.clip(encode(play(cube, (43.7, 130.0)), cube.transfer), 0, 1)
+def test_a_sheet_shows_its_row_of_the_screen(evaluate: Evaluate, name: str, beams: str) -> None:
+    """Each pixel its mean, and each of the beams of its bundle, side by side, the light where it lands."""
+    angles_deg = (43.7, 130.0)
+    cube, found, _ = sheets(evaluate, name, angles_deg, beams)
+    thin = beams == "THIN"
+    count = 1 if thin else 5
+    means = averaged(cube, angles_deg, THIN) if thin else judged(cube, angles_deg)
+    apart = np.stack([averaged(cube, angles_deg, [point]) for point in along_row(count)], axis=3)
+    means, apart = (np.clip(encode(each, cube.transfer), 0, 1) for each in (means, apart))
     picture = -1
     for each in found:
         picture += (each["number"], each["row"]) == (0, 0)
-        beams = each["sheet"]["beams"]
-        assert [beam["column"] for beam in beams] == list(range(each["exposure"]["window"][1]))
-        own = wanted[picture, each["row"], : len(beams)]
-        nearly([beam["shown"] for beam in beams], np.broadcast_to(own, (len(beams), 3)), 1e-5)
-        for beam, facts in zip(beams, each["facts"], strict=True):
-            assert (beam["start"] is None) == (beam["end"] is None) == (facts["voxels"] == [])
+        pixels = each["sheet"]["pixels"]
+        assert [pixel["column"] for pixel in pixels] == list(range(each["exposure"]["window"][1]))
+        own, single = (light[picture, each["row"], : len(pixels)] for light in (means, apart))
+        nearly([pixel["shown"] for pixel in pixels], np.broadcast_to(own, (len(pixels), 3)), 1e-5)
+        shown = [[beam["shown"] for beam in pixel["beams"]] for pixel in pixels]
+        nearly(shown, np.broadcast_to(single, (len(pixels), count, 3)), 1e-5)
+        for pixel, facts in zip(pixels, each["facts"], strict=True):
+            for beam in pixel["beams"]:
+                assert (beam["start"] is None) == (beam["end"] is None)
+                assert beam["start"] is None or facts["voxels"]
+                assert not thin or (beam["start"] is None) == (facts["voxels"] == [])
 
 
 @pytest.mark.parametrize("name", ["level", "level, moved, held"])
@@ -189,5 +215,5 @@ def test_a_plane_along_faces_shows_a_slice_beside_it(evaluate: Evaluate, off: fl
         assert set(np.array(each["sheet"]["cells"]) // 35) == {min(height, 2)}
         slices = {voxel // 35 for facts in each["facts"] for voxel in facts["voxels"]}
         assert slices == {height, height - 1} & {0, 1, 2}
-        for beam, facts in zip(each["sheet"]["beams"], each["facts"], strict=True):
-            assert (beam["start"] is None) == (facts["voxels"] == [])
+        for pixel, facts in zip(each["sheet"]["pixels"], each["facts"], strict=True):
+            assert (pixel["beams"][0]["start"] is None) == (facts["voxels"] == [])

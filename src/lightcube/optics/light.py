@@ -106,6 +106,11 @@ def judged_one_by_one(rig: Rig, grid: Grid) -> list[Rig]:
     return [_judged(rig, point[None]) for point in judge_points(rig, grid)]
 
 
+def discs_sampled(rig: Rig) -> Rig:
+    """Each view under a lamp with a size as those of the judge's points of its disc, through the middles of pixels."""
+    return _judged(rig, np.zeros((1, 2)))
+
+
 def _judged(rig: Rig, points: Reals) -> Rig:
     soft = np.hstack([np.repeat(points, JUDGE_DISC, axis=0), np.tile(seeds(JUDGE_DISC), (len(points), 1))])
     return rig.split([soft if disc_deg else _bare(points) for disc_deg in rig.sums.disc_deg])

@@ -13,6 +13,7 @@ from PIL import Image
 from lightcube.drawing.room import camera_for
 from lightcube.drawing.standing import carries_cube, drawn
 from lightcube.optics.cube import Cube
+from lightcube.optics.light import discs_sampled
 from lightcube.optics.rig import Rig
 from lightcube.scoring import metrics
 from lightcube.viewer.packing import Packed, lost
@@ -111,6 +112,8 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
 
 
 def _views(rig: Rig, channels: int) -> list[dict[str, Any]]:
+    """One for each picture and point of a lamp; the page itself averages over pixels."""
+    rig = discs_sampled(rig)
     views = rig.views
     columns = {
         "picture": rig.sums.picture,

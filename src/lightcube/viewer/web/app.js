@@ -35,12 +35,12 @@ const COPY_EVERY = 80;
 export function mount(root, scene, cube, { compact = false } = {}) {
   const turning = new Turning(stops(scene), matchMedia("(prefers-reduced-motion: reduce)").matches);
   const view = new RoomView(scene, cube);
-  const app = { root, scene, turning, view, chosen: { place: 0, row: null, column: null, whole: false, dark: null } };
+  const app = { root, scene, turning, view, chosen: { place: 0, row: null, column: null, whole: false, thin: false, dark: null } };
   app.does = actionsOf(app);
   app.parts = createParts(app, cube, compact);
   const [show, rested] = showing(app);
   app.loop = createLoop(show, rested);
-  view.aim(turning.angle, false);
+  view.aim(turning.angle, app.chosen, false);
   const ends = [
     listenToTheme(app, compact),
     listenToKeys(compact ? root : document, app.does),
@@ -108,7 +108,8 @@ function actionsOf(app) {
       return true;
     },
     eye: (across, down) => view.moveEye(across, down),
-    zoom: (factor) => view.zoom(factor),
+    thin: () => (chosen.thin = !chosen.thin),
+    zoom: (factor, x, y) => view.zoom(factor, x === undefined ? chosenPixel(chosen) : view.pointed(x, y)),
     reset: () => view.comeBack(),
     screen: (place) => Object.assign(chosen, { place, row: null, column: null }),
     point: (row, column) => Object.assign(chosen, { row, column }),
@@ -127,6 +128,11 @@ function actionsOf(app) {
     app.loop.ask();
     return done;
   }]));
+}
+
+/** The pixel that is pointed at, or null. */
+function chosenPixel({ place, row, column }) {
+  return column === null ? null : { screen: place, row, column };
 }
 
 function toggleFullScreen(root) {
@@ -210,15 +216,15 @@ function showing(app) {
   const { scene, turning, view, chosen, parts } = app;
   let [copied, told] = [-Infinity, turning.angle];
 
-  function show(seconds, scale) {
+  function show(seconds, scale, still) {
     turning.step(seconds);
-    view.aim(turning.angle, chosen.whole);
+    view.aim(turning.angle, chosen, still);
     const now = momentOf(scene, turning, view.exposures, chosen);
     const { place, row, column } = now.spot;
     view.draw(now.dark, chosen.row === null ? null : { screen: place, row, column }, scale);
     parts.controls?.update(now);
     parts.filmstrip.update(now);
-    if (performance.now() - copied > COPY_EVERY) showCards(now);
+    if (!still && performance.now() - copied > COPY_EVERY) showCards(now);
     if (told !== turning.angle) {
       told = turning.angle;
       parts.hint.done();
@@ -230,7 +236,7 @@ function showing(app) {
   function showCards(now) {
     copied = performance.now();
     parts.compare?.update(now, view);
-    parts.scanline?.update(now);
+    parts.scanline?.update(now, view.beams);
   }
 
   function rested() {

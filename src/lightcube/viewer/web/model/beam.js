@@ -8,16 +8,16 @@ const PARALLEL = 1e-12;
 const ON_FACE = 1e-9;
 
 /**
- * The beam that lights a pixel: the points start + t way, first <= t <= last.
+ * The beam that lights a place of the raster: the points start + t way, first <= t <= last.
  *
- * Of parallel light it is the whole line, of a point lamp the stretch from the lamp to the pixel. It is seen from the
- * pixel, because lamps may be very far away.
+ * Of parallel light it is the whole line, of a point lamp the stretch from the lamp to the place. It is seen from there,
+ * because lamps may be very far away.
  * @param {object} view of an exposure
- * @param {number} row
+ * @param {number} row whole in the middle of a pixel
  * @param {number} column
  * @param {number[]} raster [rows, columns] of the exposure
  * @returns {{start: number[], way: number[], first: number, last: number, pixel: number[]}} mm in the cube's axes;
- *   `way` has length 1, and `pixel` is where the pixel's centre lies (`start` too)
+ *   `way` has length 1, and `pixel` is where the place lies (`start` too)
  */
 export function beamOf(view, row, column, raster) {
   const across = scaled(view.right, column - (raster[1] - 1) / 2);

@@ -1,5 +1,6 @@
-// What a screen shows: the sum of the lamps' light behind the cube, in linear light.
+// What a screen shows: the sum of the lamps' light behind the cube, averaged over areas, in linear light.
 
+import { middleOf } from "./area.js";
 import { beamOf, mostPieces, walkInto } from "./beam.js";
 import { fallingLight } from "./light.js";
 
@@ -7,12 +8,14 @@ import { fallingLight } from "./light.js";
  * A screen's whole picture.
  * @param {object} cube
  * @param {object} exposure of one screen
- * @returns {Float32Array} rows * columns * 3 of the raster, row 0 the top, linear light, never clipped
+ * @param {number[][]} points of `pointsOf`, over which each pixel or part of one is averaged
+ * @param {number} [parts] along either side of a pixel
+ * @returns {Float32Array} rows * columns * 3 of the raster's parts, row 0 the top, linear light, never clipped
  */
-export function castPicture(cube, exposure) {
-  const [rows, columns] = exposure.raster;
+export function castPicture(cube, exposure, points, parts = 1) {
+  const [rows, columns] = exposure.raster.map((count) => count * parts);
   const picture = new Float32Array(rows * columns * 3);
-  for (let row = 0; row < rows; row++) picture.set(castRow(cube, exposure, row), 3 * row * columns);
+  for (let i = 0; i < rows; i++) picture.set(castRow(cube, exposure, middleOf(i, parts), points, parts), 3 * i * columns);
   return picture;
 }
 
@@ -20,16 +23,17 @@ export function castPicture(cube, exposure) {
  * One row of a screen's picture.
  * @param {object} cube
  * @param {object} exposure of one screen
- * @param {number} row
- * @returns {Float32Array} columns * 3 of the raster, linear light, never clipped
+ * @param {number} row where its middle is
+ * @param {number[][]} points of `pointsOf`
+ * @param {number} [parts] along either side of a pixel
+ * @returns {Float32Array} columns * 3 of the raster's parts, linear light, never clipped
  */
-export function castRow(cube, exposure, row) {
-  const columns = exposure.raster[1];
+export function castRow(cube, exposure, row, points, parts = 1) {
+  const columns = exposure.raster[1] * parts;
   const light = new Float32Array(columns * 3);
   const scratch = scratchFor(cube);
-  for (let column = 0; column < columns; column++) {
-    light.set(castInto([0, 0, 0], cube, exposure, row, column, scratch), 3 * column);
-  }
+  const own = points.map((point) => point.map((each) => each / parts));
+  for (let i = 0; i < columns; i++) light.set(meanOn(cube, exposure, row, middleOf(i, parts), own, scratch), 3 * i);
   return light;
 }
 
@@ -57,8 +61,16 @@ function scratchFor(cube) {
   return { voxels: new Int32Array(most), lengths: new Float64Array(most) };
 }
 
+/** Mean light at points around a place, in pixels; none beside the screen. */
+function meanOn(cube, exposure, row, column, points, scratch) {
+  const total = [0, 0, 0];
+  if (Math.round(row) >= exposure.window[0] || Math.round(column) >= exposure.window[1]) return total;
+  for (const [across, down] of points) castInto(total, cube, exposure, row + down, column + across, scratch);
+  return total.map((sum) => sum / points.length);
+}
+
+/** Add the light of one beam for each view. */
 function castInto(total, cube, exposure, row, column, { voxels, lengths }) {
-  if (row >= exposure.window[0] || column >= exposure.window[1]) return total;
   for (const view of exposure.views) {
     const { start, way, first, last, pixel } = beamOf(view, row, column, exposure.raster);
     const { light, shadow } = fallingLight(view, pixel);
@@ -68,5 +80,4 @@ function castInto(total, cube, exposure, row, column, { voxels, lengths }) {
       total[channel] += view.power[channel] * light * (1 - shadow * (1 - left[channel]));
     }
   }
-  return total;
 }

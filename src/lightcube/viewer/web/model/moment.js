@@ -9,10 +9,11 @@ import { nearestOf, shortestWay } from "./turning.js";
  * @param {Object} scene
  * @param {Turning} turning
  * @param {Object[]} exposures of all screens at its angle
- * @param {{place: number, row: number|null, column: number|null, whole: boolean, dark: boolean}} chosen the screen (by
- *   its place among the exposures), the pixel of it that is pointed at, whether the whole shadow is shown, the theme
+ * @param {{place: number, row: number|null, column: number|null, whole: boolean, thin: boolean, dark: boolean}} chosen
+ *   the screen (by its place among the exposures), the pixel of it that is pointed at, whether the whole shadow is shown,
+ *   and by thin beams, the theme
  * @returns {Object} angle, away (signed degrees from the nearest stop), pictures (numbers of those that are lit, or
- *   nearest), name (of these), exposures, spot ({place, row, column} on a lit screen), playing, snap, whole, dark
+ *   nearest), name (of these), exposures, spot ({place, row, column} on a lit screen), playing, snap, whole, thin, dark
  */
 export function momentOf(scene, turning, exposures, chosen) {
   const stop = turning.stops[nearestOf(turning.stops, turning.angle)];
@@ -28,6 +29,7 @@ export function momentOf(scene, turning, exposures, chosen) {
     playing: turning.playing,
     snap: turning.snap,
     whole: chosen.whole,
+    thin: chosen.thin,
     dark: chosen.dark,
   };
 }

@@ -1,57 +1,80 @@
 // One scan-line from above: the voxels and the beams in the plane through a row of pixels and the light that makes it.
 
-import { cross, dot } from "../tools/vectors.js";
+import { add, cross, dot, scaled } from "../tools/vectors.js";
+import { alongRow, middleOf } from "./area.js";
 import { beamOf, stretchInside, walk } from "./beam.js";
 import { castRow, transmittance } from "./cast.js";
 import { encode } from "./light.js";
 
 /** A plane counts as on a face within this distance, in voxel sides. */
 const ON_FACE = 1e-9;
+/** Beams that stand for all those of a pixel. */
+const BUNDLE = 5;
 
 /**
  * What the plane of a row meets, seen along the axis of the cube that it is most upright on.
  *
  * Beams, their ends and what is shown are exact. Cells are the voxels at the plane's height over the middle of each:
  * with level light exactly one slice of voxels, all that the row's beams meet; where the plane is tilted, beams meet
- * voxels next to these too, before or behind them (`beamFacts` has them all). A plane along a face between two slices
+ * voxels next to these too, before or behind them (`pixelFacts` has them all). A plane along a face between two slices
  * shows the one of the higher number, although its beams run half in each.
  * @param {object} cube
  * @param {object} exposure of one screen
  * @param {number} viewNumber into exposure.views
  * @param {number} row of the raster
- * @returns {{axis: number, shape: number[], cells: Int32Array, beams: object[]}}
+ * @param {number[][]} points of `pointsOf`, over which each pixel is averaged
+ * @returns {{axis: number, shape: number[], cells: Int32Array, pixels: object[]}}
  *   axis: the one that is left out, 0 = x, 1 = y, 2 = z;
  *   shape: counts [n, m] of the other two, in the order z, y, x;
  *   cells: n * m indices of voxels, m running fastest, -1 where the plane is outside;
- *   beams: for each column of the window {column, start, end (mm, where the beam enters and leaves the cube, null where
- *   it misses), pixel, shown (display values 0..1 of all the light there)}
+ *   pixels: for each column of the window {column, shown (display values 0..1 of all the light on it), beams: some of
+ *   those that make it, {start, end (mm, where it enters and leaves the cube, null where it misses), pixel (where it
+ *   lands), shown (of all the light there)}}
  */
-export function sheetOf(cube, exposure, viewNumber, row) {
+export function sheetOf(cube, exposure, viewNumber, row, points) {
   const view = exposure.views[viewNumber];
-  const displayed = castRow(cube, exposure, row).map((light) => encode(light, exposure.transfer));
-  const beams = Array.from({ length: exposure.window[1] }, (_, column) => {
-    const beam = beamOf(view, row, column, exposure.raster);
+  const bundle = points.length === 1 ? 1 : BUNDLE;
+  const means = shownOf(castRow(cube, exposure, row, points), exposure);
+  const each = shownOf(castRow(cube, exposure, row, alongRow(1), bundle), exposure);
+  const beamAt = (part) => {
+    const beam = beamOf(view, row, middleOf(part, bundle), exposure.raster);
     const inside = stretchInside(cube.shape, cube.voxel_mm, beam);
-    const shown = [0, 1, 2].map((channel) => Math.min(displayed[3 * column + channel], 1));
-    return { column, start: inside?.start ?? null, end: inside?.end ?? null, pixel: beam.pixel, shown };
+    return { start: inside?.start ?? null, end: inside?.end ?? null, pixel: beam.pixel, shown: each[part] };
+  };
+  const pixels = Array.from({ length: exposure.window[1] }, (_, column) => {
+    const beams = Array.from({ length: bundle }, (__, i) => beamAt(column * bundle + i));
+    return { column, shown: means[column], beams };
   });
-  return { ...cellsOf(cube, ...planeOf(view, row, exposure.raster)), beams };
+  return { ...cellsOf(cube, ...planeOf(view, row, exposure.raster)), pixels };
+}
+
+/** Display values [red, green, blue] of light, none above white. */
+function shownOf(light, { transfer }) {
+  const levels = Array.from(light, (each) => Math.min(encode(each, transfer), 1));
+  return Array.from({ length: levels.length / 3 }, (_, i) => levels.slice(3 * i, 3 * i + 3));
 }
 
 /**
- * What one beam meets: exact.
+ * What the beams of one pixel meet: exact.
  * @param {object} cube
  * @param {object} exposure of one screen
  * @param {number} viewNumber into exposure.views
  * @param {number} row of the raster
  * @param {number} column of the raster
- * @returns {{voxels: Int32Array, lengths: Float64Array, left: number[]}} indices, mm, and the part of each colour's
- *   light that is left behind the cube
+ * @param {number[][]} points of `pointsOf`
+ * @returns {{voxels: Set<number>, left: number[]}} indices, and the part of each colour's light that is left behind the
+ *   cube, on average
  */
-export function beamFacts(cube, exposure, viewNumber, row, column) {
-  const { start, way, first, last } = beamOf(exposure.views[viewNumber], row, column, exposure.raster);
-  const { voxels, lengths } = walk(cube.shape, cube.voxel_mm, start, way, first, last);
-  return { voxels, lengths, left: transmittance(cube, voxels, lengths) };
+export function pixelFacts(cube, exposure, viewNumber, row, column, points) {
+  const met = new Set();
+  let sum = [0, 0, 0];
+  for (const [across, down] of points) {
+    const beam = beamOf(exposure.views[viewNumber], row + down, column + across, exposure.raster);
+    const { voxels, lengths } = walk(cube.shape, cube.voxel_mm, beam.start, beam.way, beam.first, beam.last);
+    voxels.forEach((voxel) => met.add(voxel));
+    sum = add(sum, transmittance(cube, voxels, lengths));
+  }
+  return { voxels: met, left: scaled(sum, 1 / points.length) };
 }
 
 /** Normal of the plane through a row's beams, and a point of it, mm. */

@@ -22,13 +22,14 @@ export function createCompare(scene, does) {
   const tabs = element("div", { class: "tabs", role: "group", "aria-label": "Screens" });
   const wanted = element("div", { class: "picture" });
   const shown = createShown(does);
+  const caption = element("figcaption");
   const lamps = createLamps(scene);
   let drawn = "";
   const card = element("section", { class: "card compare", "aria-label": "Wanted and shown" },
     element("header", {}, title, facts), tabs,
     element("div", { class: "pair" },
       element("figure", {}, wanted, element("figcaption", { text: "wanted" })),
-      element("figure", {}, shown.element, element("figcaption", { text: "shown" }))),
+      element("figure", {}, shown.element, caption)),
     lamps.element);
 
   return {
@@ -37,22 +38,23 @@ export function createCompare(scene, does) {
       const exposure = now.exposures[now.spot.place];
       const picture = scene.pictures[exposure.picture];
       title.textContent = picture.name + (picture.mirrored ? " (mirrored)" : "");
-      facts.textContent = exposure.lit ? placeText(now.away, picture) : "no light on this screen here";
+      facts.textContent = exposure.lit ? placeText(now, picture) : "no light on this screen here";
       const key = `${exposure.picture} ${exposure.lit}`;
       if (key !== drawn) wanted.replaceChildren(wantedImage(scene, picture));
       drawn = key;
       updateTabs(tabs, scene, now, does);
+      caption.textContent = now.thin ? "shown, thin beams" : "shown";
       shown.update(now, view, now.whole ? windowInWhole(scene, exposure) : null);
       lamps.update(exposure);
     },
   };
 }
 
-/** "33.8° · 0.4° from it · 54.1 dB". */
-function placeText(away, picture) {
+/** "stop 33.8° · here · 54.1 dB"; the score is of all light, not of thin beams. */
+function placeText({ away, thin }, picture) {
   const stop = `stop ${degreesText(picture.angle_deg)}`;
   if (Math.abs(away) >= 0.005) return `${stop} · ${degreesText(Math.abs(away))} away`;
-  return [stop, "here", scoreText(picture.psnr)].filter(Boolean).join(" · ");
+  return [stop, "here", thin ? "" : scoreText(picture.psnr)].filter(Boolean).join(" · ");
 }
 
 /** The shown picture, on which pointing, dragging or the arrow keys choose a row. */

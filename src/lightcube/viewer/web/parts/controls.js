@@ -15,7 +15,7 @@ const MOST_TICKS = 60;
  *
  * @param {Object} scene
  * @param {number[]} stops
- * @param {Object} does `play()`, `neighbour(way)`, `snap()`, `whole()`, `speed(factor)`, `slide(angle)`, `slid()`
+ * @param {Object} does `play()`, `neighbour(way)`, `snap()`, `whole()`, `thin()`, `speed(factor)`, `slide(angle)`, `slid()`
  * @returns {{element: HTMLElement, update: function(Object): void}} `update` takes what the app knows at a moment
  */
 export function createControls(scene, stops, does) {
@@ -23,6 +23,7 @@ export function createControls(scene, stops, does) {
   const snap = switchButton("magnet", "Snap", "Come to rest on pictures, and on each while playing", does.snap);
   const whole = switchButton("whole", "Whole shadow", "Show the whole shadow (W)", does.whole);
   whole.hidden = scene.whole_shadow === null;
+  const thin = switchButton("thin", "Thin beams", "Show one thin beam in each pixel, as in the paper (B)", does.thin);
   const readout = element("output", { class: "readout", "aria-live": "off" });
   const slider = createSlider(stops, does);
   const row = element("div", { class: "controls", role: "group", "aria-label": "Turning" },
@@ -30,13 +31,14 @@ export function createControls(scene, stops, does) {
       iconButton("previous", "Previous picture", "Page Up", () => does.neighbour(-1)), play,
       iconButton("next", "Next picture", "Page Down", () => does.neighbour(1))),
     readout, slider.element,
-    element("div", { class: "choices" }, speedChoice(does.speed), snap, whole));
+    element("div", { class: "choices" }, speedChoice(does.speed), snap, whole, thin));
 
   return {
     element: row,
     update(now) {
       setPressed(snap, now.snap);
       setPressed(whole, now.whole);
+      setPressed(thin, now.thin);
       if (play.dataset.playing !== String(now.playing)) {
         play.dataset.playing = now.playing;
         play.replaceChildren(icon(now.playing ? "pause" : "play"));

@@ -15,7 +15,7 @@ const STUCK = 3;
  *
  * @param {HTMLElement} area
  * @param {Object} does what is called: `begin()` at every gesture, `turn(pixels)` (or null, then every drag moves the eye), `release(pixelsPerSecond)`,
- *   `eye(across, down)` in pixels, `zoom(factor)` (above 1: nearer), `point(x, y)` in 0..1 from the upper left,
+ *   `eye(across, down)` in pixels, `zoom(factor, x, y)` (above 1: nearer) and `point(x, y)` in 0..1 from the upper left,
  *   `leave()`, `reset()`
  * @param {boolean} polite zoom by wheel only while Ctrl is held, so that what is around can be scrolled
  */
@@ -46,7 +46,9 @@ export function listenToGestures(area, does, polite) {
     if (drag.eye) does.eye(across, down);
     else if (drag.far > STUCK) does.turn(across);
     drag.turned ||= !drag.eye && drag.far > STUCK;
-    if (fingers.size > 1 && before.spread > 0 && after.spread > 0) does.zoom(after.spread / before.spread);
+    if (fingers.size > 1 && before.spread > 0 && after.spread > 0) {
+      does.zoom(after.spread / before.spread, ...placeIn(area, { clientX: after.x, clientY: after.y }));
+    }
     drag.trail = drag.trail.filter(([time]) => event.timeStamp - time < RECENT);
     drag.trail.push([event.timeStamp, event.clientX]);
   });
@@ -70,7 +72,7 @@ export function listenToGestures(area, does, polite) {
     event.preventDefault();
     const lines = event.deltaMode === 0 ? event.deltaY / 16 : event.deltaY;
     does.begin();
-    does.zoom(Math.exp(-0.02 * lines * (event.ctrlKey ? 4 : 1)));
+    does.zoom(Math.exp(-0.02 * lines * (event.ctrlKey ? 4 : 1)), ...placeIn(area, event));
   }, { passive: false });
 }
 

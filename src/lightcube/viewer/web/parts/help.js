@@ -3,11 +3,12 @@
 import { element, icon, iconButton } from "../tools/elements.js";
 
 const WHAT_IT_IS = "Light falls through a block of coloured glass.";
+const ITS_LIGHT = "Each pixel shows all the light that falls on it; nearer, one sees how that varies inside.";
 const AT_STOPS = "At each stop of the turntable its shadow is another picture.";
 const ON_SCREENS = "Its shadows are pictures.";
 const GESTURES = [
   ["right drag · Shift drag · two fingers", "move the eye"],
-  ["wheel · pinch", "go nearer or farther"],
+  ["wheel · pinch", "go nearer to what is pointed at, or farther"],
   ["double click", "put the eye back"],
   ["point at a screen", "choose the scan-line"],
 ];
@@ -22,6 +23,7 @@ const KEYS = [
   ["arrows on “shown”", "choose the scan-line's row and pixel"],
   ["+ −", "nearer, farther"],
   ["W", "whole shadow"],
+  ["B", "thin beams, as in the paper"],
   ["F", "full screen"],
   ["T", "light or dark"],
   ["?", "this list"],
@@ -57,7 +59,7 @@ export function createHelp(scene) {
   const keys = all.filter(([key]) => key !== "W" || scene.whole_shadow !== null);
   const dialog = element("dialog", { class: "help", "aria-labelledby": "lightcube-help" },
     element("header", {}, element("h2", { id: "lightcube-help", text: "Turning a light cube" }), close),
-    element("p", { text: `${WHAT_IT_IS} ${scene.turns ? AT_STOPS : ON_SCREENS}` }),
+    element("p", { text: `${WHAT_IT_IS} ${scene.turns ? AT_STOPS : ON_SCREENS} ${ITS_LIGHT}` }),
     element("div", { class: "lists" }, listOf("gestures", "Mouse and fingers", gestures), listOf("keys", "Keys", keys)));
   dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
   return {

@@ -1,6 +1,7 @@
 // The card that shows one scan-line from above: a slice of the cube, the beams through it, and the pixels they make.
 
-import { beamFacts, sheetOf } from "../model/sheet.js";
+import { pointsOf } from "../model/area.js";
+import { pixelFacts, sheetOf } from "../model/sheet.js";
 import { lampPowers } from "../tools/cards.js";
 import { element } from "../tools/elements.js";
 import { SliceDrawing } from "./slice.js";
@@ -11,7 +12,8 @@ import { SliceDrawing } from "./slice.js";
  * @param {Object} scene
  * @param {Object} cube
  * @param {function(number, number|null): void} point called with the row and the column that are pointed at
- * @returns {{element: HTMLElement, update: function(Object): void}}
+ * @returns {{element: HTMLElement, update: function(Object, Object): void}} `update` takes what is known at a moment,
+ *   and how many beams make a pixel, as `pointsOf` does
  */
 export function createScanline(scene, cube, point) {
   const canvas = element("canvas", { class: "slice", role: "img" });
@@ -20,7 +22,7 @@ export function createScanline(scene, cube, point) {
   const subtitle = element("p", { class: "facts" });
   const lamps = element("select", { "aria-label": "Lamp whose beams are drawn", change: () => showAgain() });
   const drawing = new SliceDrawing(canvas, cube);
-  let now = null;
+  let [now, many] = [null, null];
 
   canvas.addEventListener("pointermove", (event) => pointAt(event));
   canvas.addEventListener("pointerdown", (event) => pointAt(event));
@@ -44,21 +46,22 @@ export function createScanline(scene, cube, point) {
       facts.textContent = "No lamp shines on this screen here.";
       return;
     }
-    const sheet = sheetOf(cube, exposure, view, row);
+    const points = pointsOf(cube, exposure, many);
+    const sheet = sheetOf(cube, exposure, view, row, points);
     drawing.show(sheet, exposure.views[view], { column, dark: now.dark });
     heading.textContent = `Scan-line ${seenFrom(sheet.axis)}`;
-    canvas.setAttribute("aria-label", `${sheet.beams.length} beams through the cube, seen ${seenFrom(sheet.axis)}`);
+    canvas.setAttribute("aria-label", `Beams of ${sheet.pixels.length} pixels through the cube, seen ${seenFrom(sheet.axis)}`);
     facts.textContent = column === null
       ? "Point at a beam, or at a pixel of the shown picture."
-      : beamText(beamFacts(cube, exposure, view, row, column), column, scene.voxels.channels);
+      : pixelText(pixelFacts(cube, exposure, view, row, column, points), column, scene.voxels.channels, now.thin);
   }
 
   return {
     element: element("section", { class: "card scanline", "aria-label": "Scan-line" },
       element("header", {}, heading, subtitle, lamps),
       canvas, facts),
-    update(next) {
-      now = next;
+    update(next, beams) {
+      [now, many] = [next, beams];
       showAgain();
     },
   };
@@ -68,12 +71,13 @@ function seenFrom(axis) {
   return axis === 2 ? "from above" : "from the side";
 }
 
-/** "Pixel 12 passes 87 voxels; 42 / 13 / 5 % of the light is left." */
-function beamText({ voxels, left }, column, channels) {
-  if (voxels.length === 0) return `Pixel ${column + 1}: the beam misses the cube; all of the light is left.`;
+/** "The light of pixel 12 passes 187 voxels; on average 42 / 13 / 5 % of it is left." */
+function pixelText({ voxels, left }, column, channels, thin) {
+  const light = `The ${thin ? "beam" : "light"} of pixel ${column + 1}`;
+  if (voxels.size === 0) return `${light} misses the cube; all of it is left.`;
   const parts = left.slice(0, channels).map((part) => (100 * part).toFixed(part < 0.0995 ? 1 : 0));
-  const few = voxels.length === 1 ? "voxel" : "voxels";
-  return `Pixel ${column + 1} passes ${voxels.length} ${few}; ${parts.join(" / ")} % of the light is left.`;
+  const few = voxels.size === 1 ? "voxel" : "voxels";
+  return `${light} passes ${voxels.size} ${few}; ${thin ? "" : "on average "}${parts.join(" / ")} % of it is left.`;
 }
 
 /**

@@ -1,4 +1,4 @@
-// Draws one slice of the cube with its beams: the light goes from left to right, as seen along the axis left out.
+// Draws one slice of the cube with bundles of beams: the light goes from left to right, seen along the axis left out.
 
 import { encode } from "../model/light.js";
 import { fitCanvas } from "../tools/elements.js";
@@ -29,11 +29,11 @@ export class SliceDrawing {
     this.cube = cube;
     this.colours = voxelColours(cube);
     this.cells = document.createElement("canvas");
-    this.lines = [];
+    this.bundles = [];
   }
 
   clear() {
-    this.lines = [];
+    this.bundles = [];
     this.context.setTransform(1, 0, 0, 1, 0, 0);
     this.context.clearRect(0, 0, this.canvas.width, this.canvas.height);
   }
@@ -47,21 +47,25 @@ export class SliceDrawing {
     fitCanvas(this.canvas);
     this.clear();
     const place = placing(sheet, view, this.cube, this.canvas.clientWidth, this.canvas.clientHeight);
-    this.lines = sheet.beams.map((beam) => lineOf(beam, view, place));
+    this.bundles = sheet.pixels.map(({ column, shown, beams }) => {
+      return { column, shown, lines: beams.map((beam) => lineOf(beam, view, place)) };
+    });
     this.drawCells(sheet, place);
     const density = this.canvas.width / this.canvas.clientWidth;
     this.context.setTransform(density, 0, 0, density, 0, 0);
-    this.drawBeams(sheet.beams, look);
-    this.drawStrip(sheet.beams, look);
+    this.drawBeams(look);
+    this.drawStrip(look);
   }
 
-  /** The column whose beam is nearest to a place on the canvas (pixels of the page). */
+  /** The column one of whose beams is nearest to a place on the canvas (pixels of the page). */
   columnAt(x, y) {
     let [found, least] = [null, Infinity];
-    for (const { column, from, to } of this.lines) {
-      const along = [to[0] - from[0], to[1] - from[1]];
-      const off = Math.abs((x - from[0]) * along[1] - (y - from[1]) * along[0]) / Math.hypot(...along);
-      if (off < least) [found, least] = [column, off];
+    for (const { column, lines } of this.bundles) {
+      for (const { from, to } of lines) {
+        const along = [to[0] - from[0], to[1] - from[1]];
+        const off = Math.abs((x - from[0]) * along[1] - (y - from[1]) * along[0]) / Math.hypot(...along);
+        if (off < least) [found, least] = [column, off];
+      }
     }
     return found;
   }
@@ -94,36 +98,44 @@ export class SliceDrawing {
     return (255 << 24) | (blue << 16) | (green << 8) | red;
   }
 
-  drawBeams(beams, { column, dark }) {
+  /** All bundles, the one that is pointed at last. */
+  drawBeams({ column, dark }) {
+    const others = this.bundles.filter((bundle) => bundle.column !== column);
+    const own = this.bundles.filter((bundle) => bundle.column === column);
+    const many = this.bundles.length * this.bundles[0].lines.length;
+    others.forEach(({ lines }) => this.drawBundle(lines, Math.min(1, 40 / many), dark, false));
+    own.forEach(({ lines }) => this.drawBundle(lines, 1, dark, true));
+    this.context.globalAlpha = 1;
+  }
+
+  /** Beams in the colour that arrives, on their way to the cube and inside it as faint as so many are. */
+  drawBundle(lines, faint, dark, own) {
     const paint = this.context;
-    const faint = Math.min(1, 40 / beams.length);
-    for (const [i, { from, enters, leaves, to }] of this.lines.entries()) {
-      const own = beams[i].column === column;
-      const thick = own ? 2 : 1;
+    const thick = own && lines.length === 1 ? 2 : 1;
+    for (const { from, enters, leaves, to, shown } of lines) {
       paint.globalAlpha = own ? 1 : 0.35 * faint;
       stroke(paint, from, enters ?? to, dark ? "#fff3d6" : "#8a6a2a", thick);
       if (enters === null) continue;
       paint.globalAlpha = own ? 1 : 0.12 * faint;
       stroke(paint, enters, leaves, dark ? "#fff" : "#000", thick);
       paint.globalAlpha = own ? 1 : 0.8 * Math.max(faint, 0.4);
-      stroke(paint, leaves, to, colourText(beams[i].shown), own ? 3 : 1.5);
+      stroke(paint, leaves, to, colourText(shown), 1.5 * thick);
     }
-    paint.globalAlpha = 1;
   }
 
-  /** The row of pixels where the beams land. */
-  drawStrip(beams, { column, dark }) {
+  /** The row of pixels where the bundles land, each in the colour of all its light. */
+  drawStrip({ column, dark }) {
     const paint = this.context;
-    const [first, last] = [this.lines[0].to, this.lines[this.lines.length - 1].to];
-    const steps = 2 * (this.lines.length - 1);
-    const half = steps === 0 ? [0, 4] : minus(last, first).map((part) => part / steps);
+    const places = this.bundles.map(({ lines }) => lines[(lines.length - 1) / 2].to);
+    const steps = 2 * (places.length - 1);
+    const half = steps === 0 ? [0, 4] : minus(places[places.length - 1], places[0]).map((part) => part / steps);
     const length = Math.hypot(...half) || 1;
     const way = half[1] < 0 ? -1 : 1; // away from the cube
-    this.lines.forEach(({ to }, i) => {
-      const own = beams[i].column === column;
+    this.bundles.forEach((bundle, i) => {
+      const own = bundle.column === column;
       const thick = (way * STRIP * (own ? 1.6 : 1)) / length;
-      boxPath(paint, minus(to, half), plus(to, half), [thick * half[1], -thick * half[0]]);
-      paint.fillStyle = colourText(beams[i].shown);
+      boxPath(paint, minus(places[i], half), plus(places[i], half), [thick * half[1], -thick * half[0]]);
+      paint.fillStyle = colourText(bundle.shown);
       paint.fill();
       if (!own) return;
       paint.strokeStyle = dark ? "#fff" : "#000";
@@ -165,7 +177,7 @@ function placing(sheet, view, cube, width, height) {
   const length = Math.hypot(...along) || 1;
   const [cos, sin] = [along[0] / length, along[1] / length];
   const turned = (point) => [cos * point[a] + sin * point[b], cos * point[b] - sin * point[a]];
-  const far = screenAt(sheet.beams, view, turned, radius);
+  const far = screenAt(sheet.pixels.flatMap(({ beams }) => beams), view, turned, radius);
   const reach = Math.max(...far.spots.map((spot) => Math.abs(spot[1])), radius);
   const end = Math.max(...far.spots.map((spot) => spot[0]), radius);
   const long = end + BEGIN * radius;
@@ -202,13 +214,13 @@ function shrunkTo(lamp, turned, nearest, wanted) {
 }
 
 /** A beam on the canvas: whence it comes, where it enters and leaves the cube (null: it misses), where it lands. */
-function lineOf({ column, start, end, pixel }, view, place) {
+function lineOf({ start, end, pixel, shown }, view, place) {
   const to = place(place.nearer(pixel));
   const lamp = view.light.slice(0, 3);
   const source = view.light[3] === 0 ? place(sub(pixel, scaled(unit(lamp), 1e3))) : place(lamp);
   const part = Math.min(1, (to[0] - place.begin) / (to[0] - source[0]));
   const from = plus(to, minus(source, to).map((each) => part * each));
-  return { column, from, enters: start && place(start), leaves: end && place(end), to };
+  return { from, enters: start && place(start), leaves: end && place(end), to, shown };
 }
 
 function plus(one, other) {

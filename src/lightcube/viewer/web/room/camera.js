@@ -117,6 +117,12 @@ export function beforeEye({ eye, ahead }, [start, end], near) {
   return [depths[0] > near ? start : crossing(), depths[1] > near ? end : crossing()];
 }
 
+/** Where the middle of a pixel is. */
+export function middleOfPixel(room, { screen, row, column }) {
+  const { corner, right, down } = room.screens[screen];
+  return add(corner, add(scaled(right, column + 0.5), scaled(down, row + 0.5)));
+}
+
 /**
  * The pixel of a screen's lit side that a ray meets.
  * @param {object} room

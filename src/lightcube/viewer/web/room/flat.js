@@ -1,5 +1,6 @@
 // The renderer where there is no WebGL2: the same room on a 2-D canvas, plainer, its shadows cast one ray at a time.
 
+import { pointsOf } from "../model/area.js";
 import { walk } from "../model/beam.js";
 import { castPicture, transmittance } from "../model/cast.js";
 import { encode } from "../model/light.js";
@@ -25,23 +26,25 @@ const PATCHES = 8;
  */
 export function createFlat(canvas, scene, cube) {
   const [kept, floor] = [new Map(), floorOf(scene)];
-  let [exposed, shadows] = [[], []];
+  let [exposed, asked, seen, shadows] = [[], null, 1, []];
+  const shadowOf = (exposure, parts) => keptShadow(kept, cube, scene, exposure, asked, parts);
   return {
     kind: "flat",
     onRestored: null,
-    cast(exposures) {
-      exposed = exposures;
-      shadows = exposures.map((exposure) => keptShadow(kept, cube, scene, exposure));
+    cast(exposures, beams, parts) {
+      [exposed, asked, seen] = [exposures, beams, parts];
+      shadows = exposures.map((exposure) => shadowOf(exposure, parts));
     },
     shadow(number) {
-      const { width, height } = shadows[number];
-      const { data } = shadows[number].getContext("2d").getImageData(0, 0, width, height);
+      const picture = shadowOf(exposed[number], 1);
+      const { width, height } = picture;
+      const { data } = picture.getContext("2d").getImageData(0, 0, width, height);
       return { rows: height, columns: width, pixels: data };
     },
-    drawShadow: (number, target) => target.getContext("2d").drawImage(shadows[number], 0, 0),
+    drawShadow: (number, target) => target.getContext("2d").drawImage(shadowOf(exposed[number], 1), 0, 0),
     draw(room, camera, { dark, mark, scale }) {
       const tones = TONES[dark ? "dark" : "light"];
-      const what = { scene, cube, room, camera, tones, shadows, mark, exposed, floor: floor(room) };
+      const what = { scene, cube, room, camera, tones, shadows, parts: seen, mark, exposed, floor: floor(room) };
       drawRoom({ ...what, canvas, context: canvas.getContext("2d"), rays: scale < 1 ? COARSE : FINE });
     },
     dispose: () => kept.clear(),
@@ -49,18 +52,18 @@ export function createFlat(canvas, scene, cube) {
 }
 
 /** A canvas with a screen's shadow, computed where it is not among those seen last. */
-function keptShadow(kept, cube, scene, exposure) {
-  const key = [exposure.screen, exposure.angle, ...exposure.raster].join(" ");
-  const shadow = kept.get(key) ?? castShadow(cube, scene, exposure);
+function keptShadow(kept, cube, scene, exposure, beams, parts) {
+  const key = [exposure.screen, exposure.angle, ...exposure.raster, beams.square, parts].join(" ");
+  const shadow = kept.get(key) ?? castShadow(cube, scene, exposure, beams, parts);
   kept.delete(key);
   kept.set(key, shadow);
   if (kept.size > KEPT) kept.delete(kept.keys().next().value);
   return shadow;
 }
 
-function castShadow(cube, scene, exposure) {
-  const picture = castPicture(cube, exposure);
-  const [[rows, columns], wide] = [exposure.window, exposure.raster[1]];
+function castShadow(cube, scene, exposure, beams, parts) {
+  const picture = castPicture(cube, exposure, pointsOf(cube, exposure, beams, parts), parts);
+  const [rows, columns, wide] = [...exposure.window, exposure.raster[1]].map((count) => count * parts);
   const light = (row, column) => picture.subarray(3 * (row * wide + column), 3 * (row * wide + column) + 3);
   return paintPicture(rows, columns, light, scene.transfer);
 }
@@ -229,7 +232,7 @@ function drawScreen(stage, { corner, right, down, pixels, facing, number }) {
 }
 
 /** A patch of a picture, a little larger on the right and below, so that no seams are seen. */
-function drawPatch({ context, seen }, picture, patch, { x, y }, pixels) {
+function drawPatch({ context, seen, parts }, picture, patch, { x, y }, pixels) {
   const [at, beside, below, across] = patch.map(seen);
   const [wide, high] = [pixels[1] / PATCHES, pixels[0] / PATCHES];
   const right = [0, 1].map((i) => (beside[i] - at[i] + across[i] - below[i]) / 2);
@@ -238,7 +241,8 @@ function drawPatch({ context, seen }, picture, patch, { x, y }, pixels) {
   context.save();
   context.transform(right[0] / wide, right[1] / wide, down[0] / high, down[1] / high, centre[0], centre[1]);
   const more = [x + wide < pixels[1] - 1e-6 ? wide / 12 : 0, y + high < pixels[0] - 1e-6 ? high / 12 : 0];
-  context.drawImage(picture, x, y, wide + more[0], high + more[1], 0, 0, wide + more[0], high + more[1]);
+  const sides = [wide + more[0], high + more[1]];
+  context.drawImage(picture, ...[x, y, ...sides].map((each) => parts * each), 0, 0, ...sides);
   context.restore();
 }
 

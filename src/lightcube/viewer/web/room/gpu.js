@@ -1,5 +1,6 @@
 // The renderer on WebGL2: exact shadows into textures, and the room with the cube as coloured glass.
 
+import { pointsOf } from "../model/area.js";
 import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, seenAt } from "./camera.js";
 import { TONES, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
@@ -15,12 +16,15 @@ const ON_FACE = 1e-9;
 const [VOXEL_UNIT, VIEW_UNIT, SHADOW_UNIT] = [0, 1, 2];
 /** Screens, lamps and lines that are drawn at most: as many as the room's program has room for. */
 const MOST_THINGS = 256;
+/** Rays that are cast at once: systems end programs that compute for seconds. */
+const MOST_RAYS = 2 ** 20;
 
 /**
  * A renderer that computes shadows and draws the room on a canvas.
  *
- * `cast(exposures)` computes the shadows of all screens; `shadow(number)` reads one back as {rows, columns, pixels},
- * RGBA from the upper left; `drawShadow(number, canvas)` copies it into another canvas of that size;
+ * `cast(exposures, beams, parts)` computes the shadows of all screens, of `beams` as `pointsOf` takes them, with so many
+ * `parts` along a pixel's side in the room; `shadow(number)` reads one's whole pixels back as {rows, columns, pixels},
+ * RGBA from the upper left; `drawShadow(number, canvas)` copies them into another canvas of that size;
  * `draw(room, camera, {dark, mark, scale})` draws the room at a part of the canvas's resolution. The drawing context
  * may be lost and come back: then everything is made again, and `onRestored` called.
  * @param {HTMLCanvasElement} canvas
@@ -38,20 +42,20 @@ export function createRenderer(canvas, scene, cube) {
     throw new Error(`The cube has ${most} voxels along a side, more than the ${longest} that this browser draws.`);
   }
   const floor = floorOf(scene);
-  let [kit, shown] = [makeKit(gl, scene, cube), []];
+  let [kit, shown] = [makeKit(gl, scene, cube), { exposures: [], beams: null, parts: 1 }];
   const renderer = {
     kind: "webgl2",
     onRestored: null,
-    cast(exposures) {
-      shown = exposures;
-      castAll(kit, scene, exposures);
+    cast(exposures, beams, parts) {
+      shown = { exposures, beams, parts };
+      castAll(kit, scene, cube, shown);
     },
-    shadow: (number) => readShadow(kit, shown[number], number),
+    shadow: (number) => readShadow(kit, cube, shown, number),
     drawShadow(number, target) {
-      const { rows, columns, pixels } = readShadow(kit, shown[number], number);
+      const { rows, columns, pixels } = readShadow(kit, cube, shown, number);
       target.getContext("2d").putImageData(new ImageData(pixels, columns, rows), 0, 0);
     },
-    draw: (room, camera, look) => drawRoom(kit, { scene, floor: floor(room), exposures: shown, room, camera, ...look }),
+    draw: (room, camera, look) => drawRoom(kit, { scene, floor: floor(room), room, camera, ...shown, ...look }),
     dispose() {
       canvas.removeEventListener("webglcontextlost", lost);
       canvas.removeEventListener("webglcontextrestored", restored);
@@ -61,7 +65,7 @@ export function createRenderer(canvas, scene, cube) {
   const lost = (event) => event.preventDefault(); // else it would not come back
   const restored = () => {
     kit = makeKit(gl, scene, cube);
-    castAll(kit, scene, shown);
+    castAll(kit, scene, cube, shown);
     renderer.onRestored?.();
   };
   canvas.addEventListener("webglcontextlost", lost);
@@ -82,6 +86,7 @@ function makeKit(gl, scene, cube) {
     views: makeTexture(gl, gl.TEXTURE_2D, VIEW_UNIT, gl.NEAREST),
     things: gl.createBuffer(),
     small: { frame: gl.createFramebuffer(), texture: null, size: "" },
+    picture: { frame: gl.createFramebuffer(), texture: null, size: "" },
   };
   uploadVoxels(kit, cube);
   const { rates, least, voxel_mm } = scene.voxels;
@@ -91,6 +96,11 @@ function makeKit(gl, scene, cube) {
     gl.uniform3fv(program.at("rates"), [0, 1, 2].map((i) => rates[rates.length === 1 ? 0 : i] / Math.LN2));
     gl.uniform1f(program.at("least"), least * voxel_mm);
   }
+  gl.useProgram(kit.caster.made);
+  gl.uniform1i(kit.caster.at("views"), VIEW_UNIT);
+  gl.uniform1i(kit.caster.at("linear"), scene.transfer === "linear" ? 1 : 0);
+  gl.useProgram(kit.painter.made);
+  gl.uniform1i(kit.painter.at("shadows"), SHADOW_UNIT);
   gl.uniformBlockBinding(kit.painter.made, gl.getUniformBlockIndex(kit.painter.made, "Things"), 0);
   gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, kit.things);
   gl.bufferData(gl.UNIFORM_BUFFER, 64 * MOST_THINGS, gl.DYNAMIC_DRAW);
@@ -152,33 +162,47 @@ function makeLayers(kit, rows, columns, count) {
   kit.layers = layers;
 }
 
-function castAll(kit, scene, exposures) {
-  const { gl, caster } = kit;
+function castAll(kit, scene, cube, { exposures, beams, parts }) {
+  const { gl } = kit;
   if (exposures.length === 0 || gl.isContextLost()) return;
   const [rows, columns] = exposures[0].raster;
-  makeLayers(kit, rows, columns, exposures.length);
+  makeLayers(kit, rows * parts, columns * parts, exposures.length);
   uploadViews(kit, scene, exposures.flatMap((exposure) => exposure.views), rows, columns);
-  gl.useProgram(caster.made);
-  gl.uniform1i(caster.at("views"), VIEW_UNIT);
-  gl.uniform1i(caster.at("linear"), scene.transfer === "linear" ? 1 : 0);
-  gl.uniform2i(caster.at("raster"), columns, rows);
   gl.bindFramebuffer(gl.FRAMEBUFFER, kit.target);
-  gl.viewport(0, 0, columns, rows);
-  let first = 0;
-  exposures.forEach(({ window, views: { length } }, layer) => {
-    gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, kit.shadows, 0, layer);
-    gl.uniform2i(caster.at("window"), window[1], window[0]);
-    gl.uniform2i(caster.at("range"), first, first + length);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    first += length;
+  exposures.forEach((_, number) => {
+    gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, kit.shadows, 0, number);
+    castOne(kit, cube, exposures, number, beams, parts);
   });
   gl.activeTexture(gl.TEXTURE0 + SHADOW_UNIT);
   gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
 }
 
+/** Cast a screen's shadow into what is bound, some rows at a time. */
+function castOne({ gl, caster }, cube, exposures, number, beams, parts) {
+  const { window, raster, views } = exposures[number];
+  const points = pointsOf(cube, exposures[number], beams, parts);
+  const first = exposures.slice(0, number).reduce((sum, exposure) => sum + exposure.views.length, 0);
+  gl.useProgram(caster.made);
+  gl.uniform2i(caster.at("raster"), raster[1], raster[0]);
+  gl.uniform2i(caster.at("window"), window[1], window[0]);
+  gl.uniform2i(caster.at("range"), first, first + views.length);
+  gl.uniform1i(caster.at("parts"), parts);
+  gl.uniform1i(caster.at("beams"), points.length);
+  gl.uniform2fv(caster.at("points"), points.flat());
+  const [rows, columns] = raster.map((count) => count * parts);
+  gl.viewport(0, 0, columns, rows);
+  gl.enable(gl.SCISSOR_TEST);
+  const high = Math.max(1, Math.floor(MOST_RAYS / (columns * points.length * views.length)));
+  for (let row = 0; row < rows; row += high) {
+    gl.scissor(0, row, columns, high);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+  gl.disable(gl.SCISSOR_TEST);
+}
+
 /** A table of the views, five rows of texels for each. */
 function uploadViews({ gl, views: table }, scene, views, rows, columns) {
-  const width = Math.max(rows, columns, 6);
+  const width = Math.max(rows, columns, 8);
   const numbers = new Float32Array(20 * width * views.length);
   views.forEach((view, i) => {
     const put = (row, texel, values) => numbers.set(values, 4 * ((5 * i + row) * width + texel));
@@ -202,7 +226,7 @@ function inVoxels(view, voxel_mm) {
 
 /**
  * One view's rows: where its rays start, as the sum of a column's and a row's part, each a whole number of voxel sides
- * (rows 0 and 2) and a small rest (1 and 3); then its light and its screen.
+ * (rows 0 and 2) and a small rest (1 and 3); then its light and its screen, and how its rays go on across and down.
  *
  * Rays start near the cube's middle, where parallel light is nearest to it, and where a point lamp's light passes a
  * plane that is parallel to the screen: there too the starts lie on a raster.
@@ -230,6 +254,7 @@ function putBeams(put, scene, view, rows, columns) {
   put(4, 3, [view.reach[0], view.falloff[0], view.reach[1], view.falloff[1]]);
   put(4, 4, [...normal, view.fullAt]);
   put(4, 5, [dot(way, origin), dot(way, right), dot(way, down), 0]);
+  put(4, 6, [...moved(right), 0, ...moved(down), 0]);
 }
 
 /** The part of the way from a lamp to the screen at which a plane parallel to that passes the cube's middle. */
@@ -242,13 +267,20 @@ function nearZero(value, least) {
   return Math.abs(value) < least ? 0 : value;
 }
 
-function readShadow({ gl, target, shadows }, { window: [rows, columns] }, layer) {
+/** The pixels of a screen: its layer, or where that has parts of them, cast again. */
+function readShadow(kit, cube, { exposures, beams, parts }, number) {
+  const { gl } = kit;
+  const { window: [rows, columns], raster } = exposures[number];
   const pixels = new Uint8ClampedArray(4 * rows * columns);
-  if (!gl.isContextLost()) {
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
-    gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, shadows, 0, layer);
-    gl.readPixels(0, 0, columns, rows, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  if (gl.isContextLost()) return { rows, columns, pixels };
+  if (parts === 1) {
+    gl.bindFramebuffer(gl.FRAMEBUFFER, kit.target);
+    gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, kit.shadows, 0, number);
+  } else {
+    bindTarget(gl, kit.picture, raster[1], raster[0]);
+    castOne(kit, cube, exposures, number, beams, 1);
   }
+  gl.readPixels(0, 0, columns, rows, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
   return { rows, columns, pixels };
 }
 
@@ -264,8 +296,8 @@ function drawRoom(kit, seen) {
   gl.useProgram(painter.made);
   setSight(gl, painter, seen, width, height);
   setThings(gl, painter, seen, counts);
-  if (part < 1) makeSmall(gl, small, width, height);
-  gl.bindFramebuffer(gl.FRAMEBUFFER, part < 1 ? small.frame : null);
+  if (part < 1) bindTarget(gl, small, width, height);
+  else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.viewport(0, 0, width, height);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
   if (part === 1) return;
@@ -275,17 +307,17 @@ function drawRoom(kit, seen) {
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
 }
 
-/** Room for a smaller picture, to be enlarged. */
-function makeSmall(gl, small, width, height) {
+/** Draw into a picture of some size that nobody sees. */
+function bindTarget(gl, target, width, height) {
   const size = `${width} ${height}`;
-  if (small.size === size) return;
-  gl.deleteRenderbuffer(small.texture);
-  small.texture = gl.createRenderbuffer();
-  small.size = size;
-  gl.bindRenderbuffer(gl.RENDERBUFFER, small.texture);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
+  if (target.size === size) return;
+  gl.deleteRenderbuffer(target.texture);
+  target.texture = gl.createRenderbuffer();
+  target.size = size;
+  gl.bindRenderbuffer(gl.RENDERBUFFER, target.texture);
   gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA8, width, height);
-  gl.bindFramebuffer(gl.FRAMEBUFFER, small.frame);
-  gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, small.texture);
+  gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, target.texture);
 }
 
 /** From where the room is seen, and where the cube is. */
@@ -305,10 +337,10 @@ function setSight(gl, painter, { scene, room, camera, floor }, width, height) {
 }
 
 /** What stands in the room, in which colours. */
-function setThings(gl, painter, { scene, exposures, room, camera, dark, mark }, counts) {
+function setThings(gl, painter, { scene, exposures, parts, room, camera, dark, mark }, counts) {
   const tones = TONES[dark ? "dark" : "light"];
   const { middle, right, down } = tableOf(scene, room);
-  gl.uniform1i(painter.at("shadows"), SHADOW_UNIT);
+  gl.uniform1f(painter.at("parts"), parts);
   gl.uniform3iv(painter.at("counts"), counts);
   gl.uniformMatrix3fv(painter.at("table"), false, [...sub(middle, camera.eye), ...right, ...down]);
   gl.uniform3fv(painter.at("foot"), footOf(scene, room, right, down));

@@ -1,16 +1,20 @@
 // The room on its canvas: which renderer draws it, from where it is seen, and what one points at in it.
 
+import { JUDGED, QUICK, THIN } from "../model/area.js";
 import { exposures, standing } from "../model/stage.js";
 import { clampTo, element, fitCanvas } from "../tools/elements.js";
-import { HIGHEST, LOWEST, cameraOf, fitted, orbitFrom, pointed, rayAt } from "./camera.js";
+import { add, norm, scaled, sub } from "../tools/vectors.js";
+import { HIGHEST, LOWEST, cameraOf, eyeOf, fitted, middleOfPixel, orbitFrom, pointed, rayAt } from "./camera.js";
 import { createFlat } from "./flat.js";
-import { roomsAround } from "./furniture.js";
+import { roomsAround, screenCorners } from "./furniture.js";
 import { createRenderer } from "./gpu.js";
 
 /** Degrees that the eye moves by for a pixel. */
 const EYE_SPEED = 0.3;
 /** How far the eye may go, in parts of the distance at which all is seen. */
 const [NEAREST, FARTHEST] = [0.2, 3];
+/** Parts along the longer side of a shadow at most: all browsers have textures of twice as many. */
+const MOST_PARTS = 1024;
 
 /**
  * The room, drawn by WebGL2 or, where there is none, plainly.
@@ -27,13 +31,34 @@ export class RoomView {
     this.bases = {};
   }
 
-  /** Cast the shadows of an angle, of the whole turntable's shadow or of its picture window. */
-  aim(angle, whole) {
-    if (this.angle === angle && this.whole === whole) return;
-    Object.assign(this, { angle, whole });
-    this.exposures = exposures(this.scene, angle, whole);
-    this.room = standing(this.scene, angle, whole);
-    this.renderer.cast(this.exposures);
+  /**
+   * Cast the shadows of an angle: of the whole turntable's shadow or of its picture window, by thin beams or by all of a
+   * pixel's light; more finely where things are `still`, and then in parts of pixels where one has come near.
+   */
+  aim(angle, { whole, thin }, still) {
+    const turned = this.angle !== angle || this.whole !== whole;
+    if (turned) {
+      Object.assign(this, { angle, whole });
+      this.exposures = exposures(this.scene, angle, whole);
+      this.room = standing(this.scene, angle, whole);
+    }
+    const beams = thin ? THIN : still ? JUDGED : QUICK;
+    const parts = thin ? 1 : this.partsSeen();
+    const finer = still && (this.beams !== beams || this.parts !== parts);
+    if (!turned && !finer && thin === (this.beams === THIN)) return; // while the eye moves what was cast stays
+    Object.assign(this, { beams, parts });
+    this.renderer.cast(this.exposures, beams, parts);
+  }
+
+  /** Parts along a pixel's side that look as large as a whole pixel does from where the eye began. */
+  partsSeen() {
+    const [began, now] = [eyeOf(this.base()), this.camera().eye];
+    const nearer = this.room.screens.map((screen) => {
+      const middle = scaled(screenCorners(screen).reduce(add), 1 / 4);
+      return norm(sub(began, middle)) / norm(sub(now, middle));
+    });
+    const most = Math.floor(MOST_PARTS / Math.max(...this.exposures[0].raster));
+    return clampTo(Math.round(Math.max(...nearer)), 1, Math.max(1, most));
   }
 
   /** Draw at a part of the full resolution; `mark` is the pixel that is pointed at, or null. */
@@ -49,14 +74,21 @@ export class RoomView {
     this.away.height = clampTo(height + this.away.height + EYE_SPEED * down, LOWEST, HIGHEST) - height;
   }
 
-  /** Go nearer (factor above 1) or farther. */
-  zoom(factor) {
-    this.away.far = clampTo(this.away.far / factor, NEAREST, FARTHEST);
+  /** Go nearer (factor above 1), to a pixel {screen, row, column} or to the middle, or farther, back from where one is. */
+  zoom(factor, pixel) {
+    const { far, aside } = this.away;
+    this.away.far = clampTo(far / factor, NEAREST, FARTHEST);
+    const [before, after] = [far, this.away.far].map((each) => Math.min(each, 1)); // farther, one looks at the middle
+    if (after > before) this.away.aside = scaled(aside, (1 - after) / (1 - before));
+    else if (pixel !== null) {
+      const way = sub(middleOfPixel(this.room, pixel), add(this.base().target, aside));
+      this.away.aside = add(aside, scaled(way, 1 - after / before)); // so that the pixel stays where it is seen
+    }
   }
 
   /** Put the eye back where it began. */
   comeBack() {
-    this.away = { azimuth: 0, height: 0, far: 1 };
+    this.away = { azimuth: 0, height: 0, far: 1, aside: [0, 0, 0] };
   }
 
   /** What a place on the canvas (0..1 from its upper left) lies on: {screen, row, column}, or null. */
@@ -73,14 +105,18 @@ export class RoomView {
 
   /** The eye, where it has been moved to. */
   camera() {
-    const base = this.base();
-    const orbit = {
+    return cameraOf(this.orbit(), this.aspect());
+  }
+
+  orbit() {
+    const [base, { azimuth, height, far, aside }] = [this.base(), this.away];
+    return {
       ...base,
-      azimuth: base.azimuth + this.away.azimuth,
-      height: base.height + this.away.height,
-      distance: base.distance * this.away.far,
+      azimuth: base.azimuth + azimuth,
+      height: base.height + height,
+      distance: base.distance * far,
+      target: add(base.target, aside),
     };
-    return cameraOf(orbit, this.aspect());
   }
 
   /** The eye that sees everything on a canvas of this shape. */

@@ -1,5 +1,7 @@
 // The renderer's programs in GLSL ES 3.00: light through the cube, what the screens show, and the room.
 
+import { JUDGED } from "../model/area.js";
+
 const HEAD = `#version 300 es
 precision highp float;
 precision highp int;
@@ -89,12 +91,18 @@ vec3 absorbed(ivec3 base, vec3 off, vec3 way, float from, float to) {
 }
 `;
 
-/** What one screen shows: row 0 of the target is the picture's top. The table's layout is gpu.js's `putBeams`. */
+/**
+ * What one screen shows, each texel a pixel or a part of one: row 0 of the target is the picture's top. The table's
+ * layout is gpu.js's `putBeams`.
+ */
 export const CAST = `${HEAD}${TRANSFER}${GLASS}
 uniform sampler2D views;
 uniform ivec2 range;   // the first of the screen's views, and after the last
 uniform ivec2 window;  // columns and rows that lie on the screen
 uniform ivec2 raster;
+uniform int parts;     // along a pixel's side
+uniform vec2 points[${JUDGED.square}];  // of a part's beams, from its middle, in its sides
+uniform int beams;     // how many
 uniform bool linear;   // display values are linear light
 out vec4 shown;
 
@@ -103,7 +111,8 @@ float fading(float distance, float reach, float falloff) {
   return falloff == 0.0 ? float(beyond <= 0.0) : exp(-beyond / falloff);
 }
 
-vec3 lightOf(int view, ivec2 pixel) {
+/* At a place of a pixel, across and down from its middle. */
+vec3 lightOf(int view, ivec2 pixel, vec2 aside) {
   int row = 5 * view;
   vec4 light = texelFetch(views, ivec2(0, row + 4), 0);
   vec4 power = texelFetch(views, ivec2(2, row + 4), 0);
@@ -113,12 +122,13 @@ vec3 lightOf(int view, ivec2 pixel) {
   vec4 normal = texelFetch(views, ivec2(4, row + 4), 0);
   vec3 whole = texelFetch(views, ivec2(pixel.x, row), 0).xyz + texelFetch(views, ivec2(pixel.y, row + 2), 0).xyz;
   vec3 off = texelFetch(views, ivec2(pixel.x, row + 1), 0).xyz + texelFetch(views, ivec2(pixel.y, row + 3), 0).xyz;
+  off += aside.x * texelFetch(views, ivec2(6, row + 4), 0).xyz + aside.y * texelFetch(views, ivec2(7, row + 4), 0).xyz;
   vec3 way = light.xyz;
   float from = -NEVER, to = NEVER, travelled;
   float strength = 1.0;
   if (light.w == 0.0) {
     vec3 along = texelFetch(views, ivec2(5, row + 4), 0).xyz;
-    vec2 place = vec2(pixel) - 0.5 * vec2(raster - 1);
+    vec2 place = vec2(pixel) - 0.5 * vec2(raster - 1) + aside;
     travelled = along.x + place.x * along.y + place.y * along.z;
   } else {
     way = (whole - light.xyz) + (off - rest.xyz);
@@ -136,12 +146,14 @@ vec3 lightOf(int view, ivec2 pixel) {
 }
 
 void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  ivec2 part = ivec2(gl_FragCoord.xy), pixel = part / parts;
+  vec2 middle = (vec2(part % parts) + 0.5) / float(parts) - 0.5;
   vec3 sum = vec3(0.0);
   if (all(lessThan(pixel, window)))
-    for (int view = range.x; view < range.y; view++) sum += lightOf(view, pixel);
-  sum = clamp(sum, 0.0, 1.0);
-  shown = vec4(linear ? sum : toDisplay(sum), 1.0);
+    for (int i = 0; i < beams; i++)
+      for (int view = range.x; view < range.y; view++) sum += lightOf(view, pixel, middle + points[i] / float(parts));
+  vec3 mean = clamp(sum / float(beams), 0.0, 1.0);
+  shown = vec4(linear ? mean : toDisplay(mean), 1.0);
 }`;
 
 /**
@@ -161,6 +173,7 @@ uniform vec3 foot;        // half the sides of what stands on the disc, in its r
 layout(std140) uniform Things { vec4 things[1024]; };  // four numbers of four for each thing
 uniform ivec3 counts;     // screens, lamps, lines
 uniform sampler2DArray shadows;
+uniform float parts;      // of theirs along a pixel's side
 uniform vec3 floorTone, farTone, gridTone, tableTone, rimTone, frameTone, backTone, offTone, markTone;
 uniform float shade;      // how dark shadows on the floor are
 uniform mat3 sheet;       // a corner of the marked row's beams, and two sides
@@ -249,8 +262,8 @@ void drawScreen(int i) {
   vec2 rim = edge + facing.w / vec2(length(right.xyz), length(down.xyz));
   float inside = within(edge.x, place.grain.x) * within(edge.y, place.grain.y);
   float framed = within(rim.x, place.grain.x) * within(rim.y, place.grain.y);
-  vec2 spot = clamp(place.at, vec2(0.5), pixels - 0.5) / vec2(textureSize(shadows, 0).xy);
-  float coarse = log2(max(max(place.grain.x, place.grain.y), 1.0));
+  vec2 spot = clamp(parts * place.at, vec2(0.5), parts * pixels - 0.5) / vec2(textureSize(shadows, 0).xy);
+  float coarse = log2(max(parts * max(place.grain.x, place.grain.y), 1.0));
   vec3 tone = toLinear(textureLod(shadows, vec3(spot, down.w), coarse).rgb);
   if (dot(corner.xyz, facing.xyz) >= 0.0) tone = mix(backTone, tone, THROUGH);
   light = mix(light, mix(frameTone, tone, inside), framed);

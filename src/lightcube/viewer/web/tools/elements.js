@@ -9,6 +9,7 @@ const ICONS = {
   previous: "M18 6l-8 6 8 6M7 6v12",
   next: "M6 6l8 6-8 6M17 6v12",
   magnet: "M6 4v8a6 6 0 0 0 12 0V4M6 9h4M14 9h4M10 4v8a2 2 0 0 0 4 0V4M6 4h4M14 4h4",
+  thin: "M3 12h18M8 7h8v10H8z",
   whole: "M4 8V4h4M16 4h4v4M20 16v4h-4M8 20H4v-4M9 9h6v6H9z",
   screen: "M9 4H4v5M15 4h5v5M20 15v5h-5M9 20H4v-5",
   theme: "M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16",
