@@ -14,6 +14,7 @@ from hatchling.builders.wheel import WheelBuilder
 import lightcube
 from lightcube.drawing.standing import drawn, standing
 from lightcube.forward.turning import moment
+from lightcube.optics.light import JUDGE_DISC
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import rotations
 from lightcube.viewer import modules

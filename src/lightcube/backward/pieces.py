@@ -21,9 +21,13 @@ FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
 _PATIENCE, _LATEST_S = 20.0, 60.0
 #: Pictures are enough so much above what is asked for, dB: what is cast is looked at more and more rarely.
 _SPARE_DB, _FIRST_LOOK, _LATER_LOOK = 0.5, 8, 1.15
+#: The solver ends where so many looks found the mean squared difference not so much smaller than it has been.
+_IN_VAIN, _BETTER = 2, 0.99
 #: What is kept of a finished piece, beside its figures: voxels ``(channel, z, y, x)``, and its lamps' powers. Those are
 #: in a checkpoint too, beside the solver's own arrays, none of which is called so.
 VOXELS, POWERS = "extinction", "lamp-powers"
+#: In a checkpoint: the least mean squared difference that was seen, and how many looks since then were in vain.
+_LOOKS = "looks"
 
 Floats = NDArray[np.floating[Any]]
 
@@ -85,6 +89,7 @@ def solve_piece(
     problem, start, bounds, iterations = _posed(job, name, store)
     state = _handed(store.state(name))
     watch = _Watch(job, name, problem, store, callback, checkpoints=checkpoints)
+    watch.go_on_from(state)
     options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
     result = job.recipe.solver.solve(
         problem.matrix,
@@ -97,7 +102,7 @@ def solve_piece(
     )
     if watch.stopped:
         return False
-    store.finish(name, _bundle(problem, result, "enough" if watch.enough else result.stop_reason))
+    store.finish(name, _bundle(problem, result, watch.reason or result.stop_reason))
     return True
 
 
@@ -206,8 +211,9 @@ class _Watch:
 
     Attributes
     ----------
-    enough
-        Whether the picture is as good as was asked for.
+    reason
+        ``"enough"`` where the pictures are as good as was asked for, ``"best"`` where what is cast becomes worse again;
+        else nothing.
     stopped
         Whether the callback said so before that.
     """
@@ -222,26 +228,46 @@ class _Watch:
         self._own = work[name] / sum(work.values())
         self._level, self._most = name.startswith("level"), job.recipe.passes or 0
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
-        self._wanted = -1.0  # an exact 0 is not enough by itself
-        if not self._level and job.recipe.solver.residual == "display" and job.recipe.enough_db < np.inf:
-            self._wanted = 10 ** (-(job.recipe.enough_db + _SPARE_DB) / 10)
-        self.enough = self.stopped = False
+        self._wanted = 10 ** (-(job.recipe.enough_db + _SPARE_DB) / 10)
+        asked = job.recipe.enough_db < np.inf or not job.recipe.beams.is_thin
+        self._looks = asked and not self._level and job.recipe.solver.residual == "display"
+        self._least, self._since = np.inf, 0.0
+        self.reason, self.stopped = "", False
+
+    def go_on_from(self, state: Mapping[str, NDArray[Any]] | None) -> None:
+        """Take up what was known where the solver stopped."""
+        if state is not None and _LOOKS in state:
+            self._least, self._since = (float(each) for each in state[_LOOKS])
 
     def __call__(self, progress: Progress) -> bool:
         """Tell the solver whether it is to stop."""
-        if self._wanted > 0 and _is_look(progress.iteration):
-            self.enough = self._problem.error(progress.x, progress.lamp_powers) <= self._wanted
+        if self._looks and _is_look(progress.iteration):
+            self._look(progress)
         asked = self._callback is not None and bool(self._callback(self._step(progress)))
-        if self.enough:  # finished, whatever the callback says of the pieces to come
+        if self.reason:  # finished, whatever the callback says of the pieces to come
             return True
         self.stopped = asked
         if asked or (self._checkpoints and time.monotonic() - self._last > self._gap):
             self._keep(progress)
         return asked
 
+    def _look(self, progress: Progress) -> None:
+        """Judge what is cast: whether it is enough, or has been better before.
+
+        It becomes worse in the end: a cube fits itself to the points that it is solved for, and to its mats.
+        """
+        error = self._problem.error(progress.x, progress.lamp_powers)
+        if 0 < error <= self._wanted:  # an exact 0 is not enough by itself
+            self.reason = "enough"
+        self._since = 0 if error < _BETTER * self._least else self._since + 1
+        self._least = min(self._least, error)
+        if self._since > _IN_VAIN and not self.reason:
+            self.reason = "best"
+
     def _keep(self, progress: Progress) -> None:
         began = time.monotonic()
-        self._store.keep(self._name, {**progress.state(), POWERS: progress.lamp_powers})
+        kept = {POWERS: progress.lamp_powers, _LOOKS: np.array([self._least, self._since])}
+        self._store.keep(self._name, {**progress.state(), **kept})
         self._last = time.monotonic()
         self._gap = min(max(min(2 * self._gap, CHECKPOINT_S), _PATIENCE * (self._last - began)), _LATEST_S)
 

@@ -39,7 +39,8 @@ class Solution:
     undetermined
         How many voxel colours no remaining equation determines; they are transparent.
     stop_reason
-        One of ``"converged"``, ``"enough"``, ``"iterations"``, ``"callback"``.
+        One of ``"converged"``, ``"enough"``, ``"best"`` (what is cast would become worse), ``"iterations"``,
+        ``"callback"``.
     lower_bound
         What no cube and no lamps (where these were found at half the size: no cube with these lamps) can bring the
         last residual below, or None where the method does not tell or was interrupted.
@@ -164,7 +165,7 @@ def _together(job: Job, histories: list[Reals]) -> Reals:
 
 
 def _slowest(reasons: list[str]) -> str:
-    return next(reason for reason in ("iterations", "enough", "converged") if reason in reasons)
+    return next(reason for reason in ("iterations", "enough", "best", "converged") if reason in reasons)
 
 
 def _made_with(job: Job) -> dict[str, Any]:

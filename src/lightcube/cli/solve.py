@@ -101,6 +101,8 @@ def _asked(
     planning = solving.read(pictures, options)
     with err.status("rehearsing"), compiling(as_json=as_json):
         planned = planning()
-        order = solving.another_order(planned)
     job = solving.job(planned, memory=memory, units=units)
-    return job, lambda: [*words.in_short(planned, order), *([] if options.paper else words.what_to_change(planned))]
+    return job, lambda: [
+        *words.in_short(planned, planned.order),
+        *([] if options.paper else words.what_to_change(planned)),
+    ]

@@ -25,11 +25,12 @@ from lightcube.planning.feasibility import doubtful, impossible
 from lightcube.planning.measured import is_measured
 from lightcube.planning.prediction import Prediction, predict
 from lightcube.planning.reachable import sentences
-from lightcube.scoring.metrics import GOOD_DB
 
 if TYPE_CHECKING:
     from lightcube.planning.order import Order
 
+#: Pictures are made as wide as so much is expected of them, dB; half as wide as the cube where this is.
+PLANNED_DB, LEAST_DB, HALF = 38.0, 36.0, 0.5
 #: What hold may cost, dB; above so much no eye sees a loss.
 HOLD_COSTS_DB, BEST_SEEN_DB = 1.0, 45.0
 #: Widths of the pictures, as parts of the cube's, that are tried.
@@ -131,14 +132,15 @@ def plan(
         pictures under a level one.
     picture_width
         Width of the pictures as a fraction of the cube's; default the largest in `WIDTHS` with a predicted mean PSNR
-        of at least 40 dB, or the smallest.
+        of at least 38 dB, or the smallest; but half of it where 36 dB are predicted for that.
     turntable
         Angles, lamp and screen, as far as they are said; None = ``Turntable()``.
     fit
         What happens to pictures of another aspect, as `lightcube.fit` takes it.
     longest_hold
         Hold pictures as long as is predicted to cost less than 1 dB (of what lies below 45 dB), at most half the way
-        to the next stop, instead of as long as the recipe says; not at all where less than 40 dB are predicted.
+        to the next stop, instead of as long as the recipe says. Where light is averaged over areas, over at least a
+        quarter of a degree for 64 voxels across: turned by less than one can turn by hand, a picture stands.
     shift
         Let pictures stand up to so many pixels higher, lower or aside, in turn.
     order
@@ -161,7 +163,8 @@ def plan(
     def predicted(width: float) -> Plan:
         grid, rig = _cube_for(pictures, shape or n, size_mm, table, width)
         targets = fitted(pictures, rig, fit)
-        return Plan(pictures, targets, grid, asked, fit, predict(targets, grid, asked))
+        recipe = replace(asked, hold_deg=least_hold_deg(rig, grid, asked)) if longest_hold else asked
+        return Plan(pictures, targets, grid, recipe, fit, predict(targets, grid, recipe))
 
     best = _widest(predicted) if picture_width is None else predicted(picture_width)
     best = held_longest(best) if longest_hold else best
@@ -215,15 +218,18 @@ def spread(planned: Plan, targets: Targets, shift: int) -> Targets:
 
 
 def _widest(predicted: Callable[[float], Plan]) -> Plan:
-    """Return the plan for the largest of `WIDTHS` with good pictures, or for the smallest; by bisection."""
+    """Return the plan for the largest of `WIDTHS` with good pictures, for half the width, or for the smallest one."""
     best, first, last = None, 0, len(WIDTHS)
     while last - first > 1 or best is None:
         middle = (first + last) // 2
         candidate = predicted(WIDTHS[middle])
-        if candidate.prediction.psnr_mean >= GOOD_DB or middle == 0:
+        if candidate.prediction.psnr_mean >= PLANNED_DB or middle == 0:
             best, first = candidate, middle
         else:
             last = middle
+    if WIDTHS[first] < HALF:
+        half = predicted(HALF)
+        return half if half.prediction.psnr_mean >= LEAST_DB else best
     return best
 
 
@@ -238,9 +244,14 @@ def proportions(n: int, aspect: float, picture_width: float, *, level: bool) -> 
     return max(1, round(high)), max(1, round(wide)), max(1, round(wide))
 
 
+def least_hold_deg(rig: Rig, grid: Grid, recipe: Recipe) -> float:
+    """How long pictures are held at least where nothing is said: not at all by thin beams."""
+    return 0.0 if recipe.beams.is_thin else min(dense_step_deg(grid) / 2, rig.widest_hold_deg)
+
+
 def held_longest(without: Plan) -> Plan:
     """Find the longest hold that costs less than 1 dB of what is predicted for the plan `without`."""
-    if without.prediction.psnr_mean < GOOD_DB:  # where pictures drown in each other hold costs nothing, and is worth it
+    if without.prediction.psnr_mean < PLANNED_DB:  # pictures that drown in each other are held at no cost
         return without
     step, most = dense_step_deg(without.grid), without.targets.rig.widest_hold_deg
     enough = min(without.prediction.psnr_mean, BEST_SEEN_DB) - HOLD_COSTS_DB
@@ -249,6 +260,8 @@ def held_longest(without: Plan) -> Plan:
         hold_deg = steps * step
         if hold_deg > most:
             break
+        if hold_deg <= without.recipe.hold_deg:
+            continue
         recipe = replace(without.recipe, hold_deg=hold_deg)
         prediction = predict(without.targets, without.grid, recipe)
         if prediction.psnr_mean < enough:

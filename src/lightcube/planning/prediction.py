@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -49,12 +49,26 @@ from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
 from lightcube.scoring.metrics import BEST_DB, psnr
 
-#: Passes of a rehearsal, points of a pixel in it, and its work: beams times the cube's width, in voxels.
-PASSES, POINTS, WORK = 60, Light(5, 4), 1_000_000
+#: Points of a pixel in a rehearsal, which has few: it is not to look well, but to tell how it will look.
+POINTS = Light(5, 4)
 #: A small cube is at least so wide, in voxels.
 _LEAST = 20
-#: The fitted law, see above.
-BIAS, GROWTH, HOLD = 3.6, 0.12, 0.3
+#: How small a hold shrinks with the cube.
+HOLD = 0.3
+
+
+class Rehearsal(NamedTuple):
+    """Passes of a rehearsal, its work (beams times the cube's width, in voxels), and the fitted law, see above."""
+
+    passes: int
+    work: int
+    start: float
+    bias: float
+    growth: float
+
+
+#: By thin beams, and where light is averaged over pixels.
+THIN, AREA = Rehearsal(150, 150_000, 0.0, 3.6, 0.12), Rehearsal(60, 1_000_000, 0.0, 3.6, 0.12)
 #: Means and minima above this, dB, are told as this: no eye tells more.
 MOST_DB = 50.0
 
@@ -121,13 +135,20 @@ def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Predi
         Where `solve` would refuse them.
     """
     raised(targets.rig, grid)
-    reached, width = rehearse(targets, grid, recipe or Recipe())
-    return Prediction(law(reached, max(grid.shape[1:]) / width), width)
+    asked = recipe or Recipe()
+    reached, width = rehearse(targets, grid, asked)
+    return Prediction(law(reached, max(grid.shape[1:]) / width, rehearsal_of(asked)), width)
 
 
-def law(reached: Reals, ratio: float) -> Reals:
+def rehearsal_of(recipe: Recipe) -> Rehearsal:
+    """How a recipe is rehearsed."""
+    return THIN if recipe.beams.is_thin else AREA
+
+
+def law(reached: Reals, ratio: float, by: Rehearsal) -> Reals:
     """PSNR to expect, dB, of pictures that `reached` so much in a cube narrower by `ratio`; see the module."""
-    return np.clip(reached + (1 - 1 / ratio) * (BIAS + GROWTH * (reached - 30)), 0.0, BEST_DB)
+    more = by.bias + by.growth * (reached - 30)
+    return np.clip(reached + by.start + (1 - 1 / ratio) * more, 0.0, BEST_DB)
 
 
 def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
@@ -139,7 +160,7 @@ def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
     width = max(small_grid.shape[1:])
     bound = Material(recipe.stuff.most(grid))
     light = recipe.beams if recipe.beams.is_thin else POINTS
-    rehearsed = replace(recipe.by_display(PASSES), material=bound, light=light)
+    rehearsed = replace(recipe.by_display(rehearsal_of(recipe).passes), material=bound, light=light)
     rehearsed = replace(rehearsed, hold_deg=_small_hold(targets, grid, hold_deg, width))
     cube = solving.solve(small, small_grid, rehearsed).cube
     shown = encode(np.stack(list(cast(cube, light="thin" if light.is_thin else "area"))), small.transfer)
@@ -179,7 +200,7 @@ def _width(targets: Targets, grid: Grid, recipe: Recipe) -> int:
     pixels = math.prod(widened(targets.rig, grid, recipe.mat).picture_shape)
     points = 1 if recipe.beams.is_thin else POINTS.row_points if is_in_slices(targets.rig, grid) else POINTS.points
     work = len(targets) * points * (2 if recipe.hold_deg else 1) * pixels * across
-    return min(across, max(_LEAST, round(across * (WORK / work) ** (1 / 3))))
+    return min(across, max(_LEAST, round(across * (rehearsal_of(recipe).work / work) ** (1 / 3))))
 
 
 def _small_hold(targets: Targets, grid: Grid, hold_deg: float, width: int) -> float:

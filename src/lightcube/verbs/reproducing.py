@@ -175,7 +175,10 @@ def _passes(made: Mapping[str, Any], command: Command) -> Iterator[str]:
     elif made.get("stop_reason") == "iterations":
         yield from ("--iterations", str(made["iterations"]))
     else:
-        reason = {"enough": "were enough", "converged": "left nothing to do"}.get(made.get("stop_reason", ""), "came")
+        known = {"enough": "were enough", "best": "were best", "converged": "left nothing to do"}
+        reason = known.get(made.get("stop_reason", ""), "came")
+            made.get("stop_reason", ""), "came"
+        )
         passes = f"{made['iterations']} passes {reason}" if "iterations" in made else "nothing is said of passes"
         command.doubts.append(
             f"How many passes were allowed, and which PSNR was enough, is not recorded ({passes}); the default is "
