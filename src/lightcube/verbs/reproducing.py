@@ -177,8 +177,6 @@ def _passes(made: Mapping[str, Any], command: Command) -> Iterator[str]:
     else:
         known = {"enough": "were enough", "best": "were best", "converged": "left nothing to do"}
         reason = known.get(made.get("stop_reason", ""), "came")
-            made.get("stop_reason", ""), "came"
-        )
         passes = f"{made['iterations']} passes {reason}" if "iterations" in made else "nothing is said of passes"
         command.doubts.append(
             f"How many passes were allowed, and which PSNR was enough, is not recorded ({passes}); the default is "
