@@ -8,14 +8,14 @@ import pytest
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
+from lightcube.optics.light import Light
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from lightcube.pictures.turntable import Turntable
 from lightcube.planning import plan as planning
-from lightcube.planning.plan import WIDTHS, plan, plan_stage, proportions
+from lightcube.planning.plan import PLANNED_DB, WIDTHS, plan, plan_stage, proportions
 from lightcube.planning.prediction import Prediction
-from lightcube.scoring.metrics import GOOD_DB
 
 
 def pictures(count: int = 4, rows: int = 24, columns: int = 36) -> Pictures:
@@ -42,11 +42,22 @@ def formula(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 def test_pictures_are_as_wide_as_good_ones_can_be(formula: list[float]) -> None:
     planned = plan(pictures(), 64)
-    assert planned.prediction.psnr_mean >= GOOD_DB
+    assert planned.prediction.psnr_mean >= PLANNED_DB
     width = planned.targets.rig.picture_shape[1] / 64
     wider = plan(pictures(), 64, picture_width=WIDTHS[WIDTHS.index(min(WIDTHS, key=lambda w: abs(w - width))) + 1])
-    assert wider.prediction.psnr_mean < GOOD_DB
+    assert wider.prediction.psnr_mean < PLANNED_DB
     assert len(formula) <= 6
+
+
+def test_half_as_wide_as_the_cube_they_may_be_a_little_worse(monkeypatch: pytest.MonkeyPatch) -> None:
+    for half_db, columns in ((36.5, 32), (35.5, 24)):
+
+        def told(targets: Targets, _grid: Grid, _recipe: Recipe, half_db: float = half_db) -> Prediction:
+            wide = targets.rig.picture_shape[1]
+            return Prediction(np.full(len(targets), 39.0 if wide < 26 else half_db if wide <= 32 else 20.0), 20)
+
+        monkeypatch.setattr(planning, "predict", told)
+        assert plan(pictures(), 64).targets.rig.picture_shape[1] == columns
 
 
 def test_where_none_is_good_they_are_as_narrow_as_they_get(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -66,7 +77,7 @@ def test_where_all_are_good_they_fill_the_cube(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_hold_grows_while_it_costs_less_than_a_decibel(formula: list[float]) -> None:
-    """At 0.8 dB a degree a hold of 1 degree is the longest of those tried; where nothing is good there is none."""
+    """At 0.8 dB a degree a hold of 1 degree is the longest of those tried; where nothing is good there is the least."""
     planned = plan(pictures(), 64, longest_hold=True, picture_width=0.4)
     without = plan(pictures(), 64, picture_width=0.4)
     assert planned.recipe.hold_deg == 1.0
@@ -75,7 +86,9 @@ def test_hold_grows_while_it_costs_less_than_a_decibel(formula: list[float]) -> 
     perfect = plan(pictures(), 64, longest_hold=True, picture_width=0.25)
     assert 1 < perfect.recipe.hold_deg <= perfect.targets.rig.widest_hold_deg
     assert perfect.prediction.psnr_mean >= 44
-    assert plan(pictures(), 64, longest_hold=True, picture_width=0.6).recipe.hold_deg == 0
+    assert plan(pictures(), 64, longest_hold=True, picture_width=0.6).recipe.hold_deg == 0.25
+    thin = Recipe(light=Light.thin())
+    assert plan(pictures(), 64, thin, longest_hold=True, picture_width=0.6).recipe.hold_deg == 0
 
 
 def test_a_hold_that_is_asked_for_is_part_of_the_prediction(formula: list[float]) -> None:

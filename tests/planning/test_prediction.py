@@ -48,8 +48,7 @@ def doubled(targets: Targets, grid: Grid) -> tuple[Targets, Grid]:
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rehearsals of a few passes, on cubes of a few voxels."""
-    monkeypatch.setattr(prediction, "PASSES", 12)
-    monkeypatch.setattr(prediction, "WORK", 600)
+    monkeypatch.setattr(prediction, "AREA", prediction.AREA._replace(passes=12, work=7800))
     monkeypatch.setattr(prediction, "_LEAST", 6)
 
 
@@ -152,7 +151,7 @@ def test_a_picture_with_a_single_pixel_of_weight_is_not_lost() -> None:
 
 def test_what_is_small_enough_is_solved_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     targets, grid = problem()
-    monkeypatch.setattr(prediction, "WORK", 1e9)
+    monkeypatch.setattr(prediction, "AREA", prediction.AREA._replace(work=10**9))
     told = predict(targets, grid)
     assert told.rehearsed == 12
     scored = solve(targets, grid, Recipe(passes=12))
@@ -207,10 +206,12 @@ def test_wider_pictures_are_told_to_be_worse() -> None:
 
 def test_the_law_leaves_alone_what_was_not_reduced_and_keeps_order() -> None:
     reached = np.linspace(5, 90, 50)
-    np.testing.assert_array_equal(law(reached, 1.0), reached)
-    for ratio in (1.5, 4.0, 12.0):
-        assert np.all(np.diff(law(reached, ratio)) >= 0)
-        assert np.all((law(reached, ratio) >= 0) & (law(reached, ratio) <= 100))
+    for by in (prediction.AREA, prediction.THIN):
+        np.testing.assert_array_equal(law(reached, 1.0, by), reached)
+        for ratio in (1.5, 4.0, 12.0):
+            told = law(reached, ratio, by)
+            assert np.all(np.diff(told) >= 0)
+            assert np.all((told >= 0) & (told <= 100))
 
 
 def test_means_and_worst_are_told_up_to_fifty() -> None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.backward import solving
+from lightcube.backward.mat import Mat
 from lightcube.backward.recipe import Recipe
 from lightcube.cli.console import compiling, out, progress
 from lightcube.cli.options import threaded
@@ -55,7 +56,7 @@ def run(folder: Path) -> None:
     planned = plan(photographs(), _SIDE, longest_hold=True)
     rows = [
         _one("photographs", planned.targets, grid, folder, planned.recipe),
-        _one("juggler", _juggler(grid), grid, folder),
+        _one("juggler", _juggler(grid), grid, folder, Recipe.of_quality("normal", mat=Mat())),
     ]
     io.save({row["name"]: row for row in rows}, folder / "metrics.json", overwrite=True)
     out.print()
@@ -79,7 +80,7 @@ def _juggler(grid: Grid) -> Targets:
         return scene_targets(io.read_scene("juggler"), rig, grid, callback=advance)
 
 
-def _one(name: str, targets: Targets, grid: Grid, folder: Path, recipe: Recipe | None = None) -> dict[str, Any]:
+def _one(name: str, targets: Targets, grid: Grid, folder: Path, recipe: Recipe) -> dict[str, Any]:
     """Solve, save, play and score one cube; returns a row of the table."""
     began = time.monotonic()
     with progress(f"solving {name}", as_json=False) as advance:

@@ -18,17 +18,17 @@ from lightcube.optics.absorption import absorbance
 from lightcube.optics.arrays import Counts, Images, Reals, keep, locked
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.light import Light
 from lightcube.optics.material import Material
 from lightcube.optics.views import Views
 from lightcube.pictures.resampling import shares
 from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
-from lightcube.planning.prediction import POINTS
 from lightcube.projection.projector import Projector
 from lightcube.scoring.metrics import mean_psnr
 
-#: Voxels along the longest side of the draft cube, and passes of its solve.
-_DRAFT, _PASSES = 16, 40
+#: Voxels along the longest side of the draft cube, passes of its solve, and points of its pixels.
+_DRAFT, _PASSES, _POINTS = 16, 40, Light(5, 4)
 #: The model sees pictures of at most so many tiles along a side, and has room for so many numbers.
 _TILES, _ROOM = 8, 32_000_000
 #: Noise of the model, relative to its signal; linear light that counts as black; variance of a lamp in absorbance.
@@ -99,7 +99,7 @@ def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Or
     bound = Material(recipe.stuff.most(grid))
     drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0, mat=None)
     if not recipe.beams.is_thin:
-        drafted = replace(drafted, light=POINTS)
+        drafted = replace(drafted, light=_POINTS)
     draft, small = _draft(targets, grid)
     seen = _features(draft, _tiles(1, draft.rig.picture_shape)).reshape(len(targets), -1)
     canonical = np.lexsort(seen.T[::-1])

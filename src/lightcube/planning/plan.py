@@ -124,7 +124,7 @@ def plan(
     n
         Voxels along the longest side of the cube.
     recipe
-        How it will be solved; None = ``Recipe(mat=Mat())``.
+        How it will be solved; None = ``Recipe.of_quality("normal", mat=Mat())``.
     size_mm
         Length of that side.
     shape
@@ -158,7 +158,7 @@ def plan(
             f"a cube of {n} voxels with pictures {picture_width} of its width: give at least 1 voxel, and a width "
             "above 0 and at most 1.41"
         )
-    asked, table = recipe or Recipe(mat=Mat()), turntable or Turntable()
+    asked, table = recipe or Recipe.of_quality("normal", mat=Mat()), turntable or Turntable()
 
     def predicted(width: float) -> Plan:
         grid, rig = _cube_for(pictures, shape or n, size_mm, table, width)

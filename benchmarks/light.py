@@ -1,0 +1,229 @@
+"""Measure what a wall shows: tables of docs/light.md for people, and one line of JSON per cube.
+
+    python benchmarks/light.py [TABLE ...] [--out FOLDER] [--set bundled|other]
+
+All light is averaged over pixels and judged at the judge's points (`lightcube.optics.light`). Pictures are the bundled
+photographs, or 32 others: crops of Middlebury's motorcycle (scikit-image, CC0), of the Navy's portrait of Grace Hopper
+(matplotlib, public domain), and faces of `skimage.data.lfw_subset` (no known copyright restrictions). Tables:
+
+must        sixteen to sixty-four pictures of many shapes, quality best
+hold        pictures that stand over a range of angles, the least PSNR within it
+mat         pictures in a dark mat, and held
+points      points of a pixel, lattices and square grids, and the judge against 32 x 32 beams
+default     sixteen pictures with all defaults, n = 64 and 128
+
+Rows that are in FOLDER (out/light) are not measured again. Seconds are those of the solve alone, with kernels warm.
+"""
+
+import argparse
+import json
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import skimage.data
+from matplotlib.cbook import get_sample_data
+from numpy.typing import NDArray
+from PIL import Image
+
+import lightcube as lc
+from lightcube.optics.light import JUDGE, judge_points
+from lightcube.optics.transfer import decode, encode
+from lightcube.pictures import samples
+from lightcube.pictures.arranging import spread_over_screen
+from lightcube.planning.order import best_order
+from lightcube.planning.plan import plan
+from lightcube.scoring.metrics import psnr
+
+Row = dict[str, Any]
+BEST = lc.Recipe.of_quality("best")
+
+
+def pictures(which: str, count: int, aspect: float) -> lc.Pictures:
+    """As many of a set as asked for, cut to an aspect; of the others, which are 32, halves of them beyond."""
+    return samples.photographs(count, aspect) if which == "bundled" else others(count, aspect)
+
+
+def others(count: int, aspect: float) -> lc.Pictures:
+    """Parts of other pictures than the bundled ones, always the same."""
+    rng = np.random.default_rng(11)
+    hopper = np.asarray(Image.open(get_sample_data("grace_hopper.jpg", asfileobj=False)).convert("RGB"))
+    motorcycle, faces = skimage.data.stereo_motorcycle()[0], skimage.data.lfw_subset()
+    found: list[NDArray[np.float32]] = []
+    for number in range(count):
+        kind = number % 4
+        if kind == 3:
+            image = np.repeat(faces[number % 100][..., None] * 255, 3, axis=2)
+        else:
+            original = hopper if kind == 1 else motorcycle
+            high, wide = original.shape[:2]
+            side = min(high, wide / aspect) * rng.uniform(0.3, 0.8)
+            rows, columns = int(side), int(side * aspect)
+            top, left = rng.integers(0, high - rows), rng.integers(0, wide - columns)
+            image = original[top : top + rows, left : left + columns]
+        found.append(np.ascontiguousarray(decode(np.asarray(image, np.float32) / 255), np.float32))
+    return lc.Pictures(tuple(found), tuple(f"other-{number + 1}" for number in range(count)))
+
+
+def cube_for(
+    which: str, count: int, columns: int, rows: int, elevation_deg: float, *, n: int = 64, power: float = 16.0
+) -> tuple[lc.Targets, lc.Grid]:
+    """Pictures of so many pixels, and the cube for them."""
+    grid = lc.Grid((n, n, n), 100 / n)
+    rig = lc.turntable(
+        grid,
+        lc.spread_angles(count, elevation_deg=elevation_deg),
+        elevation_deg=elevation_deg,
+        picture_shape=(rows, columns),
+        power_max=power,
+    )
+    return lc.fit(pictures(which, count, columns / rows), rig), grid
+
+
+def measured(targets: lc.Targets, grid: lc.Grid, recipe: lc.Recipe) -> tuple[Row, lc.Cube]:
+    """Solve, and say how good it is by area, how long it took and how many passes."""
+    began = time.perf_counter()
+    solution = lc.solve(targets, grid, recipe)
+    seconds = time.perf_counter() - began
+    scores = lc.score(solution.cube, targets)
+    names = ("psnr_mean", "psnr_min", "thin_psnr_mean", "grain_rms", "mat_rms")
+    figures = {name: scores[name] for name in names if name in scores}
+    return {**figures, "passes": len(solution.residuals), "seconds": seconds}, solution.cube
+
+
+def solved(asked: tuple[str, int, int, int, float], power: float, recipe: lc.Recipe) -> Row:
+    """Figures of a cube for pictures that `cube_for` takes."""
+    return measured(*cube_for(*asked, power=power), recipe)[0]
+
+
+def must(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """What has to be reached."""
+    shapes = {
+        "16 of 32 x 32, 35, P 4": (16, 32, 32, 35, 4),
+        "16 of 32 x 32, 35": (16, 32, 32, 35, 16),
+        "16 of 32 x 56, 45": (16, 32, 56, 45, 16),
+        "16 of 48 x 48, 35": (16, 48, 48, 35, 16),
+        "32 of 32 x 32, 35": (32, 32, 32, 35, 16),
+        "16 of 22 x 64, level": (16, 22, 64, 0, 16),
+        "16 of 32 x 64, level": (16, 32, 64, 0, 16),
+    }
+    for name, (count, columns, rows, elevation_deg, power) in shapes.items():
+        asked = which, count, columns, rows, elevation_deg
+        yield name, partial(solved, asked, power, BEST)
+    for name, count, shift in (
+        ("32 of 32 x 32, order best", 32, 0),
+        ("32 of 32 x 32, order best, shift 8", 32, 8),
+        ("64 of 32 x 32, order best, shift 8", 64, 8),
+    ):
+        yield name, partial(arranged, which, count, shift)
+
+
+def arranged(which: str, count: int, shift: int) -> Row:
+    """Pictures in their best order, some pixels up, down or aside."""
+    targets, grid = cube_for(which, count, 32, 32, 35)
+    if shift:
+        targets = replace(targets, rig=targets.rig.shifted(spread_over_screen(targets, grid, shift)))
+    return measured(best_order(targets, grid)(targets), grid, BEST)[0]
+
+
+def hold(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """The least PSNR at nine angles within the hold."""
+    for name, count, degrees in (("16, 0.25", 16, 0.25), ("16, 1", 16, 1.0), ("8, 3", 8, 3.0)):
+        yield f"{name} degrees", partial(within, which, count, degrees)
+
+
+def within(which: str, count: int, degrees: float) -> Row:
+    """A held cube, at its stops and at the worst angle of its hold."""
+    targets, grid = cube_for(which, count, 32, 32, 35)
+    row, cube = measured(targets, grid, lc.Recipe.of_quality("best", hold_deg=degrees, light=lc.Light(21, 9)))
+    means = []
+    for off in np.linspace(-degrees, degrees, 9):
+        pairs = zip(lc.cast(cube, cube.rig.turned(off)), targets.pictures, targets.weight, strict=True)
+        means.append(float(np.mean([psnr(encode(shown), encode(wanted), weight) for shown, wanted, weight in pairs])))
+    return row | {"least": min(means)}
+
+
+def mat(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """A mat of 12 pixels on each side."""
+    light = lc.Light(21, 9)
+    for name, recipe in {
+        "dark": lc.Recipe(passes=150, light=light, mat=lc.Mat()),
+        "dark, held 0.25 degrees": lc.Recipe(passes=150, light=light, mat=lc.Mat(), hold_deg=0.25),
+        "grey": lc.Recipe(passes=150, light=light, mat=lc.Mat(0.25)),
+        "none": lc.Recipe(passes=150, light=light),
+    }.items():
+        yield name, partial(solved, (which, 16, 32, 32, 35), 16.0, recipe)
+
+
+def points(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """Points of a pixel, and the judge."""
+    for count in (1, 3, 5, 8, 13, 21, 34):
+        recipe = lc.Recipe(passes=100, light=lc.Light(count, count))
+        yield f"{count} points", partial(solved, (which, 16, 32, 32, 35), 16.0, recipe)
+    yield f"the judge's {JUDGE}", partial(judge, which)
+
+
+def judge(which: str) -> Row:
+    """How far the judge is from 32 x 32 beams: the worst picture, dB."""
+    targets, grid = cube_for(which, 16, 32, 32, 35)
+    cube = lc.solve(targets, grid, lc.Recipe(passes=100)).cube
+    fine = (np.arange(32) + 0.5) / 32 - 0.5
+    square = np.stack([each.ravel() for each in np.meshgrid(fine, fine)], axis=1)
+    found = []
+    for places in (square, judge_points(cube.rig, grid)):
+        rig = cube.rig.split([np.hstack([places, np.zeros_like(places)])] * len(cube.rig.views))
+        pairs = zip(lc.cast(cube, rig, light="thin"), targets.pictures, targets.weight, strict=True)
+        found.append(np.array([psnr(encode(shown), encode(wanted), weight) for shown, wanted, weight in pairs]))
+    off = np.abs(found[1] - found[0])
+    return {"psnr_mean": float(found[0].mean()), "psnr_min": float(found[0].min()), "off_db": float(off.max())}
+
+
+def default(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """All defaults."""
+    for n in (64, 128):
+        yield f"n = {n}", partial(planned, which, n)
+
+
+def planned(which: str, n: int) -> Row:
+    """Sixteen square pictures as `solve` plans them."""
+    began = time.perf_counter()
+    recipe = lc.Recipe.of_quality("normal", mat=lc.Mat())
+    made = plan(pictures(which, 16, 1.0), n, recipe, longest_hold=True)
+    planning = time.perf_counter() - began
+    row, _ = measured(made.targets, made.grid, made.recipe)
+    width = made.targets.rig.picture_shape[1] / n
+    told = {"expected": made.prediction.psnr_mean, "expected_min": made.prediction.psnr_min}
+    return {"width": width, "hold_deg": made.recipe.hold_deg, "planning": planning, **told, **row}
+
+
+TABLES = {"must": must, "hold": hold, "mat": mat, "points": points, "default": default}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", maxsplit=1)[0])
+    parser.add_argument("tables", nargs="*", metavar="TABLE", help=", ".join(TABLES))
+    parser.add_argument("--out", type=Path, default=Path("out/light"))
+    parser.add_argument("--set", dest="which", choices=("bundled", "other"), default="bundled")
+    said = parser.parse_args()
+    said.out.mkdir(parents=True, exist_ok=True)
+    file = said.out / "measured.jsonl"
+    known = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+    for table in said.tables or TABLES:
+        print(f"\n{table}, {said.which} pictures", flush=True)
+        for name, measure in TABLES[table](said.which):
+            key = {"table": table, "set": said.which, "name": name}
+            row = next((row for row in known if key.items() <= row.items()), None)
+            if row is None:
+                row = key | measure()
+                with file.open("a") as stream:
+                    stream.write(json.dumps(row) + "\n")
+            figures = ", ".join(f"{what} {value:.4g}" for what, value in row.items() if what not in key)
+            print(f"  {name}: {figures}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
