@@ -1,11 +1,13 @@
 """What is printed of a solved cube and of its scores."""
 
 from collections import Counter
+from collections.abc import Mapping
 from typing import Any
 
 from lightcube.backward.solution import Solution
 from lightcube.cli.console import out
 from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.scoring.metrics import grain_word
 
 
 def facts(solution: Solution) -> dict[str, Any]:
@@ -33,9 +35,15 @@ def solved(solution: Solution, opening: str, seconds: float | None = None) -> No
         out.print(f"{solution.undetermined} voxel values that nothing determines are transparent")
     out.print(
         f"{opening}: PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), "
-        f"SSIM {scores['ssim_mean']:.3f}, colour difference {scores['delta_e_mean']:.1f}; "
+        f"SSIM {scores['ssim_mean']:.3f}, colour difference {scores['delta_e_mean']:.1f}{_beside(scores)}; "
         f"{len(solution.residuals)} passes" + (f" in {seconds:.0f} s" if seconds is not None else ""),
     )
+
+
+def _beside(scores: Mapping[str, Any]) -> str:
+    """What is known beside the pictures: grain inside pixels, and how calm the mat is."""
+    mat = f", mat off by {scores['mat_rms']:.3f}" if "mat_rms" in scores else ""
+    return f", {grain_word(scores['grain_rms'])} grain ({scores['grain_rms']:.2f}){mat}"
 
 
 def scored(scores: dict[str, Any]) -> None:
@@ -50,6 +58,8 @@ def scored(scores: dict[str, Any]) -> None:
     out.print(
         f"mean PSNR {mean:.2f} dB (worst {worst:.2f}), SSIM {scores['ssim_mean']:.4f}, dE {scores['delta_e_mean']:.2f}"
     )
+    thin = f"thin beams {scores['thin_psnr_mean']:.2f} dB (worst {scores['thin_psnr_min']:.2f})"
+    out.print(f"{thin}{_beside(scores)}")
     for name, left in scores.get("robust", {}).items():
         figures = f"{left['psnr_mean']:6.2f} dB (worst {left['psnr_min']:5.2f})"
         out.print(f"  {figures}  {DISTURBANCES[name]}")

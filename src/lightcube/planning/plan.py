@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 #: Pictures are made as wide as so much is expected of them, dB; half as wide as the cube where this is.
 PLANNED_DB, LEAST_DB, HALF = 38.0, 36.0, 0.5
-#: What hold may cost, dB; above so much no eye sees a loss.
+#: What hold may cost, dB, of what lies below so much.
 HOLD_COSTS_DB, BEST_SEEN_DB = 1.0, 45.0
 #: Widths of the pictures, as parts of the cube's, that are tried.
 WIDTHS = (0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.55, 0.6, 0.66, 0.72, 0.8, 0.9, 1.0)

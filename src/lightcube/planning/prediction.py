@@ -67,7 +67,7 @@ class Rehearsal(NamedTuple):
 
 #: By thin beams, and where light is averaged over pixels.
 THIN, AREA = Rehearsal(150, 150_000, 2.2, 0.075), Rehearsal(100, 1_500_000, 6.7, 0.215)
-#: Means and minima above this, dB, are told as this: no eye tells more.
+#: Means and minima above this, dB, are told as this.
 MOST_DB = 50.0
 
 

@@ -16,7 +16,10 @@ from lightcube.planning.prediction import MOST_DB
 from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
 from lightcube.report.measuring import EXACT, Findings
 from lightcube.scoring.between import LOBE_DB
+from lightcube.scoring.metrics import grain_word
 
+#: What a PSNR means.
+_LADDER = "PSNR, of what a wall shows: 20 dB is recognisable, 30 good, 40 hardly to be told apart."
 #: Pictures in the strip at the top.
 _STRIP = 12
 #: What extinction in few levels costs where it is worth a word, dB, and the absorbance of a voxel that is dark enough.
@@ -41,7 +44,11 @@ def head(found: Findings, compared: str) -> str:
         "worst PSNR": (f"{number(scores['psnr_min'])} dB", worst),
         "SSIM": (number(scores["ssim_mean"], 4), "mean; 1 is perfect"),
         "CIEDE2000": (number(scores["delta_e_mean"]), "mean; below 1 is invisible"),
+        "grain": (number(scores["grain_rms"], 3), f"inside pixels; {grain_word(scores['grain_rms'])}"),
+        "thin beams": (f"{number(scores['thin_psnr_mean'])} dB", "through the middles of pixels, as in the paper"),
     }
+    if "mat_rms" in scores:
+        tiles["mat"] = (number(scores["mat_rms"], 3), "off its tone; 0 is calm")
     shown = "".join(
         element("div", text("dt", name) + text("dd", value, class_="figure") + text("dd", more, class_="more"))
         for name, (value, more) in tiles.items()
@@ -55,9 +62,7 @@ def head(found: Findings, compared: str) -> str:
     lines += [
         figure(element("div", strip, class_="strip"), f"What it casts: {which}."),
         element("dl", shown, class_="tiles"),
-        text(
-            "p", f"{compared} PSNR: 20 dB is recognisable, 30 good, above 40 nobody sees a difference.", class_="note"
-        ),
+        text("p", f"{compared} {_LADDER}", class_="note"),
     ]
     return "\n".join(lines)
 
@@ -290,7 +295,7 @@ def _told(found: Findings) -> Iterator[str]:
         for what, name in (("mean PSNR, dB", "psnr_mean"), ("worst PSNR, dB", "psnr_min"))
     ]
     yield table("What was predicted, and what came", ("what", "predicted", "came", "difference"), rows, "figures")
-    yield text("p", f"{MOST_DB:g} dB stands for all that is above: no eye tells more.", class_="note")
+    yield text("p", f"{MOST_DB:g} dB stands for all that is above.", class_="note")
 
 
 def _checked(known: dict[str, Any]) -> dict[str, object]:

@@ -31,6 +31,15 @@ GOOD_DB = 40.0
 Display = NDArray[np.floating[Any]]
 
 
+#: Grain below these is called so; else coarse.
+_GRAINS = {"smooth": 0.03, "fine": 0.10}
+
+
+def grain_word(rms: float) -> str:
+    """How light that varies so much inside pixels (display values) looks: smooth, fine or coarse."""
+    return next((word for word, least in _GRAINS.items() if rms < least), "coarse")
+
+
 def psnr(shown: Display, wanted: Display, weight: Display) -> float:
     """Peak signal-to-noise ratio in dB of display values ``(row, column, channel)``, at most 100.
 
