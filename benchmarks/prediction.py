@@ -270,7 +270,12 @@ def report(title: str, cases: list[Rehearsed]) -> None:
     """Print how far the law is off for means and worst pictures; what is above 50 dB in both does not count."""
     for name, part in (("mean", np.mean), ("worst", np.min)):
         wanted = np.array([min(float(part(one.wanted)), MOST_DB) for one in cases])
-        told = np.array([min(float(part(law(one.reached, one.ratio, AREA))), MOST_DB) for one in cases])
+        told = np.array(
+            [
+                min(float(part(law(one.reached, one.ratio, AREA) + (AREA.held if one.case.hold_deg else 0))), MOST_DB)
+                for one in cases
+            ]
+        )
         error = (told - wanted)[np.minimum(told, wanted) < MOST_DB]
         if len(error):
             size = np.abs(error)

@@ -6,6 +6,7 @@ import signal
 import pytest
 from hypothesis import settings
 
+from lightcube.planning import prediction
 from tests.helpers.browser import bare_browser, browser, evaluate, launch
 
 __all__ = ["bare_browser", "browser", "evaluate", "launch"]
@@ -24,10 +25,12 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 @pytest.fixture(autouse=True)
 def short_rehearsals(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where kernels run interpreted, whole commands rehearse and draft briefly; the compiled run does all of it."""
+    """Where kernels run interpreted rehearsals are short, and drafts of whole commands; the compiled run has it all."""
     room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
+    if INTERPRETED:
+        monkeypatch.setattr(prediction, "AREA", prediction.AREA._replace(passes=2, work=20_000))
+        monkeypatch.setattr(prediction, "_LEAST", 6)
     if INTERPRETED and (room in ("cli", "jobs", "report") or file == "test_docs"):
-        monkeypatch.setattr("lightcube.planning.prediction.PASSES", 2)
         monkeypatch.setattr("lightcube.planning.order._PASSES", 1)
         monkeypatch.setattr("lightcube.planning.order._WALKS", 1)
         monkeypatch.setattr("lightcube.planning.order._SWAPS", 1)

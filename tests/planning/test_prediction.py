@@ -17,6 +17,7 @@ from lightcube.pictures.targets import Targets
 from lightcube.planning import prediction
 from lightcube.planning.prediction import Prediction, law, predict, reduced
 from lightcube.scoring.metrics import score
+from tests.conftest import INTERPRETED
 from tests.helpers.recipes import lit
 
 
@@ -48,7 +49,7 @@ def doubled(targets: Targets, grid: Grid) -> tuple[Targets, Grid]:
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rehearsals of a few passes, on cubes of a few voxels."""
-    monkeypatch.setattr(prediction, "AREA", prediction.AREA._replace(passes=12, work=7800))
+    monkeypatch.setattr(prediction, "AREA", prediction.AREA._replace(passes=4 if INTERPRETED else 12, work=7800))
     monkeypatch.setattr(prediction, "_LEAST", 6)
 
 
@@ -154,7 +155,7 @@ def test_what_is_small_enough_is_solved_as_it_is(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(prediction, "AREA", prediction.AREA._replace(work=10**9))
     told = predict(targets, grid)
     assert told.rehearsed == 12
-    scored = solve(targets, grid, Recipe(passes=12))
+    scored = solve(targets, grid, Recipe(passes=prediction.AREA.passes))
     reached = [view["psnr"] for view in score(scored.cube, targets)["pictures"]]
     np.testing.assert_allclose(told.psnr, reached, rtol=1e-4)
 

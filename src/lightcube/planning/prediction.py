@@ -12,14 +12,13 @@ large cube's width over the small one's, and ``q`` dB in the rehearsal, the pred
 
     ``q + ln r · (bias + growth · (q − 30))``
 
-A picture held over ±h degrees is held over ±h · r^HOLD in the small cube, at most half the way to the next stop: over
+and for held pictures 2.5 dB less, by which it is too high for them. A picture held over ±h degrees is held over ±h · r^HOLD in the small cube, at most half the way to the next stop: over
 ±h it would be too easy, since fewer angles do for fewer voxels, and over ±h · r, which takes as many, too hard.
 
 The constants are fitted by benchmarks/prediction.py on solved problems of 48 to 96 voxels: 4 to 64 pictures, level and
 raised lamps of every kind and bound, photographs, grey and saturated ones, traced scenes, masks, mats, holds. Fitted on
 36 of them, the means of 34 with photographs of other originals were told within 3 dB in 79 % (median error 1.7, 90 %
-below 4.6, largest 5.7; 1.8 too high on average), their worst pictures in 81 %; held pictures 2.5 dB too high. 50
-stands for all that is above. Above 96 voxels it is extrapolated. By thin beams the law is an earlier one, of 118
+below 4.6, largest 5.7; 1.8 too high on average), their worst pictures in 81 %. 50 stands for all that is above. Above 96 voxels it is extrapolated. By thin beams the law is an earlier one, of 118
 problems, told within 3 dB in 95 %.
 """
 
@@ -63,10 +62,11 @@ class Rehearsal(NamedTuple):
     work: int
     bias: float
     growth: float
+    held: float = 0.0
 
 
 #: By thin beams, and where light is averaged over pixels.
-THIN, AREA = Rehearsal(150, 150_000, 2.2, 0.075), Rehearsal(100, 1_500_000, 6.7, 0.215)
+THIN, AREA = Rehearsal(150, 150_000, 2.2, 0.075), Rehearsal(100, 1_500_000, 6.7, 0.215, -2.5)
 #: Means and minima above this, dB, are told as this.
 MOST_DB = 50.0
 
@@ -135,7 +135,8 @@ def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Predi
     raised(targets.rig, grid)
     asked = recipe or Recipe()
     reached, width = rehearse(targets, grid, asked)
-    return Prediction(law(reached, max(grid.shape[1:]) / width, rehearsal_of(asked)), width)
+    told = law(reached, max(grid.shape[1:]) / width, rehearsal_of(asked))
+    return Prediction(told + (rehearsal_of(asked).held if asked.hold_deg else 0.0), width)
 
 
 def rehearsal_of(recipe: Recipe) -> Rehearsal:
