@@ -255,7 +255,7 @@ def fitted(cases: list[Rehearsed]) -> NDArray[np.float64]:
         for part in (np.mean, np.min):
             wanted, reached = float(part(one.wanted)), float(part(one.reached))
             if max(wanted, reached) < MOST_DB:
-                share = math.log(one.ratio)
+                share = 1 - 1 / one.ratio
                 equations.append([share, share * (reached - 30)])
                 values.append(wanted - reached)
     a, b = np.array(equations), np.array(values)
