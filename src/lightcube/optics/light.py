@@ -32,6 +32,9 @@ Beams = Literal["area", "thin"]
 #: Points of a pixel that what is cast is judged at: a Fibonacci lattice; side by side; and of a lamp's disc.
 JUDGE, JUDGE_ROW, JUDGE_DISC = 55, 16, 16
 _JUDGE_STEP = 34
+#: So many times as many points are taken of a pixel under a lamp with a disc. With no more than without one, cubes that
+#: knew of a disc of half a degree were up to 5 dB worse under it than those that did not; so they are better.
+DISC_TIMES = 3
 #: No more points are taken of a pixel.
 MOST_POINTS = 1024
 #: Lattices of more points are chosen among so many.
@@ -49,7 +52,7 @@ class Light:
     Parameters
     ----------
     points
-        Of each pixel, 1 to 1024; 1 = the beam through its middle.
+        Of each pixel, 1 to 1024; 1 = the beam through its middle. Three times as many where its lamp has a disc.
     row_points
         Where the lamp is level and a pixel is exactly one slice high: so many along its row. An odd multiple of 16
         would have the points that all is judged by, and is one more.
@@ -93,7 +96,7 @@ def sampled(rig: Rig, grid: Grid, light: Light) -> Rig:
         return rig
     if is_in_slices(rig, grid):
         return rig.split([_bare(_unlike_the_judge(light.row_points))] * len(rig.views))
-    points, soft = lattice(light.points), soft_lattice(light.points)
+    points, soft = lattice(light.points), soft_lattice(min(DISC_TIMES * light.points, MOST_POINTS))
     return rig.split([soft if disc_deg else _bare(points) for disc_deg in rig.sums.disc_deg])
 
 

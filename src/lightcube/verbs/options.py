@@ -89,7 +89,11 @@ class Options:
         Beams | None, Option("Whether light is averaged over pixels or, as in the paper, thin beams.  [default: area]")
     ] = None
     points: Annotated[
-        int | None, Option("Average over so many points of each pixel.  [default: 13, level 7; best: 34, 15]", 1)
+        int | None,
+        Option(
+            "Average over so many points of each pixel, with --lamp-deg thrice.  [default: 13, level 7; best: 34, 15]",
+            1,
+        ),
     ] = None
 
     @property
