@@ -78,6 +78,8 @@ def test_paper_is_the_papers_set_up(run, pictures: Path, tmp_path: Path) -> None
         ("--lamp-power", "2"),
         ("--lamp-max", "4"),
         ("--hold-deg", "1"),
+        ("--lamp-deg", "0.5"),
+        ("--screen-mm", "50"),
     ],
 )
 def test_paper_with_what_contradicts_it_is_refused(  # type: ignore[no-untyped-def]
@@ -169,6 +171,8 @@ def test_options_are_settled_before_anything_is_read() -> None:
         ("--black", "0.4"),
         ("--powers", "coarse", "--max-extinction", "0.5"),
         ("--elevation-deg", "-20", "--order", "best", "--shift", "1"),
+        ("--lamp-deg", "0.5", "--screen-mm", "0"),
+        ("--lamp-deg", "0", "--paper"),
     ],
 )
 def test_odd_but_possible_options_work(run, unlike: Path, tmp_path: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
@@ -184,12 +188,32 @@ def test_odd_but_possible_options_work(run, unlike: Path, tmp_path: Path, option
         ("--paper", "--n", "0"),
         ("--paper", "--n", "6", "--shape", "6,6,6"),
         ("--paper", "--shift", "2"),
+        ("--lamp-deg", "-1"),
+        ("--lamp-deg", "90"),
+        ("--lamp-deg", "1", "--screen-mm", "-1"),
+        ("--screen-mm", "50"),
+        ("--lamp-deg", "30", "--elevation-deg", "75"),
     ],
 )
 def test_what_is_wrong_with_a_level_lamp_is_said_too(run, pictures: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]
     done = run("check", pictures, *options)
     assert done.code == 2
     assert len(done.lines) == 1
+
+
+def test_a_lamp_with_a_size_is_solved_played_scored_and_minded(run, unlike: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    solved, small = tmp_path / "a.npz", ("--n", 10, "--picture-width", 0.5, "--iterations", 2, "--lamp-deg", 0.5)
+    done = run("solve", unlike, "-o", solved, *small)
+    assert done.code == 0, done.err
+    assert "how much a lamp's size costs was not measured" in done.err
+    rig = load(solved).rig
+    assert set(rig.sums.disc_deg) == {0.5}
+    assert np.all(rig.behind_mm > 150)
+    scores = json.loads(run("score", solved, "--robust", "--json").out)
+    assert "disc" not in scores["robust"]
+    assert run("play", solved, "-o", tmp_path / "a.npy", "--whole-shadow").code == 0
+    thin = run("check", unlike, *small[:4], *small[6:], "--light", "thin")
+    assert "thin beams do not mind the size of lamp 'lamp'" in thin.out
 
 
 def test_black_is_part_of_the_prediction(run, unlike: Path) -> None:  # type: ignore[no-untyped-def]

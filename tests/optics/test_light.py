@@ -24,6 +24,7 @@ from lightcube.optics.light import (
     lattice,
     sampled,
     seeds,
+    soft_lattice,
 )
 from lightcube.optics.rig import Rig, turntable
 from tests.helpers.areas import divided
@@ -146,6 +147,30 @@ def test_a_slab_of_glass_whose_thickness_falls_along_a_pixel_has_its_analytic_me
     most = 2 / math.sqrt(2)
     expected = (math.exp(1 - most) - math.exp(-most)) * 1.0
     assert next(casting.cast(cube))[0, 0, 0] == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("count", [13, 21, 34, 89])
+def test_points_of_a_pixel_and_of_a_disc_do_not_go_together(count: int) -> None:
+    """No place in a pixel says where in the disc its light is from: else more points would bring nothing."""
+    points = soft_lattice(count)
+    np.testing.assert_array_equal(points[:, :2], lattice(count))
+    radius = np.sum(points[:, 2:] ** 2, axis=1)
+    places = np.column_stack([points[:, :2], np.abs(points[:, :2])])
+    off = [abs(np.corrcoef(place, other)[0, 1]) for place in places.T for other in (radius, *points[:, 2:].T)]
+    assert max(off) < 2.2 / math.sqrt(count)
+
+
+def test_the_more_points_the_nearer_to_the_mean_of_a_disc() -> None:
+    rig = rig_of(35.0)
+    rig = replace(rig, sums=replace(rig.sums, disc_deg=np.full(2, 20.0)))
+    cube = some_cube(rig)
+    many = np.stack(list(cast(cube, divided(rig, pixel=12, lamp=40))))
+    off = [
+        float(np.sqrt(np.mean((np.stack(list(cast(cube, sampled(rig, GRID, Light(count))))) - many) ** 2)))
+        for count in (5, 13, 34, 89)
+    ]
+    assert np.all(np.diff(off) < 0)
+    assert off[3] < off[0] / 4
 
 
 @pytest.mark.parametrize("count", [1, 2, 5, JUDGE_DISC])

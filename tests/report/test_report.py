@@ -179,6 +179,9 @@ SOLVES = {
     "paper": "--n 6 --paper --iterations 3",
     "gauss-seidel": "--n 5 --paper --method gauss-seidel",
     "sirt": "--n 5 --picture-width 0.8 --method sirt --lamp-power 2.5 --iterations 4",
+    "disc": "--n 6 --picture-width 0.5 --hold-deg 0.5 --lamp-deg 0.5 --iterations 2 --mat none",
+    "disc, moved": "--shape 5,7,6 --size-mm 33.3 --picture-width 0.6 --elevation-deg 20 --angles-deg 3,100.52,181,-85 "
+    "--lamp-deg 2.25 --screen-mm 12.1 --shift 1 --iterations 2",
     "units": "--n 6 --picture-width 0.5 --hold-deg 0 --iterations 3 --unit 1/3",
 }
 
@@ -215,6 +218,7 @@ def _makes_it_again(run: Run, cube: str, targets: str) -> None:
     assert digest(new) == digest(old)
     for name in ("extinction", "powers", "targets"):
         np.testing.assert_array_equal(getattr(new, name), getattr(old, name))
+    np.testing.assert_array_equal(new.rig.sums.disc_deg, old.rig.sums.disc_deg)
     for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
         np.testing.assert_array_equal(getattr(new.rig.views, name), getattr(old.rig.views, name))
     assert (new.names, new.hold_deg, new.transfer) == (old.names, old.hold_deg, old.transfer)

@@ -21,14 +21,14 @@ from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.rig import soft, turntable
 from lightcube.optics.transfer import encode
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets
 from lightcube.report.measuring import measure
 from lightcube.scoring.between import curve
 from lightcube.scoring.metrics import psnr, score, ssim
-from lightcube.scoring.robust import disturbed, robust
+from lightcube.scoring.robust import disturbances, disturbed, robust
 from tests.cli.test_cli import run
 
 SHAPE = (3, 5, 7)
@@ -193,6 +193,22 @@ def test_each_disturbance_is_what_it_says(elevation_deg: float) -> None:
     now, powers = moment(cube, cube.angles_deg + 0.2)
     further = np.stack(list(cast(cube, now, powers))) / powers[:, None, None]
     assert np.allclose(off(turn_deg=0.2), further * cube.powers[:, None, None], rtol=1e-4)
+    assert np.array_equal(off(turn_of_64_deg=0.2), off(turn_deg=0.2 * 64 / 7))
+    rig = turntable(cube.grid, cube.angles_deg, elevation_deg=elevation_deg, picture_shape=(3, 5), lamp_deg=3.0)
+    assert np.allclose(off(disc_deg=3.0), play(replace(cube, rig=rig)), rtol=1e-5)
+    assert not np.allclose(off(disc_deg=3.0), shown, rtol=1e-2)
+
+
+def test_a_lamp_gets_a_size_only_on_a_turntable_where_it_has_none() -> None:
+    cube = make_cube([20.0, 75.0, 250.0], 35.0)
+    assert list(disturbances(cube)) == list(DISTURBANCES)
+    for other in (
+        replace(cube, rig=soft(cube.rig, cube.grid, 1.0)),
+        replace(cube, rig=replace(cube.rig, screens=replace(cube.rig.screens, endless=np.array([False])))),
+        make_cube([20.0, 75.0, 250.0], 89.9),
+    ):
+        assert list(disturbances(other)) == [name for name in DISTURBANCES if name != "disc"]
+        assert "disc" not in robust(other, cast_targets(other))
 
 
 def test_extinction_is_rounded_to_so_many_levels_of_each_colour() -> None:
@@ -260,6 +276,8 @@ def test_progress_counts_every_picture_to_the_end() -> None:
         ("right_voxels", [0.05, 0.1, 0.25, 0.5]),
         ("up_voxels", [0.05, 0.1, 0.25, 0.5]),
         ("lamp", [0.01, 0.02, 0.05, 0.2]),
+        ("turn_of_64_deg", [0.01, 0.02, 0.04]),
+        ("disc_deg", [1.0, 3.0, 9.0]),
         ("levels", [4000, 250, 16, 3]),
         ("black", [0.003, 0.01, 0.03, 0.1]),
     ],
@@ -278,6 +296,8 @@ def test_more_disturbance_costs_more(field: str, sizes: list[float]) -> None:
 def test_a_disturbance_says_what_it_is() -> None:
     assert str(Disturbance()) == "as made"
     assert str(DISTURBANCES["turned"]) == "turned 0.2°"
+    assert str(DISTURBANCES["turned-as-64"]) == "turned 0.2° · 64 / n"
+    assert str(DISTURBANCES["disc"]) == "lamp of 0.5°, screen a cube's width behind"
     assert str(DISTURBANCES["lamp"]) == "lamp +2 %"
     assert str(DISTURBANCES["all"]).count(", ") == 5
 

@@ -14,7 +14,8 @@ from hatchling.builders.wheel import WheelBuilder
 import lightcube
 from lightcube.drawing.standing import drawn, standing
 from lightcube.forward.turning import moment
-from lightcube.optics.light import JUDGE_DISC
+from lightcube.optics.light import JUDGE_DISC, discs_sampled
+from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import rotations
 from lightcube.viewer import modules
@@ -24,14 +25,17 @@ from tests.helpers.paging import (
     ANGLES,
     CUBES,
     GIVEN,
+    GRID,
     PLAIN,
     RANDOM,
     Evaluate,
     asked,
     held_in_a_page,
     nearly,
+    on_table,
     paged,
 )
+from tests.helpers.thin import cast
 
 WEB = Path(lightcube.__file__).parent / "viewer" / "web"
 MODULES = sorted(file.relative_to(WEB).as_posix() for file in WEB.rglob("*.js"))
@@ -312,6 +316,19 @@ def test_a_whole_shadow_has_its_middle_in_the_middle(evaluate: Evaluate, name: s
         across = 0.5 * (rig.picture_shape[1] * screen.right + rig.picture_shape[0] * screen.down)
         nearly(np.reshape(room["turn"], (3, 3)) @ origin - across, room["screens"][0]["corner"], 1e-9)
         nearly(np.reshape(each["picture"], wanted[i].shape), wanted[i], 2e-6)
+
+
+def test_a_lamp_with_a_size_blurs_the_whole_shadow_on_its_own_screen(evaluate: Evaluate) -> None:
+    rig = turntable(GRID, [5, 95], elevation_deg=30, picture_shape=(3, 5), lamp_deg=9.0, screen_mm=6.0)
+    cube = on_table(rig.shifted(np.array([[1, -1], [0, 2]])))
+    np.testing.assert_array_equal(drawn(cube).rig.views.origins_mm, cube.rig.views.origins_mm)
+    _, packed, data = paged(cube)
+    expression = """argument.angles_deg.map((angle) =>
+      castPicture(cube, exposures(scene, angle, true)[0], [[0, 0]]))"""
+    found = asked(evaluate, data, expression, angles_deg=ANGLES)
+    now, powers = moment(packed.cube, ANGLES, whole_shadow=True)
+    for each, picture in zip(found, cast(packed.cube, discs_sampled(now), powers), strict=True):
+        nearly(np.reshape(each, picture.shape), picture, 2e-6)
 
 
 @pytest.mark.parametrize("name", CUBES)

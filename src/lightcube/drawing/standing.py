@@ -68,14 +68,14 @@ def drawn(cube: Cube) -> Cube:
     """The cube with every picture that its rig shows, and endless screens where they can be seen: behind the cube.
 
     Where level light shows every picture again half a turn on, mirrored, there are as many pictures more. Parallel
-    light casts the same shadow on every parallel screen. It keeps no targets.
+    light without a disc casts the same shadow on every parallel screen. It keeps no targets.
     """
     rig = cube.rig.both_sides
     times = len(rig) // len(cube.rig)
     light = rig.views.lamps[:, :3]
     level = np.hypot(light[:, 0], light[:, 1])
-    endless = rig.screens.endless[rig.stops.screen][rig.sums.picture]
-    away = np.where(endless, _BEHIND * cube.grid.size_mm[1] / np.maximum(level, 1e-9), 0.0)
+    anywhere = rig.screens.endless[rig.stops.screen][rig.sums.picture] & (rig.sums.disc_deg == 0)
+    away = np.where(anywhere, _BEHIND * cube.grid.size_mm[1] / np.maximum(level, 1e-9), 0.0)
     views = replace(rig.views, origins_mm=rig.views.origins_mm + away[:, None] * light)
     powers, names = np.tile(cube.powers, (times, 1)), times * cube.names
     return replace(cube, rig=replace(rig, views=views), lamp_powers=powers, names=names, targets=None)

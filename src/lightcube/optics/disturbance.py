@@ -15,6 +15,8 @@ class Disturbance:
     ----------
     turn_deg
         Degrees by which the cube stands turned at every stop.
+    turn_of_64_deg
+        The same of a cube 64 voxels wide, a finer one in proportion less: it moves the rim by as much of a voxel.
     right_voxels, up_voxels
         Voxels by which it stands off the axis, to the right and up as seen from the lamp.
     lamp
@@ -24,6 +26,9 @@ class Disturbance:
         that number; 0 = not rounded.
     black
         Light on the screen where it should be black, as a fraction of white, added in linear light.
+    disc_deg
+        Angular diameter of the lamp's disc where it should have none, degrees; the screen then stands one cube width
+        behind the turning cube's reach (`lightcube.optics.rig.soft`).
     """
 
     turn_deg: float = 0.0
@@ -32,34 +37,41 @@ class Disturbance:
     lamp: float = 0.0
     levels: int = 0
     black: float = 0.0
+    turn_of_64_deg: float = 0.0
+    disc_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        numbers = self.turn_deg, self.right_voxels, self.up_voxels, self.lamp, self.black
-        if not np.all(np.isfinite(numbers)) or self.lamp <= -1 or self.black < 0 or self.levels < 0:
+        numbers = self.turn_deg, self.turn_of_64_deg, self.right_voxels, self.up_voxels, self.lamp, self.black
+        least = min(self.levels, self.black, self.disc_deg)
+        if not np.all(np.isfinite([*numbers, self.disc_deg])) or self.lamp <= -1 or least < 0:
             raise InputError(
-                f"no set-up is off by {self!r}: give finite numbers, lamp above -1, levels and black of at least 0"
+                f"no set-up is off by {self!r}: give finite numbers, lamp above -1, levels, black, disc of at least 0"
             )
 
     def __str__(self) -> str:
         said = {
             f"turned {self.turn_deg:g}°": self.turn_deg,
+            f"turned {self.turn_of_64_deg:g}° · 64 / n": self.turn_of_64_deg,
             f"{self.right_voxels:g} voxel to the right": self.right_voxels,
             f"{self.up_voxels:g} voxel up": self.up_voxels,
             f"lamp {100 * self.lamp:+.3g} %": self.lamp,
             f"extinction in {self.levels + 1} levels": self.levels,
             f"black at {100 * self.black:.3g} % of white": self.black,
+            f"lamp of {self.disc_deg:g}°, screen a cube's width behind": self.disc_deg,
         }
         return ", ".join(words for words, number in said.items() if number) or "as made"
 
 
-#: What `robust` tries, by name.
+#: What `robust` tries, by name; lamps of a size only where they have none, on a turntable.
 DISTURBANCES = {
     "undisturbed": Disturbance(),
     "turned": Disturbance(turn_deg=0.2),
+    "turned-as-64": Disturbance(turn_of_64_deg=0.2),
     "sideways": Disturbance(right_voxels=0.5),
     "up": Disturbance(up_voxels=0.5),
     "lamp": Disturbance(lamp=0.02),
     "extinction": Disturbance(levels=255),
     "black": Disturbance(black=0.01),
+    "disc": Disturbance(disc_deg=0.5),
     "all": Disturbance(0.2, 0.5, 0.5, 0.02, 255, 0.01),
 }

@@ -31,7 +31,16 @@ from lightcube.optics.tables import (
     power_bounds,
 )
 from lightcube.optics.transfer import BLACK
-from lightcube.optics.views import Views, check_angles, hold_offsets_deg, rotated, smallest_gap_deg, turntable_views
+from lightcube.optics.views import (
+    Views,
+    check_angles,
+    check_lamp,
+    hold_offsets_deg,
+    rotated,
+    smallest_gap_deg,
+    swept_mm,
+    turntable_views,
+)
 
 #: Stops nearer to each other than this, in degrees, are one.
 _SAME_STOP = 1e-6
@@ -172,7 +181,10 @@ class Rig:
 
     @cached_property
     def mirrors(self) -> bool:
-        """Whether half a turn of the table shows every picture mirrored: level light, and screens that go with it."""
+        """Whether half a turn of the table shows every picture mirrored: level light, and screens that go with it.
+
+        Not where lamps have a disc: half a turn on, what was near the screen, and sharp, is far from it.
+        """
         axis = self.turning.axis / np.linalg.norm(self.turning.axis)
         light, across = (
             vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
@@ -183,6 +195,7 @@ class Rig:
             np.all(self.turning.turns)
             and np.all(self.turning.way[:, 0] == self.turning.way[:, 1])
             and np.all(self.views.lamps[:, 3] == 0)
+            and np.all(self.sums.disc_deg == 0)
             and np.all(np.abs(light @ axis) < _NONE)
             and np.all(np.abs(across @ axis) < _NONE)
             and np.all(upright < _NONE * np.linalg.norm(self.views.row_steps_mm, axis=1))
@@ -341,17 +354,38 @@ class Rig:
 
     @checked
     def whole(self, grid: Grid) -> Rig:
-        """Pictures as large as the cube's whole shadow, in its middle, on screens without edges; others as they are."""
+        """Pictures as large as the cube's whole shadow, in its middle, on screens without edges; others as they are.
+
+        The middle is where the beam through the cube's lands.
+        """
         if not np.all(self.screens.endless[self.stops.screen]):
             return self
-        views = self.views
-        steepest = float(np.max(np.abs(views.elevations_deg)))
-        origins_mm = views.origins_mm.copy()
-        for steps in (views.column_steps_mm, views.row_steps_mm):
-            origins_mm -= (np.sum(origins_mm * steps, axis=1) / np.sum(steps**2, axis=1))[:, None] * steps
-        shape = raster_shape(grid, steepest)
+        views, light = self.views, self.views.lamps[:, :3]
+        normals = np.cross(views.column_steps_mm, views.row_steps_mm)
+        behind = np.sum(views.origins_mm * normals, axis=1) / np.sum(light * normals, axis=1)
+        origins_mm = behind[:, None] * light
+        shape = self._whole_shape(grid)
         stops = replace(self.stops, window=np.tile(shape, (len(self), 1)))
         return replace(self, views=replace(views, origins_mm=origins_mm, picture_shape=shape), stops=stops)
+
+    def _whole_shape(self, grid: Grid) -> tuple[int, int]:
+        """Rows and columns of the cube's whole shadow, and of its blur where a lamp has a disc."""
+        raised, wide = np.radians(np.abs(self.views.elevations_deg)), np.radians(self.sums.disc_deg / 2)
+        behind = self.behind_mm / grid.voxel_mm
+        higher = behind * (np.tan(raised + wide) - np.tan(raised))
+        aside = np.sin(wide) / np.cos(
+            raised + wide
+        )  # of the disc's points, for each mm that light goes behind the cube
+        wider = behind * aside + np.hypot(*grid.shape[1:]) / 2 * (np.hypot(1, aside) - 1)
+        rows, columns = raster_shape(grid, float(np.max(np.degrees(raised + wide))))
+        more_rows, more_columns = (2 * math.ceil(float(np.max(more)) - _NONE) for more in (higher, wider))
+        return rows + more_rows, columns + more_columns
+
+    @property
+    def behind_mm(self) -> Reals:
+        """``(views,)``: how far behind the cube's middle each screen is, along the level way of its lamp's light."""
+        level = self.views.lamps[:, :2]
+        return np.sum(self.views.origins_mm[:, :2] * level, axis=1) / np.linalg.norm(level, axis=1)
 
     @property
     def elevation_deg(self) -> float | None:
@@ -378,6 +412,8 @@ def turntable(
     power: float | None = None,
     power_max: float = POWER_MAX,
     black: float = BLACK,
+    lamp_deg: float = 0.0,
+    screen_mm: float | None = None,
 ) -> Rig:
     """A cube on a turntable in parallel light, before a vertical screen with rows and columns one voxel apart.
 
@@ -391,11 +427,13 @@ def turntable(
         ``(rows, columns)`` of a window in the middle of the screen; default the whole `raster_shape`.
     power, power_max, black
         Of the lamp and the screen, as `Rig.of` takes them.
+    lamp_deg, screen_mm
+        Of a lamp with a disc and its screen, as `soft` takes them; 0 = the lamp has none.
 
     Notes
     -----
     Parallel light casts the same picture on every parallel screen, so the screen's plane is put through the
-    cube's centre. The picture's middle is where the beam through that centre lands.
+    cube's centre, unless the lamp has a disc. The picture's middle is where the beam through that centre lands.
 
     Examples
     --------
@@ -405,8 +443,35 @@ def turntable(
     array([[ 0., -1.,  0.],
            [-1.,  0.,  0.]])
     """
+    check_lamp(lamp_deg, screen_mm)
     views = turntable_views(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=picture_shape)
-    return Rig.of(views, power=power, power_max=power_max, black=black)
+    sharp = Rig.of(views, power=power, power_max=power_max, black=black)
+    return soft(sharp, grid, lamp_deg, screen_mm) if lamp_deg else sharp
+
+
+def soft(rig: Rig, grid: Grid, lamp_deg: float, screen_mm: float | None = None) -> Rig:
+    """A turntable's rig, its lamp having a disc, and its screens so far behind the cube that it blurs their pictures.
+
+    Parameters
+    ----------
+    lamp_deg
+        Angular diameter of the disc, degrees above 0 and below 90: the sun's is 0.5.
+    screen_mm
+        From the circle that the turning cube's corners sweep to the screens, which move along the light; default the
+        cube's width.
+    """
+    check_lamp(lamp_deg, screen_mm)
+    steepest = float(np.max(np.abs(rig.views.elevations_deg))) + lamp_deg / 2
+    if steepest >= 90:
+        raise InputError(
+            f"a lamp raised by {steepest - lamp_deg / 2:g} degrees with a disc of {lamp_deg:g} shines from behind the "
+            "screen too: raise it less, or make it smaller"
+        )
+    wanted_mm = swept_mm(grid) + (grid.size_mm[1] if screen_mm is None else screen_mm)
+    light = rig.views.lamps[:, :3]
+    further = (wanted_mm - rig.behind_mm) / np.linalg.norm(light[:, :2], axis=1)
+    views = replace(rig.views, origins_mm=rig.views.origins_mm + further[:, None] * light)
+    return replace(rig, views=views, sums=replace(rig.sums, disc_deg=np.full(len(views), lamp_deg)))
 
 
 def _taken(part: Any, chosen: Counts) -> Any:

@@ -175,6 +175,25 @@ def spread_angles(count: int, span_deg: float | None = None, *, elevation_deg: f
     return angles_deg
 
 
+def swept_mm(grid: Grid) -> float:
+    """Radius of the circle that the corners of a turning cube sweep, mm."""
+    return math.hypot(*grid.shape[1:]) / 2 * grid.voxel_mm
+
+
+def check_lamp(lamp_deg: float, screen_mm: float | None) -> None:
+    """Raise `InputError` unless a lamp can have such a disc, and a screen stand so far behind the cube."""
+    if not 0 <= lamp_deg < 90:
+        raise InputError(f"a lamp's disc has an angular diameter from 0 to below 90 degrees, not {lamp_deg:g}")
+    if screen_mm is None:
+        return
+    if not lamp_deg:
+        raise InputError(
+            "how far away the screen stands changes nothing unless the lamp has a size: give its angular diameter too"
+        )
+    if not 0 <= screen_mm < math.inf:
+        raise InputError(f"a screen {screen_mm:g} mm behind the turning cube would stand inside it: use at least 0")
+
+
 def _turned(angles_deg: Reals, vector: tuple[float, float, float]) -> Reals:
     """`vector` of the room in the axes of a cube that was turned counter-clockwise by `angles_deg` (degrees)."""
     cos, sin = _cos_sin(angles_deg)

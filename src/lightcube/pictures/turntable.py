@@ -13,7 +13,7 @@ from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK
-from lightcube.optics.views import distinct_angles, spread_angles
+from lightcube.optics.views import check_lamp, distinct_angles, spread_angles
 from lightcube.pictures.pictures import Pictures
 
 #: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
@@ -37,6 +37,11 @@ class Turntable:
         Power of the lamp where it is fixed, and its largest where it is not, as `lightcube.optics.rig.Rig.of` has them.
     black
         Display value, from half a level of 255 to below 1, that the screen cannot be darker than.
+    lamp_deg
+        Angular diameter of the lamp's disc, degrees from 0 to below 90; 0 = it has none.
+    screen_mm
+        How far behind the circle that the turning cube's corners sweep the screen stands, mm, where the lamp has a
+        disc; default the cube's width. Without a disc it does not matter.
 
     Examples
     --------
@@ -52,6 +57,8 @@ class Turntable:
     power: float | None = None
     power_max: float = POWER_MAX
     black: float = BLACK
+    lamp_deg: float = 0.0
+    screen_mm: float | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -59,6 +66,7 @@ class Turntable:
             keep(self, angles_deg=np.float64)
         if self.angles_deg is not None and self.span_deg is not None:
             raise InputError("angles and a span of angles are both given: use one of the two")
+        check_lamp(self.lamp_deg, self.screen_mm)
 
     def elevation_of(self, pictures: Pictures) -> float:
         """Elevation of the lamp that pictures are shown with, degrees."""
@@ -95,6 +103,8 @@ class Turntable:
             power=self.power,
             power_max=self.power_max,
             black=self.black,
+            lamp_deg=self.lamp_deg,
+            screen_mm=self.screen_mm,
         )
 
     def _angles(self, pictures: Pictures, elevation_deg: float) -> Reals:

@@ -18,6 +18,13 @@ def is_measured(rig: Rig, grid: Grid) -> bool:
     return rig.is_thin and rig.elevation_deg is not None and as_voxels
 
 
+def unmeasured(rig: Rig) -> list[str]:
+    """A sentence where a lamp has a size: rehearsals mind it, but their law was fitted to lamps without one."""
+    if not np.any(rig.sums.disc_deg):
+        return []
+    return ["how much a lamp's size costs was not measured: pictures may become worse than expected"]
+
+
 def raised(rig: Rig, grid: Grid) -> float:
     """Elevation of a rig's light, degrees, or `InputError` where planning was not measured on rooms like it."""
     elevation_deg = rig.elevation_deg

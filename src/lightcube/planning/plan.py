@@ -15,6 +15,7 @@ from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, dense_step_deg
 from lightcube.optics.rig import Rig
 from lightcube.optics.stage import Stage
+from lightcube.optics.views import swept_mm
 from lightcube.pictures.arranging import spread_over_screen
 from lightcube.pictures.fitting import Fit
 from lightcube.pictures.fitting import fit as fitted
@@ -22,7 +23,7 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from lightcube.pictures.turntable import Turntable
 from lightcube.planning.feasibility import doubtful, impossible
-from lightcube.planning.measured import is_measured
+from lightcube.planning.measured import is_measured, unmeasured
 from lightcube.planning.prediction import Prediction, predict
 from lightcube.planning.reachable import sentences
 
@@ -94,8 +95,9 @@ class Plan:
 
     @cached_property
     def doubtful(self) -> list[str]:
-        """What is probably not meant in a room that is described, and which pictures are out of reach there."""
-        return [] if self.stage is None else [*doubtful(self.stage), *sentences(self.targets)]
+        """What is probably not meant in a room that is described, which pictures are out of reach, what is unknown."""
+        unknown = unmeasured(self.targets.rig) if self.prediction.is_known else []
+        return unknown if self.stage is None else [*doubtful(self.stage), *sentences(self.targets), *unknown]
 
     def with_targets(self, targets: Targets) -> Plan:
         """The same plan for targets that stand, or follow each other, in another way: predicted anew."""
@@ -273,7 +275,13 @@ def held_longest(without: Plan) -> Plan:
 def narrower(planned: Plan, width: float) -> Targets:
     """The targets of a plan as they would be at another width, at the same stops."""
     rig = planned.targets.rig
-    said = Turntable(angles_deg=rig.stops.angle_deg, elevation_deg=rig.elevation_deg)
+    disc_deg = float(rig.sums.disc_deg[0])
+    said = Turntable(
+        angles_deg=rig.stops.angle_deg,
+        elevation_deg=rig.elevation_deg,
+        lamp_deg=disc_deg,
+        screen_mm=max(0.0, float(rig.behind_mm[0]) - swept_mm(planned.grid)) if disc_deg else None,
+    )
     narrow = said.rig(planned.pictures, planned.grid, picture_width=width)
     targets = fitted(planned.pictures, replace(narrow, lamps=rig.lamps, screens=rig.screens), planned.fit)
     if planned.shift:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from lightcube.drawing.sheet import triple
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
-from lightcube.optics.disturbance import DISTURBANCES
 from lightcube.optics.stage import Stage
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets
@@ -19,7 +18,7 @@ from lightcube.planning.feasibility import doubtful
 from lightcube.planning.reachable import sentences
 from lightcube.scoring.between import Curve, curve
 from lightcube.scoring.metrics import check_same_views, score
-from lightcube.scoring.robust import robust
+from lightcube.scoring.robust import disturbances, robust
 
 Levels = NDArray[np.uint8]
 
@@ -84,7 +83,7 @@ def measure(
     """
     check_same_views(cube, targets)
     tell = callback or (lambda done, of: None)
-    rest = (len(DISTURBANCES) + 1) * len(targets)
+    rest = (len(disturbances(cube)) + 1) * len(targets)
     turns = bool(np.any(cube.rig.turning.turns))
     between = curve(cube, targets, callback=lambda done, of: tell(done, of + rest)) if turns else None
     of = rest + (0 if between is None else len(between.angles_deg))

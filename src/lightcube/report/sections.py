@@ -126,7 +126,15 @@ def _placed(cube: Cube) -> dict[str, str]:
         "Lamps": ", ".join(rig.lamps.names),
         "Screens": ", ".join(rig.screens.names),
     }
-    return said if rig.elevation_deg is None else said | {"Lamp elevation": f"{rig.elevation_deg:g}°"}
+    if rig.elevation_deg is not None:
+        said["Lamp elevation"] = f"{rig.elevation_deg:g}°"
+    if np.any(rig.sums.disc_deg):
+        said["Lamp size"] = ", ".join(
+            f"{disc_deg:g}°" for disc_deg in np.unique(rig.sums.disc_deg[rig.sums.disc_deg > 0])
+        )
+        if rig.elevation_deg is not None:
+            said["Screen stands"] = f"{rig.behind_mm[0]:.4g} mm behind the cube's middle"
+    return said
 
 
 def _stops(angles_deg: NDArray[np.float64]) -> str:

@@ -67,6 +67,13 @@ class Options:
     ] = None
     lamp_power: Annotated[float | None, Option("Power of a fixed lamp, linear light; 1 is white.")] = None
     lamp_max: Annotated[float | None, Option("Largest power of the lamp, at least 1.  [default: 16]")] = None
+    lamp_deg: Annotated[
+        float | None, Option("Angular diameter of the lamp's disc in degrees: the sun's is 0.5.  [default: 0, none]")
+    ] = None
+    screen_mm: Annotated[
+        float | None,
+        Option("With --lamp-deg: mm from the turning cube's reach to the screen; default the cube's width."),
+    ] = None
     hold_deg: Annotated[
         float | None,
         Option("Degrees around its stop over which each picture shall stand; default what costs below 1 dB."),
@@ -82,7 +89,11 @@ class Options:
         Beams | None, Option("Whether light is averaged over pixels or, as in the paper, thin beams.  [default: area]")
     ] = None
     points: Annotated[
-        int | None, Option("Average over so many points of each pixel.  [default: 13, level 7; best: 34, 15]", 1)
+        int | None,
+        Option(
+            "Average over so many points of each pixel, with --lamp-deg thrice.  [default: 13, level 7; best: 34, 15]",
+            1,
+        ),
     ] = None
 
     @property
@@ -116,6 +127,7 @@ class Options:
         power = self.lamp_power if chooses or self.lamp_power is not None else 1.0
         said = {"angles_deg": self.angles_deg, "power": power, "power_max": self.lamp_max, "black": self.black}
         said |= {"span_deg": self.span_deg, "elevation_deg": self.elevation_deg}
+        said |= {"lamp_deg": self.lamp_deg, "screen_mm": self.screen_mm}
         return Turntable(**{name: value for name, value in said.items() if value is not None})  # type: ignore[arg-type]
 
     def as_in_the_paper(self) -> "Options":
@@ -128,6 +140,8 @@ class Options:
             "--powers": self.powers,
             "--lamp-power": self.lamp_power,
             "--lamp-max": self.lamp_max,
+            "--lamp-deg": self.lamp_deg or None,
+            "--screen-mm": self.screen_mm,
             "--hold-deg": self.hold_deg,
             "--shift": self.shift or None,
             "--light": None if self.light == "thin" else self.light,

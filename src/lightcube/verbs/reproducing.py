@@ -19,10 +19,10 @@ from lightcube.backward.recipe import QUALITIES, Quality, Recipe, recipe_of
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Light
-from lightcube.optics.rig import turntable
+from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK
-from lightcube.optics.views import spread_angles
+from lightcube.optics.views import spread_angles, swept_mm
 from lightcube.pictures.targets import Targets
 from lightcube.report.page import Command, Origin
 
@@ -77,11 +77,14 @@ def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from ("--size-mm", _number(size))
     yield from ("--picture-width", _width(views.picture_shape[1], cube.grid.shape[1]))
     yield from ("--elevation-deg", _number(float(views.elevations_deg[0])))
-    angles_deg = _angles(cube)
-    if angles_deg is None:
-        command.doubts.append("No angles and elevation on the command line give exactly this cube's lamps and screens.")
-        angles_deg = ["--angles-deg", _listed(views.angles_deg)]
-    yield from angles_deg
+    said, angles_deg = _angles(cube)
+    yield from said
+    disc = _disc(cube, angles_deg)
+    if disc is None:
+        command.doubts.append(
+            "No angles, elevation and lamp on the command line give exactly this cube's lamps and screens."
+        )
+    yield from disc or ()
     if provenance.get("fit", "crop") != "crop":
         yield from ("--fit", str(provenance["fit"]))
     if "order" in provenance:
@@ -209,25 +212,53 @@ def _usual_units(cube: Cube, targets: Targets) -> int:
     return fewest_units(job, MEMORY)
 
 
-def _angles(cube: Cube) -> list[str] | None:
-    """The option that gives exactly the cube's views, or None."""
+def _angles(cube: Cube) -> tuple[list[str], NDArray[np.float64]]:
+    """The option that gives the cube's angles, and what it gives: exactly them if any does."""
     views = cube.rig.views
     angles_deg = views.angles_deg
     for offset in (1 / 2, 1 / 3):  # as `lightcube.optics.views.spread_angles` begins
         span_deg = round(float(angles_deg[0]) / offset * len(views), 6)
-        if 0 < span_deg <= 360 and _same(cube, spread_angles(len(views), span_deg)):
-            return ["--span-deg", _number(span_deg)]
-    return ["--angles-deg", _listed(angles_deg)] if _same(cube, np.round(angles_deg, _DIGITS)) else None
+        if 0 < span_deg <= 360:
+            spread_deg = spread_angles(len(views), span_deg)
+            if np.array_equal(_made(cube, spread_deg).views.lamps, views.lamps):
+                return ["--span-deg", _number(span_deg)], spread_deg
+    return ["--angles-deg", _listed(angles_deg)], np.round(angles_deg, _DIGITS)
 
 
-def _same(cube: Cube, angles_deg: NDArray[np.float64]) -> bool:
-    """Whether views at these angles have the cube's lamps and screens, bit for bit."""
+def _disc(cube: Cube, angles_deg: NDArray[np.float64]) -> list[str] | None:
+    """The options of the lamp's disc that give exactly the cube's lamps and screens at these angles, or None."""
+    lamp_deg = float(cube.rig.sums.disc_deg[0])
+    if not lamp_deg:
+        return [] if _same(cube, _made(cube, angles_deg)) else None
+    said = ["--lamp-deg", _number(lamp_deg)]
+    if _same(cube, _made(cube, angles_deg, lamp_deg=lamp_deg)):
+        return said
+    away_mm = float(cube.rig.behind_mm[0]) - swept_mm(cube.grid)
+    for screen_mm in _rounded(max(away_mm, 0.0)):
+        if _same(cube, _made(cube, angles_deg, lamp_deg=lamp_deg, screen_mm=screen_mm)):
+            return [*said, "--screen-mm", _number(screen_mm)]
+    return None
+
+
+def _made(cube: Cube, angles_deg: NDArray[np.float64], **disc: float) -> Rig:
+    """A turntable of the cube's elevation and pictures at these angles."""
     views = cube.rig.views
-    made = turntable(
-        cube.grid, angles_deg, elevation_deg=float(views.elevations_deg[0]), picture_shape=views.picture_shape
-    ).views
-    names = ["lamps", "column_steps_mm", "row_steps_mm"] + ["origins_mm"] * ("shift" not in cube.provenance)
-    return all(np.array_equal(getattr(made, name), getattr(views, name)) for name in names)
+    elevation_deg = float(views.elevations_deg[0])
+    return turntable(cube.grid, angles_deg, elevation_deg=elevation_deg, picture_shape=views.picture_shape, **disc)
+
+
+def _same(cube: Cube, made: Rig) -> bool:
+    """Whether a rig has the cube's lamps and screens, bit for bit; pictures may have been shifted by whole pixels."""
+    views = cube.rig.views
+    if not np.array_equal(made.sums.disc_deg, cube.rig.sums.disc_deg):
+        return False
+    if "shift" in cube.provenance:
+        off = views.origins_mm - made.views.origins_mm
+        steps = views.column_steps_mm, views.row_steps_mm
+        offsets = [np.rint(np.sum(off * each, axis=1) / np.sum(each**2, axis=1)).astype(int) for each in steps]
+        made = made.shifted(np.stack(offsets, axis=1))
+    names = ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm")
+    return all(np.array_equal(getattr(made.views, name), getattr(views, name)) for name in names)
 
 
 def _listed(angles_deg: NDArray[np.float64]) -> str:
@@ -236,14 +267,17 @@ def _listed(angles_deg: NDArray[np.float64]) -> str:
 
 def _size(voxel_mm: float, voxels: int) -> float | None:
     """The shortest length of so many voxels that gives exactly their side, or None."""
-    length = voxel_mm * voxels
-    tried = [float(f"{length:.{digits}g}") for digits in range(1, 18)]
+    return next((each for each in _rounded(voxel_mm * voxels) if each / voxels == voxel_mm), None)
+
+
+def _rounded(length: float) -> Iterator[float]:
+    """Numbers near one, those of few digits first."""
+    yield from (float(f"{length:.{digits}g}") for digits in range(1, 18))
     for way in (-math.inf, math.inf):
         beside = length
         for _ in range(_NEIGHBOURS):
             beside = math.nextafter(beside, way)
-            tried.append(beside)
-    return next((each for each in tried if each / voxels == voxel_mm), None)
+            yield beside
 
 
 def _width(columns: int, voxels: int) -> str:

@@ -54,10 +54,13 @@ export function exposures(scene, angle, whole = false) {
     const number = nearestPicture(scene, screen, angle);
     const { angle_deg: stop, window } = scene.pictures[number];
     const lit = degreesApart(angle, stop) < nearest + SAME;
-    const views = viewsOf(scene, number).map((view) => {
+    const exposed = viewsOf(scene, number).map((view) => {
       const power = lit ? powerBetween(scene, view.pair, angle) : [0];
-      return exposedView(scene, view, angle - stop, power, full !== null);
+      return exposedView(scene, view, angle - stop, power);
     });
+    const views = full === null ? exposed : exposed.map((view) => (
+      { ...view, origin: middleOfShadow(exposed, view.lamp) }
+    ));
     const parts = { window: full ?? window, raster: full ?? scene.raster, transfer: scene.transfer, views };
     return { screen, angle, picture: number, lit, ...parts };
   });
@@ -67,13 +70,13 @@ function viewsOf(scene, picture) {
   return scene.views.filter((view) => view.picture === picture);
 }
 
-function exposedView(scene, view, degrees, power, whole) {
+function exposedView(scene, view, degrees, power) {
   const [lampTurn, screenTurn] = turnsOf(scene, view, degrees);
   const light = [...apply(lampTurn, view.light), view.light[3]];
   const [origin, right, down] = [view.origin, view.right, view.down].map((vector) => apply(screenTurn, vector));
   return {
     light,
-    origin: whole ? middleOfShadow(light, origin, right, down) : origin,
+    origin,
     right,
     down,
     power: [0, 1, 2].map((channel) => ofChannel(view.share, channel) * ofChannel(power, channel)),
@@ -90,8 +93,11 @@ function turnsOf(scene, view, degrees) {
   return [0, 1].map((i) => rotation(scene.axis, view.turning[i] ? view.way[i] * degrees : 0));
 }
 
-/** Where the parallel beam through the cube's middle meets the screen's plane. */
-export function middleOfShadow(light, origin, right, down) {
+/** Where the parallel beam from the middle of a lamp's disc through the cube's middle meets the plane of its views. */
+export function middleOfShadow(views, lamp) {
+  const own = views.filter((view) => view.lamp === lamp); // the samples of its disc
+  const light = meanOf(own.map((view) => view.light));
+  const { origin, right, down } = own[0];
   const normal = cross(right, down);
   return scaled(light, dot(origin, normal) / dot(light, normal));
 }

@@ -120,9 +120,10 @@ function within(number, count) {
 
 /** The picture's window [row, column, rows, columns] in the raster of the whole shadow. */
 function windowInWhole(scene, { picture, raster }) {
-  const { light, origin, right, down } = scene.views.find((view) => view.picture === picture);
+  const views = scene.views.filter((view) => view.picture === picture);
+  const { lamp, origin, right, down } = views[0];
   const [rows, columns] = scene.pictures[picture].window;
-  const off = sub(origin, middleOfShadow(light, origin, right, down));
+  const off = sub(origin, middleOfShadow(views, lamp));
   const [below, across] = [down, right].map((step) => dot(off, step) / dot(step, step));
   return [(raster[0] - rows) / 2 + below, (raster[1] - columns) / 2 + across, rows, columns];
 }
