@@ -8,7 +8,7 @@ import pytest
 from lightcube.backward.mat import Mat, framed, judged_pixels, margin, widened
 from lightcube.backward.problem import pose
 from lightcube.backward.recipe import Recipe
-from lightcube.backward.solving import solve
+from lightcube.backward.solving import make_job, solve, solve_job
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.light import Light
@@ -101,3 +101,12 @@ def test_methods_that_know_no_lamps_frame_nothing() -> None:
     with pytest.raises(InputError, match="adds up over a pixel"):
         Recipe("sirt", light=Light(3))
     assert Recipe("sirt").beams.is_thin
+
+
+def test_units_of_a_level_cube_are_slabs_only_where_its_pictures_are_as_high() -> None:
+    """Lower ones with mats are seen in all slices too, but judged in their own rows."""
+    for shape, level in (((10, 6), True), ((4, 6), False)):
+        targets = some_targets(0.0, shape)
+        job = make_job(targets, GRID, Recipe(mat=Mat(width=3.0), passes=2, light=Light(3, 2)), units=2)
+        assert job.level is level
+        assert solve_job(job).cube.status == "complete"

@@ -80,12 +80,13 @@ class Job:
     @property
     def max_extinction(self) -> float:
         """The largest extinction, 1/mm; that of coarser cubes too."""
-        return self.recipe.stuff.most(self.grid)
+        return self.recipe.bounded_by.most(self.grid)
 
     @cached_property
     def level(self) -> bool:
         """Whether each slice of the cube casts one row of the pictures by itself, at all angles that are asked for."""
-        return is_level(self.grid, beams(self.targets.rig, self.recipe, self.grid).views)
+        asked = self.targets.rig, beams(self.targets.rig, self.recipe, self.grid)  # without mats and with them
+        return all(is_level(self.grid, rig.views) for rig in asked)
 
     @property
     def parts(self) -> list[Part]:

@@ -98,14 +98,9 @@ class Problem:
         ``(stop, row, column, channel)`` of the part: `rows` and colours only.
         """
         rig, lamp = self.judge
-        columns = x.reshape(self._voxels, -1)
-        return np.stack(
-            list(
-                shadows(
-                    columns, self.matrix.grid, rig, np.asarray(powers[lamp], np.float64), self.rows, self.part.colours
-                )
-            )
-        ).astype(np.float32, copy=False)
+        columns, of_views = x.reshape(self._voxels, -1), np.asarray(powers[lamp], np.float64)
+        shown = shadows(columns, self.matrix.grid, rig, of_views, self.rows, self.part.colours)
+        return np.stack(list(shown)).astype(np.float32, copy=False)
 
     def error(self, x: Floats, powers: Floats) -> float:
         """The mean squared difference, in display values, of what is `shown` from what is wanted."""

@@ -121,7 +121,7 @@ class Recipe:
         return find_method(self.method)
 
     @property
-    def stuff(self) -> Material:
+    def bounded_by(self) -> Material:
         """What bounds the extinction, never None."""
         return self.material or (Material() if self.beams.is_thin else BUILDABLE)
 
@@ -135,7 +135,7 @@ class Recipe:
         """Every field by name, as JSON has it: infinity, which it has not, is None."""
         flat = {each.name: getattr(self, each.name) for each in fields(self)}
         del flat["material"], flat["light"], flat["mat"]
-        flat |= {"method": self.solver.name, **asdict(self.stuff), **asdict(self.beams)}
+        flat |= {"method": self.solver.name, **asdict(self.bounded_by), **asdict(self.beams)}
         flat |= {f"mat_{each.name}": None if self.mat is None else getattr(self.mat, each.name) for each in fields(Mat)}
         return {name: None if value in _NONE else value for name, value in flat.items()}
 

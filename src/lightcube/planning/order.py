@@ -96,7 +96,7 @@ def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Or
     """
     raised(targets.rig, grid)
     recipe = recipe or Recipe()
-    bound = Material(recipe.stuff.most(grid))
+    bound = Material(recipe.bounded_by.most(grid))
     drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0, mat=None)
     if not recipe.beams.is_thin:
         drafted = replace(drafted, light=_POINTS)

@@ -158,7 +158,7 @@ def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
     held(targets.rig, recipe, grid)
     small, small_grid = reduced(targets, grid, _width(targets, grid, recipe))
     width = max(small_grid.shape[1:])
-    bound = Material(recipe.stuff.most(grid))
+    bound = Material(recipe.bounded_by.most(grid))
     light = recipe.beams if recipe.beams.is_thin else POINTS
     rehearsed = replace(recipe.by_display(rehearsal_of(recipe).passes), material=bound, light=light)
     rehearsed = replace(rehearsed, hold_deg=_small_hold(targets, grid, hold_deg, width))

@@ -121,8 +121,8 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from ("--method", made.solver.name)
     if made.powers != usual.powers:
         yield from ("--powers", made.powers)
-    if made.stuff != usual.stuff:
-        yield from ("--max-extinction", _number(made.stuff.most(cube.grid)))
+    if made.bounded_by != usual.bounded_by:
+        yield from ("--max-extinction", _number(made.bounded_by.most(cube.grid)))
     yield from _mat(made, command)
     quality = _quality(made) if "passes" in cube.provenance else None
     yield from _light(made.beams, quality, command)

@@ -41,7 +41,7 @@ def smaller(cube: Cube, callback: Watching | None = None) -> Cube:
     wanted = _cast(cube) if cube.targets is None else targets_of(cube)
     targets, grid = coarser(wanted, cube.grid, ratio)
     recipe = recipe_of(cube)
-    bound = Material(recipe.stuff.most(cube.grid))
+    bound = Material(recipe.bounded_by.most(cube.grid))
     solution = solve(targets, grid, replace(recipe.by_display(_PASSES), material=bound), callback=callback)
     return replace(solution.cube, scores=metrics.score(solution.cube, targets), status=cube.status)
 
