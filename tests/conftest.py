@@ -6,6 +6,8 @@ import signal
 import pytest
 from hypothesis import settings
 
+from lightcube.backward.recipe import QUALITIES
+from lightcube.optics import light
 from lightcube.planning import prediction
 from tests.helpers.browser import bare_browser, browser, evaluate, launch
 
@@ -24,9 +26,16 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 
 
 @pytest.fixture(autouse=True)
-def short_rehearsals(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where kernels run interpreted rehearsals are short, and drafts of whole commands; the compiled run has it all."""
+def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Interpreted kernels take few points, short rehearsals and drafts; compiled ones have it all."""
     room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
+    if INTERPRETED and room not in ("optics", "forward", "viewer"):
+        for name, few in (("JUDGE", 5), ("_JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
+            monkeypatch.setattr(light, name, few)
+        monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2))
+        for quality, (passes, enough, _) in QUALITIES.items():
+            monkeypatch.setitem(QUALITIES, quality, (passes, enough, light.Light()))
+        monkeypatch.setattr(prediction, "POINTS", light.Light())
     if INTERPRETED:
         monkeypatch.setattr(prediction, "AREA", prediction.AREA._replace(passes=2, work=20_000))
         monkeypatch.setattr(prediction, "_LEAST", 6)
