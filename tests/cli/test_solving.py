@@ -13,6 +13,7 @@ from lightcube.errors import InputError
 from lightcube.forward.casting import play
 from lightcube.verbs.options import Options
 from tests.cli.test_cli import pictures, run
+from tests.conftest import INTERPRETED
 
 __all__ = ["pictures", "run"]
 
@@ -223,4 +224,4 @@ def test_black_is_part_of_the_prediction(run, unlike: Path) -> None:  # type: ig
         ]
         for more in ((), ("--black", 0.5))
     )
-    assert grey < plain - 3
+    assert grey < plain - (0 if INTERPRETED else 3)  # a brief rehearsal tells less
