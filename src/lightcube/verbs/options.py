@@ -152,7 +152,7 @@ class Options:
         if contradiction:
             raise InputError(
                 f"--paper says what {contradiction[0]} says too (lamp level and of power 1, half a turn, pictures as "
-                "wide as the cube, no hold): leave out one of the two"
+                "wide as the cube, no hold, thin beams): leave out one of the two"
             )
         level = replace(self, elevation_deg=0.0, span_deg=180.0, hold_deg=0.0, lamp_power=1.0, picture_width=1.0)
         level = replace(level, light="thin")
