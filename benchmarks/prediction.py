@@ -249,17 +249,17 @@ def rehearsed(problem: Case, wanted: list[float]) -> Rehearsed:
 
 
 def fitted(cases: list[Rehearsed]) -> NDArray[np.float64]:
-    """Bias and growth of least absolute errors of means and worst pictures, by reweighted least squares."""
+    """Bias, growth and held of least absolute errors of means and worst pictures, by reweighted least squares."""
     equations, values = [], []
     for one in cases:
         for part in (np.mean, np.min):
             wanted, reached = float(part(one.wanted)), float(part(one.reached))
-            if max(wanted, reached) < MOST_DB:
+            if wanted < MOST_DB:
                 share = 1 - 1 / one.ratio
-                equations.append([share, share * (reached - 30)])
+                equations.append([share, share * (reached - 30), share * (one.case.hold_deg > 0)])
                 values.append(wanted - reached)
     a, b = np.array(equations), np.array(values)
-    found = np.zeros(2)
+    found = np.zeros(3)
     for _ in range(50):
         weight = 1 / np.sqrt(np.maximum(np.abs(b - a @ found), 0.5))
         found = np.asarray(np.linalg.lstsq(a * weight[:, None], b * weight, rcond=None)[0], np.float64)
@@ -271,10 +271,7 @@ def report(title: str, cases: list[Rehearsed]) -> None:
     for name, part in (("mean", np.mean), ("worst", np.min)):
         wanted = np.array([min(float(part(one.wanted)), MOST_DB) for one in cases])
         told = np.array(
-            [
-                min(float(part(law(one.reached, one.ratio, AREA) + (AREA.held if one.case.hold_deg else 0))), MOST_DB)
-                for one in cases
-            ]
+            [min(float(part(law(one.reached, one.ratio, AREA, held=one.case.hold_deg > 0))), MOST_DB) for one in cases]
         )
         error = (told - wanted)[np.minimum(told, wanted) < MOST_DB]
         if len(error):
@@ -288,8 +285,9 @@ def report(title: str, cases: list[Rehearsed]) -> None:
 def main() -> None:
     problems = cases()
     results = [rehearsed(*each) for each in zip(problems, kept(problems), strict=True)]
-    bias, growth = fitted([one for one in results if one.case.seed % 2 == 0])
-    print(f"\nfitted on even cases: bias {bias:.2f}, growth {growth:.3f}; in use: {AREA.bias}, {AREA.growth}\n")
+    bias, growth, held = fitted([one for one in results if one.case.seed % 2 == 0])
+    used = f"{AREA.bias}, {AREA.growth}, {AREA.held}"
+    print(f"\nfitted on even cases: bias {bias:.2f}, growth {growth:.3f}, held {held:.2f}; in use: {used}\n")
     print(f"{'PSNR, dB':>28} {'':>6} {'cases':>5} {'bias':>7} {'median':>7} {'90 %':>6} {'max':>6} {'<= 3':>6}")
     for parity, name in enumerate(("fitted on", "other pictures")):
         chosen = [one for one in results if one.case.seed % 2 == parity]

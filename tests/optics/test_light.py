@@ -58,6 +58,12 @@ def test_points_of_a_lattice_are_even_and_none_is_the_judges(count: int) -> None
         assert qmc.discrepancy(points + 0.5, method="CD") < qmc.discrepancy(square, method="CD")
 
 
+@pytest.mark.parametrize("count", [55, 110, 275, 1024])
+def test_many_points_are_found_in_a_moment_and_all_different(count: int) -> None:
+    for points in (lattice(count), soft_lattice(count)):
+        assert len(np.unique(points[:, 0])) == len(np.unique(points[:, 1])) == count
+
+
 def test_the_judges_points_are_a_fibonacci_lattice() -> None:
     points = judge_points(rig_of(35.0), GRID)
     expected = [((i + 0.5) / 55 - 0.5, (34 * i % 55 + 0.5) / 55 - 0.5) for i in range(55)]

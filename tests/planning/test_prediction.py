@@ -208,11 +208,13 @@ def test_wider_pictures_are_told_to_be_worse() -> None:
 def test_the_law_leaves_alone_what_was_not_reduced_and_keeps_order() -> None:
     reached = np.linspace(5, 90, 50)
     for by in (prediction.AREA, prediction.THIN):
-        np.testing.assert_array_equal(law(reached, 1.0, by), reached)
+        for held in (False, True):
+            np.testing.assert_array_equal(law(reached, 1.0, by, held=held), reached)
         for ratio in (1.5, 4.0, 12.0):
-            told = law(reached, ratio, by)
-            assert np.all(np.diff(told) >= 0)
-            assert np.all((told >= 0) & (told <= 100))
+            for held in (False, True):
+                told = law(reached, ratio, by, held=held)
+                assert np.all(np.diff(told) >= 0)
+                assert np.all((told >= 0) & (told <= 100))
 
 
 def test_means_and_worst_are_told_up_to_fifty() -> None:

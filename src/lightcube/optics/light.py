@@ -37,8 +37,8 @@ _JUDGE_STEP = 34
 DISC_TIMES = 3
 #: No more points are taken of a pixel.
 MOST_POINTS = 1024
-#: Lattices of more points are chosen among so many.
-_TRIED = 2048
+#: Distances between two points that are looked at where a lattice is chosen; of many points fewer lattices are tried.
+_LOOKED_AT = 50_000_000
 #: Of so many orders the one is taken in which a disc's seeds go with a pixel's points.
 _ORDERS = 128
 #: The part of a golden turn: what the seeds of a sunflower lie apart.
@@ -149,7 +149,7 @@ def lattice(count: int) -> Reals:
         return locked(np.zeros((1, 2)))
     steps = [step for step in range(1, count) if math.gcd(step, count) == 1] or [1]
     pairs = [(step, start) for step in steps for start in range(count)]
-    pairs = pairs[:: max(1, len(pairs) // _TRIED)]
+    pairs = pairs[:: -(-len(pairs) * count**2 // _LOOKED_AT)]
     judge = {tuple(point) for point in np.round(_rank_1(JUDGE, _JUDGE_STEP, 0), 9)}
     best = math.inf, np.zeros((count, 2))
     for step, start in pairs:
@@ -180,7 +180,8 @@ def soft_lattice(count: int) -> Reals:
     points, number = lattice(count), np.arange(count)
     turns = np.stack([(number + 0.5) / count, number * _GOLDEN / math.tau % 1], axis=1) - 0.5  # seeds, on a square
     steps = [step for step in range(1, count) if math.gcd(step, count) == 1] or [1]
-    orders = [step * number % count for step in steps[:: -(-len(steps) // _ORDERS)]]
+    tried = min(_ORDERS, _LOOKED_AT // count**2)
+    orders = [step * number % count for step in steps[:: -(-len(steps) // tried)]]
     best = min(orders, key=lambda order: _centred_discrepancy(np.hstack([points, turns[order]])))
     return locked(np.hstack([points, seeds(count)[best]]))
 
