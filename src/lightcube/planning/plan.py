@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from lightcube.planning.order import Order
 
 #: Pictures are made as wide as so much is expected of them, dB; half as wide as the cube where this is.
-PLANNED_DB, LEAST_DB, HALF = 38.0, 36.0, 0.5
+PLANNED_DB, LEAST_DB, HALF = 39.0, 36.0, 0.5
 #: What hold may cost, dB, of what lies below so much.
 HOLD_COSTS_DB, BEST_SEEN_DB = 1.0, 45.0
 #: Widths of the pictures, as parts of the cube's, that are tried.
@@ -134,7 +134,7 @@ def plan(
         pictures under a level one.
     picture_width
         Width of the pictures as a fraction of the cube's; default the largest in `WIDTHS` with a predicted mean PSNR
-        of at least 38 dB, or the smallest; but half of it where 36 dB are predicted for that.
+        of at least 39 dB, or the smallest; but half of it where 36 dB are predicted for that.
     turntable
         Angles, lamp and screen, as far as they are said; None = ``Turntable()``.
     fit
