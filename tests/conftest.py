@@ -1,7 +1,10 @@
 """What all tests share."""
 
+import atexit
 import os
+import shutil
 import signal
+import tempfile
 
 import pytest
 from hypothesis import settings
@@ -16,6 +19,10 @@ __all__ = ["bare_browser", "browser", "evaluate", "launch"]
 # No test is about how long it takes on a machine that does other things too.
 settings.register_profile("patient", deadline=None)
 settings.load_profile("patient")
+
+# What commands remember for each other is theirs: each worker of the suite begins without.
+os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="lightcube-suite-")
+atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 

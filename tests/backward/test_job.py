@@ -22,6 +22,7 @@ from lightcube.backward.units import coarser, split
 from lightcube.errors import InputError
 from lightcube.jobs.partial import open_partial
 from lightcube.kernels.layout import columns_from_volume
+from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
@@ -44,6 +45,12 @@ def some_targets(
     return Targets(random.uniform(0.1, 1, (count, *size, 3)).astype(np.float32), rig, weight.astype(np.float32))
 
 
+def other_cube() -> Cube:
+    """To start from."""
+    extinction = np.random.default_rng(4).uniform(0, 0.4, (3, *SHAPE)).astype(np.float32)
+    return Cube(extinction, Grid(SHAPE, 0.7), some_targets().rig)
+
+
 def job(elevation_deg: float = 35.0, size: tuple[int, int] = (3, 5), **options: Any) -> Job:
     return make_job(
         **asked(some_targets(size=size, elevation_deg=elevation_deg), Grid(SHAPE, 0.7), **{"passes": 12, **options})
@@ -58,6 +65,7 @@ KINDS: list[dict[str, Any]] = [
     LEVEL,
     {**RAISED, "powers": "shared", "hold_deg": 2.0},
     {"powers": "coarse"},
+    {"start": other_cube()},
     {**LEVEL, "method": "sirt"},
     {**RAISED, "method": "cgls"},
 ]

@@ -13,7 +13,7 @@ from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from lightcube.pictures.turntable import Turntable
-from lightcube.planning import plan as planning
+from lightcube.planning import rehearsals
 from lightcube.planning.plan import PLANNED_DB, WIDTHS, plan, plan_stage, proportions
 from lightcube.planning.prediction import Prediction
 
@@ -36,7 +36,7 @@ def formula(monkeypatch: pytest.MonkeyPatch) -> list[float]:
         part = rows * columns / (grid.shape[0] * grid.shape[1])
         return Prediction(np.full(len(targets), 60 - 100 * part - 0.8 * hold_deg), 20)
 
-    monkeypatch.setattr(planning, "predict", predict)
+    monkeypatch.setattr(rehearsals, "predict", predict)
     return calls
 
 
@@ -56,7 +56,7 @@ def test_half_as_wide_as_the_cube_they_may_be_a_little_worse(monkeypatch: pytest
             wide = targets.rig.picture_shape[1]
             return Prediction(np.full(len(targets), 39.0 if wide < 26 else half_db if wide <= 32 else 20.0), 20)
 
-        monkeypatch.setattr(planning, "predict", told)
+        monkeypatch.setattr(rehearsals, "predict", told)
         assert plan(pictures(), 64).targets.rig.picture_shape[1] == columns
 
 
@@ -64,7 +64,7 @@ def test_where_none_is_good_they_are_as_narrow_as_they_get(monkeypatch: pytest.M
     def bad(targets: Targets, _grid: Grid, _recipe: Recipe) -> Prediction:
         return Prediction(np.full(len(targets), 10.0), 20)
 
-    monkeypatch.setattr(planning, "predict", bad)
+    monkeypatch.setattr(rehearsals, "predict", bad)
     assert plan(pictures(), 64).targets.rig.picture_shape[1] == 16
 
 
@@ -72,7 +72,7 @@ def test_where_all_are_good_they_fill_the_cube(monkeypatch: pytest.MonkeyPatch) 
     def good(targets: Targets, _grid: Grid, _recipe: Recipe) -> Prediction:
         return Prediction(np.full(len(targets), 70.0), 20)
 
-    monkeypatch.setattr(planning, "predict", good)
+    monkeypatch.setattr(rehearsals, "predict", good)
     assert plan(pictures(), 64).targets.rig.picture_shape[1] == 64
 
 

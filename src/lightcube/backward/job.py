@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from lightcube.backward.problem import beams, is_level
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import Part, halvings, split
+from lightcube.optics.arrays import Images
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.pictures.targets import Targets
@@ -37,6 +38,8 @@ class Job:
     units
         How many parts of the cube are solved one after the other. With more than one the lamp powers are those
         found at half the size.
+    start
+        What the cube itself starts from, 1/mm, ``(channel, z, y, x)``; None = from a smaller one, or clear.
     provenance
         What the cube shall remember of how it was made, beside all this; it decides no bit of the extinction.
     """
@@ -45,6 +48,7 @@ class Job:
     grid: Grid
     recipe: Recipe = field(default_factory=Recipe)
     units: int = 1
+    start: Images | None = None
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -60,7 +64,10 @@ class Job:
     @property
     def levels(self) -> int:
         """How often the cube is halved for its start; smaller cubes come first."""
-        return max(halvings(self.grid), int(self.frozen)) if self.recipe.solver.coarse_to_fine else 0
+        least = int(self.frozen)
+        if not self.recipe.solver.coarse_to_fine or self.start is not None:
+            return least
+        return max(halvings(self.grid), least)
 
     @property
     def coarse_passes(self) -> int:
@@ -144,6 +151,7 @@ def fingerprint(job: Job) -> Fingerprint:
         "transfer": targets.transfer,
         **{_WORDS.get(name, name): value for name, value in job.recipe.plain().items()},
         "units": job.units,
+        "voxels to start from": None if job.start is None else _checksum(job.start),
     }
 
 
@@ -170,7 +178,7 @@ _WORDS = {
     "mat_weight": "weight of the mat",
     "mat_width": "width of the mat",
 }
-_CHECKSUMS = ("pictures", "weights", "names", "lamps and screens")
+_CHECKSUMS = ("pictures", "weights", "names", "lamps and screens", "voxels to start from")
 
 
 def _said(value: str | float | None) -> str:

@@ -105,17 +105,22 @@ def job_memory(job: Job) -> int:
     steepest = float(np.max(np.abs(views.elevations_deg)))
     per_stop = len(asked.views) // len(views)
     mixed = 0 if rig.fading.is_none else _MIXED * len(asked.views) * math.prod(asked.picture_shape)
-    return mixed + memory_needed(
-        job.recipe.solver,
-        job.grid,
-        asked.picture_shape,
-        len(views),
-        0.0 if job.level else steepest or _ANY,
-        per_stop=per_stop,
-        levels=job.levels,
-        units=job.units,
-        channels=job.channels,
-        dtype=job.recipe.dtype,
+    kept = 0 if job.start is None else job.start.nbytes
+    return (
+        mixed
+        + kept
+        + memory_needed(
+            job.recipe.solver,
+            job.grid,
+            asked.picture_shape,
+            len(views),
+            0.0 if job.level else steepest or _ANY,
+            per_stop=per_stop,
+            levels=job.levels,
+            units=job.units,
+            channels=job.channels,
+            dtype=job.recipe.dtype,
+        )
     )
 
 

@@ -123,16 +123,22 @@ def _posed(
     low, high = (bound[:, problem.part.colours] for bound in bounds)
 
     def start() -> Floats | None:
-        if level >= job.levels:
-            return None
-        return problem.unknowns(start_of(job, store, level, problem.part))
+        found = start_of(job, store, level, problem.part)
+        return None if found is None else problem.unknowns(found)
 
     passes = job.coarse_passes if kind == "level" else job.recipe.passes or job.recipe.solver.passes
     return problem, start, (low, high), passes
 
 
-def start_of(job: Job, store: Store, level: int, part: Part) -> Floats:
-    """Extinction of a part of the cube halved `level` times, enlarged from the next smaller one, which is finished."""
+def start_of(job: Job, store: Store, level: int, part: Part) -> Floats | None:
+    """Extinction that a part of the cube halved `level` times starts from, if any.
+
+    What the job was given, or the next smaller cube, enlarged, which is finished.
+    """
+    if level == 0 and job.start is not None:
+        return np.clip(job.start[part.colours, part.slices], 0, job.max_extinction)
+    if level >= job.levels:
+        return None
     whole = _finished(store, level_name(level + 1))[VOXELS]
     return enlarged(whole[part.colours], coarse_shape(job.grid.shape, level), part.slices)
 

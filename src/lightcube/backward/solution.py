@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from lightcube.backward.job import Job, level_name
-from lightcube.backward.pieces import POWERS, VOXELS, known
+from lightcube.backward.pieces import POWERS, VOXELS, known, start_of
 from lightcube.backward.problem import held
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
@@ -118,7 +118,9 @@ def _place(job: Job, store: Store, name: str, part: Part, extinction: Images, po
     found = known(job, store, name)
     if found is None:
         newest = _newest_level(job, store)
-        if newest is not None:
+        if job.start is not None:
+            extinction[part.colours, part.slices] = start_of(job, store, 0, part)
+        elif newest is not None:
             extinction[part.colours, part.slices] = _enlarged(job, *newest, part)
         return {}
     extinction[part.colours, part.slices] = found[VOXELS]

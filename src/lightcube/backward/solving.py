@@ -16,7 +16,9 @@ from lightcube.backward.solution import Solution, merged
 from lightcube.backward.store import MemoryStore, Store
 from lightcube.backward.units import most_units
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Images, locked
 from lightcube.optics.checks import checked
+from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import Rig
 from lightcube.pictures.targets import Targets
@@ -32,6 +34,7 @@ def solve(
     memory: int | None = None,
     callback: Watching | None = None,
     store: Store | None = None,
+    start: Cube | None = None,
     provenance: Mapping[str, Any] | None = None,
 ) -> Solution:
     """Find the cube whose shadows are the pictures.
@@ -61,17 +64,20 @@ def solve(
         30 s, and when stopped; what is in it already is not computed again, and a solver that was stopped goes on
         from its state: the cube is the same, bit for bit, as that of a run without a stop. It must have been used
         for this very job only (`lightcube.jobs.partial.DiskStore` sees to that).
+    start
+        A cube of as many voxels to start from, instead of a smaller one of these pictures: solved before one of them
+        was changed, in another order, or of another material. What is darker than `recipe` allows becomes as dark as
+        that; in voxels of another size absorbance is kept.
     provenance
         What else the cube shall remember of how it was made.
 
     Raises
     ------
     InputError
-        For targets that do not belong to the grid, or a recipe that cannot be followed there.
+        For targets that do not belong to the grid, a recipe that cannot be followed there, or a start of another shape.
     """
-    return solve_job(
-        make_job(targets, grid, recipe, units=units, memory=memory, provenance=provenance), store, callback
-    )
+    made = make_job(targets, grid, recipe, units=units, memory=memory, start=start, provenance=provenance)
+    return solve_job(made, store, callback)
 
 
 def solve_job(job: Job, store: Store | None = None, callback: Watching | None = None) -> Solution:
@@ -88,6 +94,7 @@ def make_job(
     *,
     units: int | None = None,
     memory: int | None = None,
+    start: Cube | None = None,
     provenance: Mapping[str, Any] | None = None,
 ) -> Job:
     """Check what `solve` is asked for, and leave nothing open; parameters and errors as there."""
@@ -96,11 +103,24 @@ def make_job(
     _check_method(recipe, targets.rig)
     if recipe.passes is None and recipe.solver.residual == "display":
         recipe = replace(recipe, passes=QUALITIES["normal"][0])
-    job = Job(targets, grid, recipe, provenance=dict(provenance or {}))
+    voxels = None if start is None else _as_start(start, grid, targets)
+    job = Job(targets, grid, recipe, start=voxels, provenance=dict(provenance or {}))
     most = most_units(grid.shape, job.channels, level=job.level)
     if units is not None and not 1 <= units <= most:
         raise InputError(f"this cube can be solved in 1 to {most} units, not in {units}: ask for a number between")
     return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)
+
+
+def _as_start(cube: Cube, grid: Grid, targets: Targets) -> Images:
+    """Extinction of a cube to start from, of as much absorbance a voxel; `InputError` where it is of another shape."""
+    wanted = (targets.pictures.shape[-1], *grid.shape)
+    if cube.extinction.shape != wanted:
+        have, want = (" x ".join(map(str, shape[1:])) for shape in (cube.extinction.shape, wanted))
+        colours = f" and {wanted[0]} colours" * (cube.extinction.shape[0] != wanted[0])
+        raise InputError(
+            f"a cube of {have} voxels (z, y, x) is no start for one of {want}{colours}: give one of the same shape"
+        )
+    return locked(cube.extinction * np.float32(cube.grid.voxel_mm / grid.voxel_mm))
 
 
 def _check_method(recipe: Recipe, rig: Rig) -> None:

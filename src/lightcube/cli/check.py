@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from lightcube.cli.console import compiling, err, json_document, out
+from lightcube.cli.console import err, json_document, out, telling
 from lightcube.cli.fields import one_by_one
 from lightcube.cli.options import JSON, PICTURES, threaded
 from lightcube.verbs import checking, solving
@@ -19,8 +19,10 @@ def check(pictures: PICTURES, options: Options, as_json: Annotated[bool, JSON] =
     The exit code is 2 where anything on a stage is impossible.
     """
     planning = solving.read(pictures, options)
-    with err.status("rehearsing"), compiling(as_json=as_json):
-        found = checking.check(planning(), advise=not options.paper)  # all that would help contradicts the paper
+    with telling("planning", as_json=as_json) as tell:
+        small = solving.rehearsals(None if as_json else tell)  # a document is all that is printed
+        # all that would help contradicts the paper
+        found = checking.check(planning(small), small, advise=not options.paper)
     if as_json:
         json_document(found.facts)
     else:

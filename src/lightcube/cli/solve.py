@@ -11,12 +11,14 @@ from lightcube.backward.job import Job
 from lightcube.backward.needs import job_memory
 from lightcube.backward.solution import Solution
 from lightcube.cli import arguments, printing
-from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening
+from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening, telling
 from lightcube.cli.fields import one_by_one
 from lightcube.cli.options import JSON, OUT, OVERWRITE, PICTURES, threaded
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, publishing, running
 from lightcube.jobs.partial import check_partial, open_partial
+from lightcube.jobs.reading import load
+from lightcube.optics.cube import Cube
 from lightcube.verbs import solving, words
 from lightcube.verbs.options import Options
 
@@ -37,6 +39,10 @@ def solve(
         str | None,
         typer.Option(help="Let the workers of a dask scheduler solve, tcp://HOST:PORT, or local ones: local."),
     ] = None,
+    start_from: Annotated[
+        str | None,
+        typer.Option("--from", help="Start from this cube, of as many voxels: one picture changed, another material."),
+    ] = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what memory and time it takes, and solve nothing.")
     ] = False,
@@ -52,7 +58,9 @@ def solve(
     which, units = (None, None) if unit is None else arguments.unit(unit)
     budget = None if memory is None else arguments.memory(memory)
     workers = 1 if scheduler is None else cluster.count_workers(scheduler)
-    job, said = _asked(pictures, options, budget, units, as_json=as_json)
+    start = None if start_from is None else load(start_from)
+    job, said = _asked(pictures, options, budget, units, start, as_json=as_json)
+    del start
     if units is None:
         job = solving.divided(job, output, workers, budget)
     if dry_run:
@@ -95,14 +103,14 @@ def _solved(solution: Solution, output: str, seconds: float, *, as_json: bool) -
 
 
 def _asked(
-    pictures: str, options: Options, memory: int | None, units: int | None, *, as_json: bool
+    pictures: str, options: Options, memory: int | None, units: int | None, start: Cube | None, *, as_json: bool
 ) -> tuple[Job, Callable[[], list[str]]]:
     """The job that `solve` is asked for, and a function that makes what is to be said of it."""
-    planning = solving.read(pictures, options)
-    with err.status("rehearsing"), compiling(as_json=as_json):
-        planned = planning()
-    job = solving.job(planned, memory=memory, units=units)
+    planning = solving.read(pictures, options, told=False)
+    with telling("planning", as_json=as_json) as tell:
+        planned = planning(solving.rehearsals(tell))
+    job = solving.job(planned, memory=memory, units=units, start=start)
     return job, lambda: [
         *words.in_short(planned, planned.order),
-        *([] if options.paper else words.what_to_change(planned)),
+        *([] if options.paper else words.what_to_change(planned, solving.rehearsals())),
     ]

@@ -13,6 +13,7 @@ __getattr__, __dir__, __all__ = when_used(
         "save": "outputs",
         "TransparentPictures": "pictures",
         "read_pictures": "pictures",
+        "Remembered": "remembered",
         "read_scene": "scenes",
         "scene_names": "scenes",
         "is_stage": "stages",

@@ -262,11 +262,13 @@ def load_job(partial: str | Path) -> Job:
         raise _damaged(path, "it is missing")
     try:
         pictures, weights = locked(arrays["pictures"]), locked(arrays["weights"])
+        start = locked(arrays["start"]) if "start" in arrays else None
         job = Job(
             targets=Targets(pictures, said.rig.rig(), weights, tuple(said.names), said.transfer),
             grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),
             recipe=from_plain(said.recipe),
             units=said.units,
+            start=start,
             provenance=said.provenance,
         )
     except (ValueError, TypeError, IndexError, KeyError) as error:
@@ -279,7 +281,8 @@ def load_job(partial: str | Path) -> Job:
 
 def _write_job(folder: Place, job: Job) -> None:
     targets, grid = job.targets, job.grid
-    _write_arrays(child(folder, _TARGETS), {"pictures": targets.pictures, "weights": targets.weight})
+    start = {} if job.start is None else {"start": job.start}
+    _write_arrays(child(folder, _TARGETS), {"pictures": targets.pictures, "weights": targets.weight, **start})
     document = {
         "format_version": FORMAT_VERSION,
         "written_by": f"lightcube {version('lightcube')}",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -24,8 +25,9 @@ from lightcube.pictures.targets import Targets
 from lightcube.pictures.turntable import Turntable
 from lightcube.planning.feasibility import doubtful, impossible
 from lightcube.planning.measured import is_measured, unmeasured
-from lightcube.planning.prediction import Prediction, predict
+from lightcube.planning.prediction import Prediction
 from lightcube.planning.reachable import sentences
+from lightcube.planning.rehearsals import Rehearsals
 
 if TYPE_CHECKING:
     from lightcube.planning.order import Order
@@ -36,6 +38,8 @@ PLANNED_DB, LEAST_DB, HALF = 39.0, 36.0, 0.5
 HOLD_COSTS_DB, BEST_SEEN_DB = 1.0, 45.0
 #: Widths of the pictures, as parts of the cube's, that are tried.
 WIDTHS = (0.25, 0.28, 0.32, 0.36, 0.4, 0.45, 0.5, 0.55, 0.6, 0.66, 0.72, 0.8, 0.9, 1.0)
+#: PSNR falls by about so many dB as pictures become e times as wide, and within these bounds (measured).
+_FALL, _FALLS = 36.0, (15.0, 80.0)
 #: Steps of dense angles, on either side of a stop, that are tried as hold.
 _HOLDS = (0.5, 1.0, 2.0, 4.0, 8.0)
 
@@ -99,10 +103,6 @@ class Plan:
         unknown = unmeasured(self.targets.rig) if self.prediction.is_known else []
         return unknown if self.stage is None else [*doubtful(self.stage), *sentences(self.targets), *unknown]
 
-    def with_targets(self, targets: Targets) -> Plan:
-        """The same plan for targets that stand, or follow each other, in another way: predicted anew."""
-        return replace(self, targets=targets, prediction=predict(targets, self.grid, self.recipe))
-
 
 @checked
 def plan(
@@ -118,6 +118,8 @@ def plan(
     longest_hold: bool = False,
     shift: int = 0,
     order: Arrangement = "given",
+    rehearsals: Rehearsals | None = None,
+    told: bool = True,
 ) -> Plan:
     """Choose the width of the pictures, the shape of the cube and the hold by predicting how good the pictures become.
 
@@ -147,6 +149,10 @@ def plan(
         Let pictures stand up to so many pixels higher, lower or aside, in turn.
     order
         ``"best"``: pictures change places so that they fight each other least (`lightcube.best_order`).
+    rehearsals
+        Who predicts, and remembers it; None = for this plan alone.
+    told
+        Whether to predict what comes of it even where nothing is left to choose.
 
     Raises
     ------
@@ -161,27 +167,39 @@ def plan(
             "above 0 and at most 1.41"
         )
     asked, table = recipe or Recipe.of_quality("normal", mat=Mat()), turntable or Turntable()
+    small, chooses = rehearsals or Rehearsals(), picture_width is None or longest_hold
 
-    def predicted(width: float) -> Plan:
+    def as_wide(width: float) -> Plan:
         grid, rig = _cube_for(pictures, shape or n, size_mm, table, width)
         targets = fitted(pictures, rig, fit)
         recipe = replace(asked, hold_deg=least_hold_deg(rig, grid, asked)) if longest_hold else asked
-        return Plan(pictures, targets, grid, recipe, fit, predict(targets, grid, recipe))
+        return Plan(pictures, targets, grid, recipe, fit, Prediction.unknown(len(targets)))
 
-    best = _widest(predicted) if picture_width is None else predicted(picture_width)
-    best = held_longest(best) if longest_hold else best
+    def predicted(planned: Plan) -> Plan:
+        return replace(planned, prediction=small.predict(planned.targets, planned.grid, planned.recipe))
+
+    if picture_width is None:
+        best = _widest(lambda width: predicted(as_wide(width)))
+    else:
+        best = predicted(as_wide(picture_width)) if chooses else as_wide(picture_width)
+    best = held_longest(best, small) if longest_hold else best
     if shift:
-        best = replace(best, shift=shift).with_targets(spread(best, best.targets, shift))
+        best = replace(best, targets=spread(best, best.targets, shift), shift=shift)
     if order == "best":
-        from lightcube.planning.order import best_order  # here: the compiler comes with it
-
-        found = best_order(best.targets, best.grid, best.recipe)
-        best = replace(best, order=found).with_targets(found(best.targets))
-    return best
+        found = small.best_order(best.targets, best.grid, best.recipe)
+        best = replace(best, targets=found(best.targets), order=found)
+    as_predicted = chooses and not (shift or best.order)
+    return predicted(best) if (chooses or told) and not as_predicted else best
 
 
 def plan_stage(
-    stage: Stage, pictures: Pictures, ways: Fit | tuple[Fit, ...] = "crop", recipe: Recipe | None = None
+    stage: Stage,
+    pictures: Pictures,
+    ways: Fit | tuple[Fit, ...] = "crop",
+    recipe: Recipe | None = None,
+    *,
+    rehearsals: Rehearsals | None = None,
+    told: bool = True,
 ) -> Plan:
     """The plan of a room that says all there is, so that nothing is chosen.
 
@@ -191,11 +209,15 @@ def plan_stage(
         As `lightcube.read_stage` gives them.
     recipe
         How it will be solved; None = ``Recipe()``.
+    rehearsals, told
+        As `plan` takes them.
     """
     asked, rig = recipe or Recipe(), stage.rig()
     targets = fitted(pictures, rig, ways)
     made = Plan(pictures, targets, stage.grid, asked, ways, Prediction.unknown(len(targets)), stage=stage)
-    return made.with_targets(targets) if is_measured(rig, stage.grid) and not made.impossible else made
+    if not told or made.impossible or not is_measured(rig, stage.grid):
+        return made
+    return replace(made, prediction=(rehearsals or Rehearsals()).predict(targets, stage.grid, asked))
 
 
 def _cube_for(
@@ -220,19 +242,25 @@ def spread(planned: Plan, targets: Targets, shift: int) -> Targets:
 
 
 def _widest(predicted: Callable[[float], Plan]) -> Plan:
-    """Return the plan for the largest of `WIDTHS` with good pictures, for half the width, or for the smallest one."""
-    best, first, last = None, 0, len(WIDTHS)
-    while last - first > 1 or best is None:
-        middle = (first + last) // 2
-        candidate = predicted(WIDTHS[middle])
-        if candidate.prediction.psnr_mean >= PLANNED_DB or middle == 0:
-            best, first = candidate, middle
-        else:
-            last = middle
-    if WIDTHS[first] < HALF:
-        half = predicted(HALF)
-        return half if half.prediction.psnr_mean >= LEAST_DB else best
-    return best
+    """Return the plan for the largest of `WIDTHS` with good pictures, for half the width, or for the smallest one.
+
+    What is tried next is where the last one's PSNR, and how it fell from the one before, lead to.
+    """
+    tried: dict[int, Plan] = {}
+    at, fall = WIDTHS.index(HALF), _FALL
+    good, poor = -1, len(WIDTHS)
+    while good < at < poor:
+        tried[at] = predicted(WIDTHS[at])
+        spare = tried[at].prediction.psnr_mean - PLANNED_DB
+        if WIDTHS[at] == HALF and LEAST_DB - PLANNED_DB <= spare < 0:
+            return tried[at]
+        good, poor = (at, poor) if spare >= 0 else (good, at)
+        if min(good, len(WIDTHS) - 1 - poor) >= 0:
+            fell = tried[good].prediction.psnr_mean - tried[poor].prediction.psnr_mean
+            fall = min(max(fell / math.log(WIDTHS[poor] / WIDTHS[good]), _FALLS[0]), _FALLS[1])
+        goal = WIDTHS[at] * math.exp(spare / fall)
+        at = min(max(bisect_right(WIDTHS, goal) - 1, 0), poor - 1)
+    return tried[max(good, 0)]
 
 
 def proportions(n: int, aspect: float, picture_width: float, *, level: bool) -> tuple[int, int, int]:
@@ -251,7 +279,7 @@ def least_hold_deg(rig: Rig, grid: Grid, recipe: Recipe) -> float:
     return 0.0 if recipe.beams.is_thin else min(dense_step_deg(grid) / 2, rig.widest_hold_deg)
 
 
-def held_longest(without: Plan) -> Plan:
+def held_longest(without: Plan, small: Rehearsals) -> Plan:
     """Find the longest hold that costs less than 1 dB of what is predicted for the plan `without`."""
     if without.prediction.psnr_mean < PLANNED_DB:  # pictures that drown in each other are held at no cost
         return without
@@ -265,7 +293,7 @@ def held_longest(without: Plan) -> Plan:
         if hold_deg <= without.recipe.hold_deg:
             continue
         recipe = replace(without.recipe, hold_deg=hold_deg)
-        prediction = predict(without.targets, without.grid, recipe)
+        prediction = small.predict(without.targets, without.grid, recipe)
         if prediction.psnr_mean < enough:
             break
         best = replace(without, recipe=recipe, prediction=prediction)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lightcube.planning.plan import Plan
+from lightcube.planning.rehearsals import Rehearsals
 from lightcube.verbs import solving, words
 
 
@@ -26,10 +27,10 @@ class Checked:
     impossible: list[str]
 
 
-def check(planned: Plan, *, advise: bool = True) -> Checked:
+def check(planned: Plan, small: Rehearsals, *, advise: bool = True) -> Checked:
     """What contradicts itself or cannot be, how full the cube is, how good it will be, what would help if asked."""
-    order = solving.another_order(planned)
-    advice = words.what_to_change(planned) if advise else []
+    order = solving.another_order(planned, small)
+    advice = words.what_to_change(planned, small) if advise else []
     lines = [*words.in_short(planned, order), "", *words.table(planned), "", *advice]
     if planned.stage is not None and not planned.impossible:
         lines.append("nothing here is impossible")

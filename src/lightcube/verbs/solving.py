@@ -12,10 +12,13 @@ from lightcube.backward.needs import expected_passes, job_memory, memory_needed,
 from lightcube.backward.solving import make_job
 from lightcube.backward.units import most_units
 from lightcube.errors import InputError
+from lightcube.events import Tell
 from lightcube.jobs.partial import begun_units
+from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.planning.plan import Plan, plan, plan_stage
 from lightcube.planning.prediction import as_json
+from lightcube.planning.rehearsals import Rehearsals
 from lightcube.verbs.options import Options
 
 if TYPE_CHECKING:
@@ -32,18 +35,33 @@ _SAID_BY_STAGE = (
 )
 
 
-def read(source: str, options: Options) -> Callable[[], Plan]:
-    """Read a stage, or pictures for a turntable; what is returned plans the cube, which takes a while.
+#: Plans a cube, which takes seconds where small cubes are asked that were not asked before.
+Planning = Callable[[Rehearsals], Plan]
+
+
+def rehearsals(tell: Tell | None = None) -> Rehearsals:
+    """Small cubes that are asked once, by this command or an earlier one; `tell` hears of each that is."""
+    return Rehearsals(io.Remembered(), tell)
+
+
+def read(source: str, options: Options, *, told: bool = True) -> Planning:
+    """Read a stage, or pictures for a turntable; what is returned plans the cube.
+
+    Parameters
+    ----------
+    told
+        Whether to predict what comes of it even where nothing is left to choose.
 
     Raises
     ------
     InputError
         For all that is said and cannot be; planning, too, for what is found only then.
     """
-    return _read_stage(source, options) if io.is_stage(source) else _read_pictures(source, options)
+    planning = _read_stage(source, options) if io.is_stage(source) else _read_pictures(source, options)
+    return lambda small: planning(rehearsals=small, told=told)
 
 
-def _read_stage(source: str, options: Options) -> Callable[[], Plan]:
+def _read_stage(source: str, options: Options) -> Callable[..., Plan]:
     """Read a stage file, which says all there is."""
     recipe, nothing = options.recipe, Options()
     for name in _SAID_BY_STAGE:
@@ -54,7 +72,7 @@ def _read_stage(source: str, options: Options) -> Callable[[], Plan]:
     return partial(plan_stage, stage, pictures, ways, recipe)
 
 
-def _read_pictures(source: str, options: Options) -> Callable[[], Plan]:
+def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
     """Read pictures, which become as wide and are held as long as is good for them where nothing else is said."""
     options = options.as_in_the_paper() if options.paper else options
     shape, turntable, recipe = options.voxels, options.turntable, options.recipe
@@ -77,21 +95,25 @@ def _read_pictures(source: str, options: Options) -> Callable[[], Plan]:
     )
 
 
-def another_order(planned: Plan) -> "Order | None":
+def another_order(planned: Plan, small: Rehearsals) -> "Order | None":
     """The best order of a plan: its own, or one that is looked for where that does not take long; none of a stage."""
     if planned.order is not None or planned.stage is not None or len(planned.pictures) > _QUICK:
         return planned.order
-    from lightcube.planning.order import best_order  # here: the compiler comes with it
-
-    return best_order(planned.targets, planned.grid, planned.recipe)
+    return small.best_order(planned.targets, planned.grid, planned.recipe)
 
 
-def job(planned: Plan, *, memory: int | None = None, units: int | None = None) -> Job:
+def job(planned: Plan, *, memory: int | None = None, units: int | None = None, start: Cube | None = None) -> Job:
     """Settle all that decides the cube; `InputError` where it cannot be, or does not fit into `memory` bytes."""
     if planned.impossible:
         raise InputError(f"on this stage {planned.impossible[0]}")
     made = make_job(
-        planned.targets, planned.grid, planned.recipe, units=units, memory=memory, provenance=_origin(planned)
+        planned.targets,
+        planned.grid,
+        planned.recipe,
+        units=units,
+        memory=memory,
+        start=start,
+        provenance=_origin(planned),
     )
     needed = job_memory(made)
     if memory is not None and needed > memory:

@@ -17,7 +17,8 @@ from lightcube.planning import feasibility
 from lightcube.planning.consistency import advice, check
 from lightcube.planning.measured import is_measured
 from lightcube.planning.plan import Plan, narrower
-from lightcube.planning.prediction import MOST_DB, as_json, predict
+from lightcube.planning.prediction import MOST_DB, as_json
+from lightcube.planning.rehearsals import Rehearsals
 
 if TYPE_CHECKING:
     from lightcube.planning.order import Order
@@ -128,7 +129,8 @@ def expected(planned: Plan) -> str:
     """What is predicted, in words that go on with a sentence."""
     prediction = planned.prediction
     if not prediction.is_known:
-        return "" if planned.impossible else "; how good they become was not measured in rooms like this"
+        told = planned.impossible or is_measured(planned.targets.rig, planned.grid)
+        return "" if told else "; how good they become was not measured in rooms like this"
     more = " or more" if prediction.psnr_mean >= MOST_DB else ""
     by = " by method display" * (planned.recipe.method != "display")
     return f", PSNR of {prediction.psnr_mean:.0f} dB{more} expected (worst {prediction.psnr_min:.0f}){by}"
@@ -144,7 +146,7 @@ def gain(planned: Plan, order: "Order | None") -> list[str]:
     return [f"another order would gain about {better:.1f} dB: --order best"] if better >= 1 else []
 
 
-def what_to_change(planned: Plan) -> list[str]:
+def what_to_change(planned: Plan, small: Rehearsals) -> list[str]:
     """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much.
 
     None of a stage: they name options that it leaves no room for.
@@ -152,12 +154,12 @@ def what_to_change(planned: Plan) -> list[str]:
     if planned.stage is not None:
         return []
     found = advice(check(planned.targets, planned.grid))
-    if planned.prediction.psnr_mean >= POOR_DB:
-        return [sentence for sentence in found if not sentence.startswith("The load")]
-    return [*found, *_remedies(planned)]
+    if planned.prediction.is_known and planned.prediction.psnr_mean < POOR_DB:
+        return [*found, *_remedies(planned, small)]
+    return [sentence for sentence in found if not sentence.startswith("The load")]
 
 
-def _remedies(planned: Plan) -> list[str]:
+def _remedies(planned: Plan, small: Rehearsals) -> list[str]:
     """What three changes would bring, predicted."""
     rig, lamps = planned.targets.rig, planned.targets.rig.lamps
     power = float(lamps.most.max())
@@ -165,7 +167,7 @@ def _remedies(planned: Plan) -> list[str]:
     tried: list[str] = []
 
     def tell(change: str, targets: Targets) -> None:
-        tried.append(f"{change}: {predict(targets, planned.grid, planned.recipe).psnr_mean:.0f} dB")
+        tried.append(f"{change}: {small.predict(targets, planned.grid, planned.recipe).psnr_mean:.0f} dB")
 
     every_second = np.arange(0, len(planned.targets), 2)
     if len(every_second) > 1:
