@@ -39,7 +39,7 @@ def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.
     if INTERPRETED and room not in ("optics", "forward", "viewer") and file != "test_docstrings":
         for name, few in (("JUDGE", 5), ("_JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
             monkeypatch.setattr(light, name, few)
-        monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2))
+        monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2, 0.0))
         for quality, (passes, enough, _) in QUALITIES.items():
             monkeypatch.setitem(QUALITIES, quality, (passes, enough, light.Light()))
         monkeypatch.setattr(prediction, "POINTS", light.Light())

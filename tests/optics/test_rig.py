@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lightcube.backward.problem import held, pose
+from lightcube.backward.problem import pose
 from lightcube.backward.units import split
+from lightcube.backward.wishes import held
 from lightcube.errors import InputError
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.kernels.layout import (
@@ -18,14 +19,34 @@ from lightcube.optics.views import turntable_views
 from lightcube.projection.projector import Projector, dot_test
 from tests.projection.test_rays import lamps_for, lit, screens_for
 
-KINDS = ["level", "raised", "point", "any direction", "some pixels"]
+KINDS = ["level", "raised", "point", "any direction", "some pixels", "level windows", "raised windows"]
+
+
+def windows(shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Pixels that count in four views: all, some inside a window at two corners, a column, none."""
+    heard = np.zeros(shape, bool)
+    heard[0] = True
+    heard[1, 1:, :2] = np.random.default_rng(0).random((shape[1] - 1, 2)) < 0.6
+    heard[2, : shape[1] // 2 + 1, 1] = True
+    return heard
+
+
+def as_window(heard: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """All pixels of the least window around those of each view."""
+    full = np.zeros_like(heard)
+    for view, own in enumerate(heard):
+        if own.any():
+            (top, left), (bottom, right) = np.argwhere(own).min(axis=0), np.argwhere(own).max(axis=0)
+            full[view, top : bottom + 1, left : right + 1] = True
+    return full
 
 
 def operator(kind: str, shape: tuple[int, int, int] = (3, 5, 7)) -> Projector:
     """One of each kind of matrix, on four views of unequal sizes."""
     grid = Grid(shape, 0.7)
-    if kind in ("level", "raised"):
-        return Projector(grid, turntable_views(grid, [0.0, 13.0, 90.0, 200.0], elevation_deg=35.0 * (kind == "raised")))
+    if kind.startswith(("level", "raised")):
+        views = turntable_views(grid, [0.0, 13.0, 90.0, 200.0], elevation_deg=35.0 * kind.startswith("raised"))
+        return Projector(grid, views, windows((4, *views.picture_shape)) if kind.endswith("windows") else None)
     lamps = ["near", "inside"] if kind == "point" else ["aslant", "+x"]
     screens = [screens_for(shape)[name] for name in ("slanted", "on faces of x")]
     heard = np.random.default_rng(0).random((4, 2, 5)) < 0.6 if kind == "some pixels" else None
@@ -49,6 +70,34 @@ def test_inner_products_are_the_same_on_either_side(
     size = float(np.linalg.norm(cast) * np.linalg.norm(pictures))
     assert abs(float(np.vdot(cast, pictures) - np.vdot(volume, thrown_back))) < bound * size
     assert dot_test(A.T, 3, dtype) < bound
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("shape", [(3, 5, 7), (4, 6, 5), (2, 17, 40)])
+@pytest.mark.parametrize("kind", ["level", "raised"])
+def test_stacked_beams_are_those_of_each_views_window(
+    kind: str, shape: tuple[int, int, int], dtype: type[np.floating]
+) -> None:
+    """As the whole matrix has them; rows are whole where the beams are level. What stands elsewhere is not read."""
+    whole, part = operator(kind, shape), operator(f"{kind} windows", shape)
+    heard = as_window(windows(part.range_shape))
+    if kind == "level":
+        heard = np.repeat(heard.any(axis=1, keepdims=True), heard.shape[1], axis=1)
+    volume, pictures = some((2, *shape)).astype(dtype), some((*part.range_shape, 2)).astype(dtype)
+    close: dict[str, Any] = {
+        "rtol": 1e-5 if dtype == np.float32 else 1e-12,
+        "atol": 1e-6 if dtype == np.float32 else 1e-13,
+    }
+    np.testing.assert_array_equal(part(volume)[~heard], 0)
+    np.testing.assert_allclose(part(volume)[heard], whole(volume)[heard], **close)
+    unread = np.where(heard[..., None], pictures, np.nan)
+    np.testing.assert_allclose(part.T(unread), whole.T(np.where(heard[..., None], pictures, 0).astype(dtype)), **close)
+    sparse = part.to_sparse()
+    columns = columns_from_volume(volume).reshape(part.shape[1], -1)
+    np.testing.assert_allclose(sparse @ columns, part @ columns, **close)
+    for index in range(0, part.shape[0], 3):
+        unknowns, lengths = part.row(index)
+        np.testing.assert_allclose(lengths @ columns[unknowns], (part @ columns)[index], **close)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.problem import beams, is_level
+from lightcube.backward.problem import is_level
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.units import Part, halvings, split
+from lightcube.backward.wishes import asked
 from lightcube.optics.arrays import Images
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
@@ -92,8 +93,9 @@ class Job:
     @cached_property
     def level(self) -> bool:
         """Whether each slice of the cube casts one row of the pictures by itself, at all angles that are asked for."""
-        asked = self.targets.rig, beams(self.targets.rig, self.recipe, self.grid)  # without mats and with them
-        return all(is_level(self.grid, rig.views) for rig in asked)
+        own = self.targets.rig
+        with_mats = asked(own, self.grid, self.recipe).rig
+        return all(is_level(self.grid, rig.views) for rig in (own, with_mats))
 
     @property
     def parts(self) -> list[Part]:
@@ -174,6 +176,7 @@ _WORDS = {
     "dtype": "precision",
     "points": "points a pixel",
     "row_points": "points along a row",
+    "grain": "weight of points",
     "mat_tone": "tone of the mat",
     "mat_weight": "weight of the mat",
     "mat_width": "width of the mat",

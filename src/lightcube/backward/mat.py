@@ -75,6 +75,13 @@ def widened(rig: Rig, grid: Grid, mat: Mat | None) -> Rig:
     return replace(rig, views=rig.views.with_pixels(1.0, shape), stops=stops)
 
 
+def inner(rig: Rig, grid: Grid, mat: Mat | None) -> tuple[slice, slice]:
+    """Rows and columns of the `widened` rig that are the pictures'."""
+    return tuple(  # type: ignore[return-value]
+        slice(each, each + size) for each, size in zip(margin(rig, grid, mat), rig.picture_shape, strict=True)
+    )
+
+
 def framed(targets: Targets, grid: Grid, mat: Mat | None) -> Targets:
     """The same targets with their mats around them, as wanted; no weight where a mat cannot be made."""
     rows, columns = margin(targets.rig, grid, mat)

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from lightcube.backward.job import Job, shares
-from lightcube.backward.problem import Problem, beams, pose
+from lightcube.backward.problem import Problem, pose
 from lightcube.backward.units import coarse_shape, coarser, most_units, split
+from lightcube.backward.wishes import asked
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
 from lightcube.pictures.targets import Targets
@@ -101,10 +102,10 @@ def _solver(
 def job_memory(job: Job) -> int:
     """`memory_needed` of a job."""
     rig = job.targets.rig
-    asked, views = beams(rig, job.recipe, job.grid), rig.views
+    every, views = asked(rig, job.grid, job.recipe).rig, rig.views
     steepest = float(np.max(np.abs(views.elevations_deg)))
-    per_stop = len(asked.views) // len(views)
-    mixed = 0 if rig.fading.is_none else _MIXED * len(asked.views) * math.prod(asked.picture_shape)
+    per_stop = -(-len(every.views) // len(views))
+    mixed = 0 if rig.fading.is_none else _MIXED * len(every.views) * math.prod(every.picture_shape)
     kept = 0 if job.start is None else job.start.nbytes
     return (
         mixed
@@ -112,7 +113,7 @@ def job_memory(job: Job) -> int:
         + memory_needed(
             job.recipe.solver,
             job.grid,
-            asked.picture_shape,
+            every.picture_shape,
             len(views),
             0.0 if job.level else steepest or _ANY,
             per_stop=per_stop,
@@ -183,6 +184,6 @@ def _seconds_of_products(problem: Problem) -> float:
 
 def _work(job: Job, targets: Targets, grid: Grid) -> tuple[float, float]:
     """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
-    asked = beams(targets.rig, job.recipe, grid)
-    pixels = len(asked.views) * math.prod(asked.picture_shape) * job.channels
+    every = asked(targets.rig, grid, job.recipe).rig
+    pixels = len(every.views) * math.prod(every.picture_shape) * job.channels
     return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)

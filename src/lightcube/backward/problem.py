@@ -6,18 +6,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.mat import framed, widened
+from lightcube.backward.mat import framed, inner
 from lightcube.backward.recipe import Powers, Recipe
 from lightcube.backward.units import Part
+from lightcube.backward.wishes import Asked, asked
 from lightcube.kernels.layout import (
     columns_from_pictures,
     columns_from_volume,
     volume_from_columns,
 )
-from lightcube.optics.arrays import Images
-from lightcube.optics.grid import Grid, dense_step_deg
+from lightcube.optics.arrays import Counts, Images
+from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture
-from lightcube.optics.light import judged, sampled
+from lightcube.optics.light import judged
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import Views
@@ -50,8 +51,8 @@ class Problem:
         Rows of the pictures that the part is seen in.
     targets
         What is wanted at the stops themselves.
-    per_stop
-        At how many angles each picture is asked for.
+    stop
+        ``(pictures of the matrix,)``: which of the targets each is for.
     judge
         The rig of the targets by the beams that what is cast is judged by, and which power each of its views has.
     """
@@ -63,7 +64,7 @@ class Problem:
     part: Part
     rows: slice
     targets: Targets
-    per_stop: int
+    stop: Counts
     judge: tuple[Rig, NDArray[np.intp]]
 
     @property
@@ -115,13 +116,13 @@ class Problem:
         flat = rejected[:, 0] * self.light.shape[1] + rejected[:, 1]
         rows, colours = self.rows, self.part.colours
         shape = (
-            len(self.targets) * self.per_stop,
+            len(self.stop),
             self.matrix.views.picture_shape[1],
             rows.stop - rows.start,
             self.channels,
         )
         view, column, lifted, channel = np.unravel_index(flat, shape)
-        pixels = [view // self.per_stop, rows.stop - 1 - lifted, column, colours.start + channel]
+        pixels = [self.stop[view], rows.stop - 1 - lifted, column, colours.start + channel]
         return np.unique(np.stack(pixels, axis=1).astype(np.int64), axis=0)
 
 
@@ -145,10 +146,9 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
     Pixels darker than the screen's black are wanted at it. The ends of a hold by thin beams, with nothing to hold on to
     beyond, count twice: else they are what falls apart first (measured).
     """
-    wanted, rig = framed(targets, grid, recipe.mat), beams(targets.rig, recipe, grid)
-    views, per_stop = rig.views, len(rig) // len(targets)
-    heard = np.repeat(wanted.weight > 0, per_stop, axis=0)
-    matrix = Projector(grid, views, heard[rig.sums.picture])
+    wanted, all_that = framed(targets, grid, recipe.mat), asked(targets.rig, grid, recipe)
+    rig, views, heavy = all_that.rig, all_that.rig.views, _weights(wanted, targets.rig, grid, recipe, all_that)
+    matrix = Projector(grid, views, (heavy > 0)[rig.sums.picture])
     darkest = decode(targets.rig.screens.black[targets.rig.stops.screen].astype(np.float32), targets.transfer)
     high, channels = views.picture_shape[0], targets.pictures.shape[-1]
     part = part or Part(slice(0, channels), slice(0, grid.shape[0]))
@@ -157,49 +157,50 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
         rows = slice(high - part.slices.stop, high - part.slices.start)
 
     def block(pictures: Floats) -> Floats:
-        columns = columns_from_pictures(np.repeat(pictures.astype(recipe.dtype), per_stop, axis=0))
+        columns = columns_from_pictures(pictures.astype(recipe.dtype))
         return columns.reshape(columns.shape[0] * (1 if matrix.level else high), -1)
 
-    importance = np.ones(per_stop, recipe.dtype)
-    if per_stop > 1 and recipe.beams.is_thin:
-        importance[[0, -1]] = 2
-    weights = block(np.repeat(wanted.weight[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1))
-    weights *= np.repeat(np.tile(importance, len(targets)), len(weights) // (len(targets) * per_stop))[:, None]
+    light = np.maximum(wanted.pictures[:, rows, :, part.colours], darkest[:, None, None, None])
+    own = np.repeat(heavy[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1)
     mixture = None if rig.is_thin else Mixture.of(rig, channels, part.colours, rows)
     return Problem(
         matrix=matrix,
-        light=block(np.maximum(wanted.pictures[:, rows, :, part.colours], darkest[:, None, None, None])),
-        weights=weights,
-        lighting=Lighting(lamp_numbers(targets.rig, rig, recipe.powers), mixture),
+        light=block(light[all_that.stop]),
+        weights=block(own),
+        lighting=Lighting(lamp_numbers(targets.rig, rig, all_that.stop, recipe.powers), mixture),
         part=part,
         rows=rows,
         targets=targets,
-        per_stop=per_stop,
+        stop=all_that.stop,
         judge=_judge(targets.rig, recipe, grid),
     )
+
+
+def _weights(wanted: Targets, rig: Rig, grid: Grid, recipe: Recipe, all_that: Asked) -> Images:
+    """``(picture of the matrix, row, column)``: how much each pixel counts."""
+    inside = np.zeros(wanted.weight.shape[1:], np.float32)
+    inside[inner(rig, grid, recipe.mat)] = 1
+    counts = [each.picture * inside + each.mat * (1 - inside) for each in all_that.wishes]
+    importance = np.ones(all_that.angles, np.float32)
+    if all_that.angles > 1 and recipe.beams.is_thin:
+        importance[[0, -1]] = 2
+    heavy = np.stack(counts)[:, None, None] * wanted.weight[:, None] * importance[:, None, None]
+    return np.asarray(heavy.reshape(-1, *inside.shape), np.float32)
 
 
 def _judge(rig: Rig, recipe: Recipe, grid: Grid) -> tuple[Rig, NDArray[np.intp]]:
     """The beams that what is cast is judged by, the thin ones where it is solved for them, and the power of each."""
     judge = rig if recipe.beams.is_thin else judged(rig, grid)
-    return judge, lamp_numbers(rig, judge, recipe.powers)
+    return judge, lamp_numbers(rig, judge, np.arange(len(rig)), recipe.powers)
 
 
-def held(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
-    """Every picture at the angles that a hold asks for, those of a picture in a row; fewer where light is averaged."""
-    return rig.held(recipe.hold_deg, dense_step_deg(grid), to_the_ends=recipe.beams.is_thin)
+def lamp_numbers(rig: Rig, asked_rig: Rig, stop: Counts, powers: Powers) -> NDArray[np.intp]:
+    """``(views,)``: which power each view has of a rig whose pictures are for those of the stops `stop`.
 
-
-def beams(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
-    """The views that a recipe asks for: pictures with their mats, at all angles of a hold, at all points of a pixel."""
-    return sampled(held(widened(rig, grid, recipe.mat), recipe, grid), grid, recipe.beams)
-
-
-def lamp_numbers(rig: Rig, held_rig: Rig, powers: Powers) -> NDArray[np.intp]:
-    """``(views,)``: which power each view of a held rig has: every lamp one for each picture, or one (``"shared"``)."""
+    Every lamp has one for each picture, or one (``"shared"``).
+    """
     if powers == "shared":
-        return held_rig.sums.lamp
-    per_stop = len(held_rig) // len(rig)
+        return asked_rig.sums.lamp
     lamps = len(rig.lamps.names)
     keys = rig.pairs[:, 0] * lamps + rig.pairs[:, 1]
-    return np.searchsorted(keys, held_rig.sums.picture // per_stop * lamps + held_rig.sums.lamp)
+    return np.searchsorted(keys, stop[asked_rig.sums.picture] * lamps + asked_rig.sums.lamp)

@@ -11,9 +11,9 @@ import numpy as np
 
 from lightcube.backward.job import Job, level_name
 from lightcube.backward.pieces import POWERS, VOXELS, known, start_of
-from lightcube.backward.problem import held
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
+from lightcube.backward.wishes import held
 from lightcube.errors import InputError
 from lightcube.kernels.layout import clear_volume
 from lightcube.optics.arrays import Floats, Images, Integers, Reals, keep, locked

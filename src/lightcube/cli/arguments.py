@@ -20,6 +20,14 @@ def numbers(text: str, option: str) -> tuple[float, ...]:
         raise InputError(f"{option} {text}: give numbers separated by commas, such as 0,12.5,90") from None
 
 
+def number_or_auto(text: str, option: str) -> float | None:
+    """A number, or None where it is to be chosen: auto."""
+    try:
+        return None if text.strip() == "auto" else float(text)
+    except ValueError:
+        raise InputError(f"{option} {text}: give a number, or auto") from None
+
+
 def whole_numbers(text: str, separator: str, option: str, count: int) -> tuple[int, ...]:
     """As many whole numbers of at least 1 as `count` says."""
     parts = text.split(separator)

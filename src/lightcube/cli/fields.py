@@ -12,10 +12,11 @@ from lightcube.cli import arguments
 from lightcube.verbs.options import Option, Options
 
 _FIELDS = {each.name: each for each in fields(Options)}
-#: Options that are written as a text of several numbers: what such a text means.
+#: Options that are written as a text: what it means.
 _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "shape": lambda text: arguments.whole_numbers(text, ",", "--shape", 3),
     "angles_deg": lambda text: arguments.numbers(text, "--angles-deg"),
+    "grain": lambda text: arguments.number_or_auto(text, "--grain"),
 }
 
 

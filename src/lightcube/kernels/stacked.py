@@ -5,6 +5,9 @@ starts at ``beams[view, 0] + column * beams[view, 1]`` and runs along ``beams[vi
 the lowest picture row; row ``j`` is the same beam ``j`` voxels higher. So a piece in slice ``level`` joins column
 ``i`` of ``b`` to column ``i + level * channels`` of ``x``. Where beams are level, rows of the source may be longer.
 
+Of view v only beams ``windows[v, 0]`` to before ``windows[v, 1]`` count, and of them the columns ``windows[v, 2]`` to
+before ``windows[v, 3]`` of ``b``: the others of a product are 0, and what stands there is not read.
+
 Both directions go tile by tile of voxels and group by group of views: a tile's columns, and those of the beams
 through it, stay in the cache while their few pieces, traced once for all columns, are used. A task owns a part of its
 result, and every number is summed in one order: no two threads write the same one, and sums do not depend on their
@@ -63,6 +66,7 @@ def _meeting(beams: Array, view: int, low: int, high: int, x: int, y: int, nx: i
 @compiled
 def _trace_tile(
     beams: Array,
+    windows: Array,
     width: int,
     view: int,
     after: int,
@@ -82,14 +86,15 @@ def _trace_tile(
 ) -> int:
     """Trace the beams of views `view` to before `after` through the tile of `nx` by `ny` voxels at ``(x, y)``.
 
-    Of each view only the beams `low` to before `high`. The pieces of beam ``rays[i]``, counted from the first beam of
-    `view`, end before ``ends[i + 1]``; returns how many beams meet the tile.
+    Of each view only the beams `low` to before `high` in its window. The pieces of beam ``rays[i]``, counted from the
+    first beam of `view`, end before ``ends[i + 1]``; returns how many beams meet the tile.
     """
     met = 0
     ends[0] = 0
     for each in range(view, after):
         start, step, light = beams[each, 0], beams[each, 1], beams[each, 2]
-        first, last = _meeting(beams, each, low, high, x, y, nx, ny)
+        low_each, high_each = max(low, windows[each, 0]), min(high, windows[each, 1])
+        first, last = _meeting(beams, each, low_each, high_each, x, y, nx, ny)
         for column in range(first, last):
             count = trace_beam(
                 start[0] + column * step[0] - x,
@@ -115,20 +120,32 @@ def _trace_tile(
 
 
 def forward(
-    beams: Array, width: int, nx: int, ny: int, scale: float, x: Array, b: Array, channels: int, tasks: int
+    beams: Array,
+    windows: Array,
+    width: int,
+    nx: int,
+    ny: int,
+    scale: float,
+    x: Array,
+    b: Array,
+    channels: int,
+    tasks: int,
 ) -> None:
     """``b = A x``; every number of `b` is written. At least `tasks` parts are worked on side by side, if possible."""
     rays, pieces = _room(beams, width)
     group = max(1, min(GROUP, len(beams) // tasks, _MOST_PIECES // (rays * pieces)))
     groups = (len(beams) + group - 1) // group
     parts = min((tasks + groups - 1) // groups, width)  # where there are few views, strips of beams
-    work = _work(beams, width, nx, ny, b.shape[1])
-    run(_forward, groups * parts, work, beams, width, nx, ny, scale, x, b, channels, group, parts, rays, pieces)
+    work = _work(windows, nx, ny)
+    run(
+        _forward, groups * parts, work, beams, windows, width, nx, ny, scale, x, b, channels, group, parts, rays, pieces
+    )
 
 
-def _work(beams: Array, width: int, nx: int, ny: int, columns: int) -> int:
+def _work(windows: Array, nx: int, ny: int) -> int:
     """Nanoseconds that a product takes, roughly: the pieces of all beams, traced once and added up in vectors."""
-    return len(beams) * width * (nx + ny) * (8 + 2 * columns // LANES)
+    wide, high = windows[:, 1] - windows[:, 0], windows[:, 3] - windows[:, 2]
+    return int(np.sum(wide * (8 + 2 * high // LANES))) * (nx + ny)
 
 
 @compiled
@@ -136,6 +153,7 @@ def _forward(
     first: int,
     last: int,
     beams: Array,
+    windows: Array,
     width: int,
     nx: int,
     ny: int,
@@ -166,6 +184,7 @@ def _forward(
                 size_x, size_y = min(TILE, nx - tile_x), min(TILE, ny - tile_y)
                 met = _trace_tile(
                     beams,
+                    windows,
                     width,
                     view,
                     after,
@@ -190,6 +209,7 @@ def _forward(
                         if i + 1 < met:
                             for near in range(column, end, LANES):
                                 prefetch(target, (view * width + rays[i + 1]) * columns + near)
+                        own = windows[view + rays[i] // width]
                         at = (view * width + rays[i]) * columns
                         add_rows(
                             target,
@@ -202,19 +222,30 @@ def _forward(
                             weights,
                             ends[i],
                             ends[i + 1],
-                            column,
-                            end,
+                            max(column, own[2]),
+                            min(end, own[3]),
                         )
 
 
 def adjoint(
-    beams: Array, width: int, nx: int, ny: int, scale: float, b: Array, x: Array, channels: int, tasks: int
+    beams: Array,
+    windows: Array,
+    width: int,
+    nx: int,
+    ny: int,
+    scale: float,
+    b: Array,
+    x: Array,
+    channels: int,
+    tasks: int,
 ) -> None:
     """``x = A.T b``; every number of `x` is written. At least `tasks` parts are worked on side by side, if possible."""
     tiles = ((nx + TILE - 1) // TILE) * ((ny + TILE - 1) // TILE)
     parts = max(1, min((tasks + tiles - 1) // tiles, x.shape[1] // (4 * LANES)))
-    work = _work(beams, width, nx, ny, x.shape[1])
-    run(_adjoint, tiles * parts, work, beams, width, nx, ny, scale, b, x, channels, parts, *_room(beams, width))
+    work = _work(windows, nx, ny)
+    run(
+        _adjoint, tiles * parts, work, beams, windows, width, nx, ny, scale, b, x, channels, parts, *_room(beams, width)
+    )
 
 
 @compiled
@@ -222,6 +253,7 @@ def _adjoint(
     first: int,
     last: int,
     beams: Array,
+    windows: Array,
     width: int,
     nx: int,
     ny: int,
@@ -253,10 +285,13 @@ def _adjoint(
         places, shifts, weights = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
         voxel_ends = np.empty(TILE * TILE + 1, np.int64)
         strides = (1, size_x, -channels)
-        for view in range(0, len(beams), group):
-            after = min(view + group, len(beams))
+        after = 0
+        while after < len(beams):
+            view, after = after, _after(windows, after, group)
+            low, high = windows[view, 2], windows[view, 3]
             met = _trace_tile(
                 beams,
+                windows,
                 width,
                 view,
                 after,
@@ -274,7 +309,7 @@ def _adjoint(
                 levels,
                 lengths,
             )
-            _by_voxel(rays, ends, met, rows, voxels, levels, lengths, voxel_ends, places, shifts, weights)
+            _by_voxel(rays, ends, met, rows, low, voxels, levels, lengths, voxel_ends, places, shifts, weights)
             for column in range(start, stop, COLUMNS):
                 end = min(column + COLUMNS, stop)
                 for voxel in range(size_x * size_y):
@@ -284,8 +319,8 @@ def _adjoint(
                             target,
                             at,
                             source,
-                            view * width * rows,
-                            rows,
+                            view * width * rows + low,
+                            high - low,
                             places,
                             shifts,
                             weights,
@@ -297,11 +332,25 @@ def _adjoint(
 
 
 @compiled
+def _after(windows: Array, view: int, most: int) -> int:
+    """Return one after the last of at most so many views from `view` on with the same columns of ``b``."""
+    after = view + 1
+    while (
+        after < min(view + most, len(windows))
+        and windows[after, 2] == windows[view, 2]
+        and windows[after, 3] == windows[view, 3]
+    ):
+        after += 1
+    return after
+
+
+@compiled
 def _by_voxel(
     rays: Array,
     ends: Array,
     met: int,
     rows: int,
+    low: int,
     voxels: Array,
     levels: Array,
     lengths: Array,
@@ -310,7 +359,10 @@ def _by_voxel(
     shifts: Array,
     weights: Array,
 ) -> None:
-    """Sort the pieces of a tile's beams by voxel: those of voxel ``v`` then end before ``voxel_ends[v + 1]``."""
+    """Sort the pieces of a tile's beams by voxel: those of voxel ``v`` then end before ``voxel_ends[v + 1]``.
+
+    Columns of ``b`` are counted from `low` on.
+    """
     voxel_ends[:] = 0
     for k in range(ends[met]):
         voxel_ends[voxels[k] + 1] += 1
@@ -319,7 +371,7 @@ def _by_voxel(
     for i in range(met):
         for k in range(ends[i], ends[i + 1]):
             to = voxel_ends[voxels[k]]
-            places[to], shifts[to], weights[to] = rays[i] * rows, levels[k], lengths[k]
+            places[to], shifts[to], weights[to] = rays[i] * rows, levels[k] - low, lengths[k]
             voxel_ends[voxels[k]] = to + 1
     for voxel in range(len(voxel_ends) - 1, 0, -1):
         voxel_ends[voxel] = voxel_ends[voxel - 1]

@@ -35,8 +35,8 @@ _JUDGE_STEP = 34
 #: So many times as many points are taken of a pixel under a lamp with a disc. With no more than without one, cubes that
 #: knew of a disc of half a degree were up to 5 dB worse under it than those that did not; so they are better.
 DISC_TIMES = 3
-#: No more points are taken of a pixel.
-MOST_POINTS = 1024
+#: No more points are taken of a pixel, and they weigh no more together beside its mean.
+MOST_POINTS, MOST_GRAIN = 1024, 2.0
 #: Distances between two points that are looked at where a lattice is chosen; of many points fewer lattices are tried.
 _LOOKED_AT = 50_000_000
 #: Of so many orders the one is taken in which a disc's seeds go with a pixel's points.
@@ -56,22 +56,29 @@ class Light:
     row_points
         Where the lamp is level and a pixel is exactly one slice high: so many along its row. An odd multiple of 16
         would have the points that all is judged by, and is one more.
+    grain
+        How much it counts, 0 to 2, that a pixel shows its value at its points too and not only on average: the more,
+        the smoother it is from near by, and the less exact from afar.
 
     Examples
     --------
     >>> import lightcube as lc
     >>> lc.Light(), lc.Light.thin().is_thin
-    (Light(points=13, row_points=7), True)
+    (Light(points=13, row_points=7, grain=0.0), True)
     """
 
     points: int = 13
     row_points: int = 7
+    grain: float = 0.0
 
     def __post_init__(self) -> None:
         check_fields(self)
         for count in (self.points, self.row_points):
             if not 1 <= count <= MOST_POINTS:
                 raise InputError(f"a pixel is averaged over 1 to {MOST_POINTS} points, not {count}")
+        if not 0 <= self.grain <= MOST_GRAIN:
+            raise InputError(f"points of a pixel weigh 0 to {MOST_GRAIN:g} beside its mean, not {self.grain:g}")
+        object.__setattr__(self, "grain", float(self.grain))
 
     @classmethod
     def thin(cls) -> Light:
@@ -81,7 +88,7 @@ class Light:
     @property
     def is_thin(self) -> bool:
         """Whether there is one beam a pixel."""
-        return self.points == self.row_points == 1
+        return self.points == self.row_points == 1 and not self.grain
 
 
 def sampled(rig: Rig, grid: Grid, light: Light) -> Rig:
@@ -94,10 +101,16 @@ def sampled(rig: Rig, grid: Grid, light: Light) -> Rig:
     """
     if light.is_thin:
         return rig
-    if is_in_slices(rig, grid):
-        return rig.split([_bare(_unlike_the_judge(light.row_points))] * len(rig.views))
-    points, soft = lattice(light.points), soft_lattice(min(DISC_TIMES * light.points, MOST_POINTS))
-    return rig.split([soft if disc_deg else _bare(points) for disc_deg in rig.sums.disc_deg])
+    bare, soft = bundle(light, in_slices=is_in_slices(rig, grid))
+    return rig.split([soft if disc_deg else bare for disc_deg in rig.sums.disc_deg])
+
+
+def bundle(light: Light, *, in_slices: bool) -> tuple[Reals, Reals]:
+    """Points of a pixel as `Rig.split` takes them, under a lamp without a disc and under one with a disc."""
+    if in_slices:
+        points = _bare(_unlike_the_judge(light.row_points))
+        return points, points
+    return _bare(lattice(light.points)), soft_lattice(min(DISC_TIMES * light.points, MOST_POINTS))
 
 
 def judged(rig: Rig, grid: Grid) -> Rig:

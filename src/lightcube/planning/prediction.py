@@ -33,8 +33,8 @@ import numpy as np
 
 from lightcube.backward import solving
 from lightcube.backward.mat import widened
-from lightcube.backward.problem import held
 from lightcube.backward.recipe import Recipe
+from lightcube.backward.wishes import held
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
 from lightcube.optics.arrays import Images, Reals, keep, locked
@@ -159,7 +159,7 @@ def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
     small, small_grid = reduced(targets, grid, _width(targets, grid, recipe))
     width = max(small_grid.shape[1:])
     bound = Material(recipe.bounded_by.most(grid))
-    light = recipe.beams if recipe.beams.is_thin else POINTS
+    light = recipe.beams if recipe.beams.is_thin else replace(POINTS, grain=recipe.beams.grain)
     rehearsed = replace(recipe.by_display(rehearsal_of(recipe).passes), material=bound, light=light)
     rehearsed = replace(rehearsed, hold_deg=_small_hold(targets, grid, hold_deg, width))
     cube = solving.solve(small, small_grid, rehearsed).cube

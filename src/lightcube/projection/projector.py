@@ -119,7 +119,7 @@ class Projector:
         heard = None if heard is None else np.asarray(heard, np.bool_)
         if heard is not None and heard.shape != self.range_shape:
             raise InputError(f"which pixels count has shape {heard.shape}, not {self.range_shape}")
-        self._engine = StackedBeams(grid, views) if is_stacked(grid, views) else Rays(grid, views, heard)
+        self._engine = StackedBeams(grid, views, heard) if is_stacked(grid, views) else Rays(grid, views, heard)
         self.shape, self.level = self._engine.shape, self._engine.level
 
     def __repr__(self) -> str:

@@ -1,5 +1,6 @@
 """What screens show of a cube, picture by picture: the matrix, and the law of light after it."""
 
+import math
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -11,8 +12,8 @@ from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.rig import Rig
 from lightcube.projection.projector import Projector
 
-#: Views that are computed together: enough for all threads, few enough to bound memory.
-_BATCH = 16
+#: Views that are computed together at least: enough for all threads; and pixels at most, to bound memory.
+_BATCH, _PIXELS = 16, 1 << 20
 
 
 def shadows(
@@ -55,8 +56,14 @@ def shadows(
 
 
 def _batches(rig: Rig) -> Iterator[slice]:
-    """A few views at a time: of pictures of one view each, or of one picture."""
-    starts = [0, len(rig)] if len(rig) == len(rig.views) else rig.starts.tolist()
-    for start, end in pairwise(starts):
-        for first in range(start, end, _BATCH):
-            yield slice(first, min(first + _BATCH, end))
+    """A few views at a time: whole pictures, as many as are small enough together, or parts of one that is not."""
+    most, first = max(_BATCH, _PIXELS // math.prod(rig.picture_shape)), 0
+    for start, end in pairwise(rig.starts.tolist()):
+        if first < start and end - first > most:
+            yield slice(first, start)
+            first = start
+        while end - first > most:
+            yield slice(first, first + most)
+            first += most
+    if first < len(rig.views):
+        yield slice(first, len(rig.views))

@@ -13,6 +13,7 @@ from lightcube.kernels import stacked
 from lightcube.kernels.beam import max_pieces
 from lightcube.kernels.layout import LINE, empty, is_worth_lines
 from lightcube.kernels.tasks import threads
+from lightcube.optics.arrays import Flags
 from lightcube.optics.grid import PARALLEL, Grid
 from lightcube.optics.views import Views
 
@@ -46,7 +47,7 @@ class StackedBeams:
     level: bool
     shape: tuple[int, int]
 
-    def __init__(self, grid: Grid, views: Views) -> None:
+    def __init__(self, grid: Grid, views: Views, heard: Flags | None = None) -> None:
         self.grid = grid
         rows, self._width = views.picture_shape
         nz, ny, nx = grid.shape
@@ -61,6 +62,7 @@ class StackedBeams:
         self.rise = math.ceil(slope * math.hypot(nx, ny)) + 2
         self.level = bool(slope < PARALLEL and rows == nz and np.allclose(corner[:, 2], 0.5, rtol=0, atol=1e-9))
         self._stacked = 1 if self.level else rows
+        self._windows = _windows(np.ones((len(views), rows, self._width), bool) if heard is None else heard)
         self.shape = (len(views) * self._width * self._stacked, ny * nx * (1 if self.level else nz))
 
     def forward(self, x: Floats) -> Floats:
@@ -70,7 +72,7 @@ class StackedBeams:
         rows = x.reshape(self._voxels, -1)
         if len(b) >= len(rows):  # else it does not pay
             rows = self._in_lines(rows)
-        stacked.forward(self.beams, self._width, *self._plane(), rows, b, channels, _tasks())
+        stacked.forward(self.beams, self._heard(channels), self._width, *self._plane(), rows, b, channels, _tasks())
         return b.reshape(self.shape[0], channels)
 
     def adjoint(self, b: Floats) -> Floats:
@@ -78,12 +80,15 @@ class StackedBeams:
         channels = b.shape[1]
         x = empty((self._voxels, self.shape[1] // self._voxels * channels), b.dtype)
         rows = self._in_lines(b.reshape(-1, self._stacked * channels))
-        stacked.adjoint(self.beams, self._width, *self._plane(), rows, x, channels, _tasks())
+        stacked.adjoint(self.beams, self._heard(channels), self._width, *self._plane(), rows, x, channels, _tasks())
         return x.reshape(self.shape[1], channels)
 
     def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Return the unknowns that equation `index` touches, and its beam's length (mm) in each."""
         ray, lift = divmod(index, self._stacked)
+        first, after, low, high = self._heard(1)[ray // self._width]
+        if not (first <= ray % self._width < after and low <= lift < high):
+            return np.empty(0, np.int64), np.empty(0)
         nx, ny, scale = self._plane()
         most = max_pieces(nx, ny, self.rise) + 1
         voxels, levels, lengths = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most)
@@ -105,10 +110,23 @@ class StackedBeams:
         ray = np.repeat(np.arange(rays), np.diff(offsets))
         lift = np.arange(self._stacked)[:, None]
         unknowns, inside = self._unknowns(voxels, levels + lift)
+        first, after, low, high = self._heard(1)[ray // self._width].T
+        inside &= (first <= ray % self._width) & (ray % self._width < after) & (low <= lift) & (lift < high)
         equations = ray * self._stacked + lift
         shape = unknowns.shape
         entries = (np.broadcast_to(lengths, shape)[inside], (equations[inside], unknowns[inside]))
         return csr_array(entries, shape=self.shape)
+
+    def _heard(self, channels: int) -> NDArray[np.int64]:
+        """``(view, 4)``: beams first to before last, and rows of them, so many numbers each, that count.
+
+        Where beams are level, what is multiplied may be of some slices only, and all of it counts.
+        """
+        windows = self._windows.copy()
+        if self.level:
+            windows[:, 2:] = 0, 1
+        windows[:, 2:] *= channels
+        return windows
 
     @property
     def _voxels(self) -> int:
@@ -139,6 +157,15 @@ class StackedBeams:
             return np.broadcast_to(voxels.astype(np.int64), levels.shape), np.ones(levels.shape, np.bool_)
         nz = self.grid.shape[0]
         return voxels.astype(np.int64) * nz + levels, (levels >= 0) & (levels < nz)
+
+
+def _windows(heard: Flags) -> NDArray[np.int64]:
+    """``(view, 4)``: first column and one after the last, first row from below and one after the last, that count."""
+    columns, rows = np.any(heard, axis=1), np.any(heard, axis=2)[:, ::-1]
+    ends = [(np.argmax(each, axis=1), each.shape[1] - np.argmax(each[:, ::-1], axis=1)) for each in (columns, rows)]
+    windows = np.stack([*ends[0], *ends[1]], axis=1)
+    windows[~np.any(columns, axis=1)] = 0
+    return windows.astype(np.int64)
 
 
 def _tasks() -> int:

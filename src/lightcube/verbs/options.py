@@ -96,6 +96,14 @@ class Options:
         ),
     ] = None
 
+    grain: Annotated[
+        float | None,
+        Option(
+            "Weight, 0 to 2, of a pixel's points beside its mean: the more, the smoother from near by.  "
+            "[default: auto, 0.01 where 38 dB are expected]"
+        ),
+    ] = None
+
     @property
     def voxels(self) -> tuple[int, int, int]:
         """``(nz, ny, nx)`` that `n` or `shape` say, a cube where that is `n`; `InputError` where they cannot be."""
@@ -146,6 +154,7 @@ class Options:
             "--shift": self.shift or None,
             "--light": None if self.light == "thin" else self.light,
             "--points": self.points,
+            "--grain": self.grain or None,
             "--mat": None if self.mat == "none" else self.mat,
         }
         contradiction = [name for name, value in said.items() if value is not None]
@@ -175,9 +184,15 @@ class Options:
             "passes": self.iterations,
         }
         said = {name: value for name, value in said.items() if value is not None}
-        if self.iterations is None and self.method == "display":
-            return Recipe.of_quality(self.quality or "normal", **said)
-        return Recipe(**said)
+        fast = self.iterations is None and self.method == "display"
+        recipe = Recipe.of_quality(self.quality or "normal", **said) if fast else Recipe(**said)
+        return recipe if self.grain is None else self._with_grain(recipe, self.grain)
+
+    def _with_grain(self, recipe: Recipe, grain: float) -> Recipe:
+        """How much the points of a pixel weigh beside its mean, where that is said."""
+        if recipe.beams.is_thin and grain:
+            raise InputError(f"--grain {grain:g} is for light on areas: leave out --light thin, or use method display")
+        return replace(recipe, light=replace(recipe.beams, grain=grain))
 
     @property
     def _beams(self) -> Light | None:

@@ -64,12 +64,13 @@ def read(source: str, options: Options, *, told: bool = True) -> Planning:
 def _read_stage(source: str, options: Options) -> Callable[..., Plan]:
     """Read a stage file, which says all there is."""
     recipe, nothing = options.recipe, Options()
+    smooth = options.grain is None and not recipe.beams.is_thin
     for name in _SAID_BY_STAGE:
         if getattr(options, name) != getattr(nothing, name):
             option = name.replace("_", "-")
             raise InputError(f"--{option} is not for a stage, and {source} is one that says all there is: leave it out")
     stage, pictures, ways = io.read_stage(source, transfer=options.transfer)
-    return partial(plan_stage, stage, pictures, ways, recipe)
+    return partial(plan_stage, stage, pictures, ways, recipe, smooth=smooth)
 
 
 def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
@@ -90,6 +91,7 @@ def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
         turntable=turntable,
         fit=options.fit,
         longest_hold=options.hold_deg is None and recipe.solver.chooses_lamps,
+        smooth=options.grain is None and not recipe.beams.is_thin,
         shift=options.shift,
         order=options.order,
     )

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lightcube.backward.problem import held
+from lightcube.backward.wishes import held
 from lightcube.jobs.publishing import Published
 from lightcube.optics.light import Beams
 from lightcube.optics.rig import Rig
