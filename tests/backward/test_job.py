@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from lightcube.backward import needs
 from lightcube.backward.job import Job, differences, fingerprint, shares
+from lightcube.backward.mat import Mat
 from lightcube.backward.pieces import Step, solve_piece
 from lightcube.backward.problem import is_level, pose
 from lightcube.backward.solution import Solution, merged
@@ -24,6 +25,7 @@ from lightcube.jobs.partial import open_partial
 from lightcube.kernels.layout import columns_from_volume
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.light import Light
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets
@@ -332,6 +334,9 @@ def test_a_cube_is_cast_from_where_it_lies(kind: dict[str, Any]) -> None:
         ((60, 60, 60), (50, 40), 0.0, 30, {"method": "sirt"}),
         ((60, 60, 60), (60, 40), 0.0, 30, {"method": "cgls", "units": 2}),
         ((30, 60, 60), (30, 60), 0.0, 60, {"method": "gauss-seidel"}),
+        ((60, 60, 60), (30, 30), 35.0, 12, {"light": Light(13, 7, 0.01), "mat": Mat(), "hold_deg": 0.3}),
+        ((60, 60, 60), (30, 30), 35.0, 12, {"light": Light(34)}),
+        ((60, 60, 60), (60, 40), 0.0, 20, {"light": Light(8, 5), "units": 3}),
     ],
     ids=str,
 )

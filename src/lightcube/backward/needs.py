@@ -16,10 +16,10 @@ from lightcube.pictures.targets import Targets
 from lightcube.solvers.method import Method
 
 #: Bytes that a job may need unless it is said: a fixed number, so that cubes do not depend on machines.
-MEMORY = 4_000_000_000
+MEMORY = 6_000_000_000
 #: Bytes of the program itself, with numpy, numba and what they compile (measured).
 PROGRAM = 260_000_000
-#: Bytes for each equation of a column: which lamp it belongs to, and the like (measured).
+#: Bytes for each equation of a column, or each pixel of sums: which lamp it belongs to, and the like (measured).
 _EQUATION = 36
 #: Bytes for each voxel that a beam runs through, where the method holds the matrix (measured).
 _ENTRY = 40
@@ -27,6 +27,8 @@ _ENTRY = 40
 _ANY = 35.0
 #: Bytes for each pixel of a view where light or shadows fade: what falls on it, and its shadow's strength (measured).
 _MIXED = 16
+#: Where beams add up: more arrays as large as the unknowns, and all as large as the beams and as the sums (measured).
+_OF_SUMS = (1.2, 3.5, 6.0)
 #: The time of a pass is measured where it has about so many multiply-adds, over so many passes.
 _REHEARSED, _TIMED = 1e9, 12
 
@@ -39,6 +41,7 @@ def memory_needed(
     elevation_deg: float = 0.0,
     *,
     per_stop: int = 1,
+    sums: int | None = None,
     levels: int = 0,
     units: int = 1,
     channels: int = 3,
@@ -56,6 +59,8 @@ def memory_needed(
         Of the lamp, degrees.
     per_stop
         How many beams each of their pixels has: angles of a hold, times points of a pixel.
+    sums
+        To how many sums these add up; None = each beam is for itself.
     levels
         How often the cube is halved for its start.
     """
@@ -66,10 +71,11 @@ def memory_needed(
     cube = 4 * channels * math.prod(grid.shape)
     parts = split(grid.shape, channels, units, level=raised is None)
     share = max(part.columns for part in parts) / sum(part.columns for part in parts)
-    needed = _solver(method, grid.shape, picture_shape, views * per_stop, channels * size * share, raised)
+    beams = (views * per_stop, None if sums is None else views * sums)
+    needed = _solver(method, grid.shape, picture_shape, beams, channels * size * share, raised)
     if levels:
         half, small = coarse_shape(grid.shape, 1), (-(-rows // 2), -(-columns // 2))
-        level = pictures / 4 + _solver(method, half, small, views * per_stop, channels * size, raised)
+        level = pictures / 4 + _solver(method, half, small, beams, channels * size, raised)
         needed = max(needed + size * channels * (math.prod(half) + math.prod(grid.shape) * share), level)
     merging = cube * (1 + max(0.25, size / 2 * share)) + pictures / 4
     return int(PROGRAM + pictures + max(needed, merging))
@@ -79,18 +85,26 @@ def _solver(
     method: Method,
     shape: tuple[int, int, int],
     picture_shape: tuple[int, int],
-    views: int,
+    views: tuple[int, int | None],
     depth: float,
     elevation_deg: float | None,
 ) -> float:
-    """Bytes that a solver holds, `depth` of them for each voxel and each pixel; elevation None = slice by slice."""
+    """Bytes that a solver holds, `depth` of them for each voxel and each pixel; elevation None = slice by slice.
+
+    `views` are how many there are, and how many sums.
+    """
     unknowns, beams = method.arrays
+    count, sums = views
+    per_picture = 0.0
+    if sums is not None:
+        unknowns, beams, per_picture = unknowns + _OF_SUMS[0], _OF_SUMS[1], _OF_SUMS[2] * sums
     rows, columns = picture_shape
     nz, ny, nx = shape
-    equations = views * columns * (1 if elevation_deg is None else rows)
+    equations = (count if sums is None else sums) * columns * (1 if elevation_deg is None else rows)
     if elevation_deg is None and not method.holds_matrix and is_worth_lines(nz * depth):
         beams += 1  # a product's copy with whole lines
-    arrays = depth * (unknowns * nz * ny * nx + beams * views * rows * columns) + _EQUATION * equations
+    pixels = (beams * count + per_picture) * rows * columns
+    arrays = depth * (unknowns * nz * ny * nx + pixels) + _EQUATION * equations
     if not method.holds_matrix:
         return arrays
     pieces = 1.3 * max(ny, nx)
@@ -117,6 +131,7 @@ def job_memory(job: Job) -> int:
             len(views),
             0.0 if job.level else steepest or _ANY,
             per_stop=per_stop,
+            sums=None if every.is_thin else -(-len(every) // len(rig)),
             levels=job.levels,
             units=job.units,
             channels=job.channels,

@@ -56,7 +56,7 @@ def solve(
         of slices where the lamp is level. With more than one the powers of lamps that are not fixed are found at half
         the size and then kept. Default as few as fit `memory`, or as many as can be where none fits.
     memory
-        Bytes; default 4e9. What callback, store and the finished units themselves take comes on top.
+        Bytes; default 6e9. What callback, store and the finished units themselves take comes on top.
     callback
         Called after each iteration; True stops the solver, and the cube's status becomes ``"interrupted"``.
     store

@@ -30,7 +30,7 @@ def solve(
     output: Annotated[str, OUT],
     options: Options,
     memory: Annotated[
-        str | None, typer.Option(help="Use at most so much, 2GB or 512MB, by solving in parts.  [default: 4GB]")
+        str | None, typer.Option(help="Use at most so much, 2GB or 512MB, by solving in parts.  [default: 6GB]")
     ] = None,
     unit: Annotated[
         str | None, typer.Option(help="Solve only unit I of N, I/N; publish makes the cube when all are there.")
