@@ -40,8 +40,8 @@ def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.
         for name, few in (("JUDGE", 5), ("_JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
             monkeypatch.setattr(light, name, few)
         monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2, 0.0))
-        for quality, (passes, enough, _) in QUALITIES.items():
-            monkeypatch.setitem(QUALITIES, quality, (passes, enough, light.Light()))
+        for quality, effort in QUALITIES.items():
+            monkeypatch.setitem(QUALITIES, quality, effort._replace(light=light.Light()))
         monkeypatch.setattr(prediction, "POINTS", light.Light())
     if INTERPRETED:
         monkeypatch.setattr(prediction, "AREA", prediction.AREA._replace(passes=2, work=20_000))

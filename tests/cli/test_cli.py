@@ -110,8 +110,10 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
 def test_solve_prints_json_lines_for_machines(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     done = run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, "--iterations", 5, "--json")
     events = [json.loads(line) for line in done.out.splitlines()]
-    assert events[0]["event"] == "progress"
-    assert "PSNR" in events[0]
+    planning, solving = ([each for each in events if each.get("task") == task] for task in ("planning", "solving"))
+    assert {each["event"] for each in planning + solving} == {"progress"}
+    assert {"width", "hold"} <= set(planning[0])
+    assert "PSNR" in solving[0]
     result = events[-1]
     assert result["event"] == "result"
     assert result["iterations"] == 5
@@ -221,7 +223,8 @@ def test_a_real_process_stops_at_ctrl_c_with_130(pictures: Path, tmp_path: Path)
     command += [str(tmp_path / "a.zarr"), "--n", "8", "--iterations", "1000000", "--json", "--method", "sirt"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
-        assert '"progress"' in process.stdout.readline()
+        while '"solving"' not in (line := process.stdout.readline()):
+            assert '"planning"' in line
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=120)
     assert process.returncode == 130, err
@@ -266,6 +269,15 @@ BAD = [
     ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--max-extinction", "nan"),
     ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold-deg", "60"),
     ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--hold-deg", "nan"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "-0.1"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "3"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "fine"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "0.1", "--light", "thin"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "0.1", "--method", "sirt"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "0.1", "--paper"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "12", "--from", "{cube}"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--from", "{none}"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--from", "{pictures}"),
     ("solve", "{pictures}"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--stops", "--angles-deg", "5"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles-deg", "5", "--count", "3"),

@@ -153,7 +153,7 @@ def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, qual
     options = ["--n", 8, "--picture-width", 1, "--lamp-max", 1, "--quality", quality, "--json", "--hold-deg", 0]
     done = run("solve", unlike, "-o", tmp_path / "a.npz", *options)
     result = json.loads(done.out.strip().splitlines()[-1])
-    assert 0 < result["iterations"] <= QUALITIES[quality][0]  # type: ignore[index]
+    assert 0 < result["iterations"] <= QUALITIES[quality].passes  # type: ignore[index]
 
 
 def test_options_are_settled_before_anything_is_read() -> None:
@@ -225,3 +225,28 @@ def test_black_is_part_of_the_prediction(run, unlike: Path) -> None:  # type: ig
         for more in ((), ("--black", 0.5))
     )
     assert grey < plain - (0 if INTERPRETED else 3)  # a brief rehearsal tells less
+
+
+def test_solve_goes_on_from_another_cube(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    """From where it was, in fewer passes than from nothing: what the first one reached is there at once."""
+    options = ["--n", 8, "--picture-width", 0.5, "--hold-deg", 0, "--grain", 0, "--mat", "none"]
+    first, again = tmp_path / "a.npz", tmp_path / "b.npz"
+    assert run("solve", pictures, "-o", first, *options, "--iterations", 60).code == 0
+    assert run("solve", pictures, "-o", again, *options, "--iterations", 1, "--from", first).code == 0
+    fresh = tmp_path / "c.npz"
+    assert run("solve", pictures, "-o", fresh, *options, "--iterations", 1).code == 0
+    psnr = [load(each).scores["psnr_mean"] for each in (first, again, fresh)]
+    assert psnr[1] > psnr[0] - 1 > psnr[2]
+
+
+@pytest.mark.parametrize(("grain", "weight"), [("0.3", 0.3), ("0", 0.0), ("auto", 0.01)])
+def test_grain_is_as_asked_for_or_follows_from_what_is_expected(  # type: ignore[no-untyped-def]
+    run, pictures: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, grain: str, weight: float
+) -> None:
+    monkeypatch.setattr("lightcube.planning.plan.SMOOTH_DB", 0.0)
+    options = ["--n", 8, "--picture-width", 0.5, "--hold-deg", 0, "--iterations", 1, "--grain", grain]
+    assert run("solve", pictures, "-o", tmp_path / "a.npz", *options).code == 0
+    assert load(tmp_path / "a.npz").provenance["grain"] == weight
+    monkeypatch.setattr("lightcube.planning.plan.SMOOTH_DB", 60.0)
+    assert run("solve", pictures, "-o", tmp_path / "b.npz", *options).code == 0
+    assert load(tmp_path / "b.npz").provenance["grain"] == (0.0 if grain == "auto" else weight)

@@ -222,7 +222,8 @@ def _makes_it_again(run: Run, cube: str, targets: str) -> None:
     for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
         np.testing.assert_array_equal(getattr(new.rig.views, name), getattr(old.rig.views, name))
     assert (new.names, new.hold_deg, new.transfer) == (old.names, old.hold_deg, old.transfer)
-    assert new.provenance == old.provenance
+    made = [{name: said for name, said in each.provenance.items() if name != "predicted"} for each in (new, old)]
+    assert made[0] == made[1]  # where nothing is left to choose nothing is predicted
 
 
 def test_passes_that_are_recorded_become_options() -> None:

@@ -131,7 +131,7 @@ def job_memory(job: Job) -> int:
             len(views),
             0.0 if job.level else steepest or _ANY,
             per_stop=per_stop,
-            sums=None if every.is_thin else -(-len(every) // len(rig)),
+            sums=None if len(every) == len(every.views) else -(-len(every) // len(rig)),
             levels=job.levels,
             units=job.units,
             channels=job.channels,
@@ -149,7 +149,7 @@ def fewest_units(job: Job, memory: int) -> int:
 
 
 def expected_passes(job: Job) -> float | None:
-    """At most so many passes of the whole cube, coarse ones counting by their work; None for a direct method."""
+    """The work of at most all passes, in passes of the whole cube at all points; None for a direct method."""
     method = job.recipe.solver
     if method.passes is None:
         return None

@@ -1,5 +1,6 @@
 """Solving the pieces of a job, one call of a solver each: watched, checkpointed, and continued where they stopped."""
 
+import math
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -8,10 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.job import Job, level_name, shares
+from lightcube.backward.job import Job, level_name, phase_work, shares
 from lightcube.backward.problem import Problem, pose, volume_from_unknowns
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape, coarser
+from lightcube.optics.arrays import Reals
 from lightcube.pictures.resampling import enlarged
 from lightcube.solvers.contract import Progress, Result
 
@@ -28,6 +31,8 @@ _IN_VAIN, _BETTER = 2, 0.99
 VOXELS, POWERS = "extinction", "lamp-powers"
 #: In a checkpoint: the least mean squared difference that was seen, and how many looks since then were in vain.
 _LOOKS = "looks"
+#: And the history of the phases that are finished.
+_EARLIER = "earlier-history"
 
 Floats = NDArray[np.floating[Any]]
 
@@ -86,48 +91,59 @@ def solve_piece(
     """
     if name in store.names():
         return True
-    problem, start, bounds, iterations = _posed(job, name, store)
-    state = _handed(store.state(name))
-    watch = _Watch(job, name, problem, store, callback, checkpoints=checkpoints)
-    watch.go_on_from(state)
-    options: dict[str, Any] = {} if iterations is None else {"iterations": iterations}
-    result = job.recipe.solver.solve(
-        problem.matrix,
-        problem.wanted(bounds),
-        x0=None if state is not None else start(),
-        bounds=(0.0, job.max_extinction),
-        callback=watch,
-        state=state,
-        **options,
-    )
-    if watch.stopped:
-        return False
-    store.finish(name, _bundle(problem, result, watch.reason or result.stop_reason))
+    watch = _Watch(job, name, store, callback, checkpoints=checkpoints)
+    state = store.state(name)
+    earlier = watch.go_on_from(state)
+    start, phases = None if state else _start(job, name, store), job.phases(name)
+    for number in range(1 if len(earlier) else 0, len(phases)):
+        phase = phases[number]
+        problem, bounds = _posed(job, name, store, phase.recipe)
+        watch.begin(problem, number, earlier)
+        options: dict[str, Any] = {} if phase.passes is None else {"iterations": phase.passes}
+        result = job.recipe.solver.solve(
+            problem.matrix,
+            problem.wanted(bounds),
+            x0=None if start is None else problem.unknowns(start),
+            bounds=(0.0, job.max_extinction),
+            callback=watch,
+            state=_handed(state),
+            **options,
+        )
+        if watch.stopped:
+            return False
+        start, state = problem.extinction(result.x), None
+        earlier = np.concatenate([earlier, result.residuals])
+    store.finish(name, _bundle(problem, result, earlier, watch.reason or result.stop_reason))
     return True
 
 
-def _posed(
-    job: Job, name: str, store: Store
-) -> tuple[Problem, Callable[[], Floats | None], tuple[Floats, Floats], int | None]:
-    """Problem of a piece, the function that makes its start, bounds of its lamps and number of iterations."""
+def _start(job: Job, name: str, store: Store) -> Floats | None:
+    """Extinction that a piece starts from, if any."""
     kind, number = name.split("-")
     if kind == "level":
-        level, (targets, grid), part = int(number), coarser(job.targets, job.grid, int(number)), None
+        return start_of(job, store, int(number), _whole(job, int(number)))
+    return start_of(job, store, 0, job.parts[int(number)])
+
+
+def _whole(job: Job, level: int) -> Part:
+    """All of the cube halved so often."""
+    return Part(slice(0, job.channels), slice(0, coarse_shape(job.grid.shape, level)[0]))
+
+
+def _posed(job: Job, name: str, store: Store, recipe: Recipe) -> tuple[Problem, tuple[Floats, Floats]]:
+    """Problem of a piece, and bounds of its lamps."""
+    kind, number = name.split("-")
+    if kind == "level":
+        (targets, grid), part = coarser(job.targets, job.grid, int(number)), None
     else:
-        level, (targets, grid), part = 0, (job.targets, job.grid), job.parts[int(number)]
-    problem = pose(targets, grid, job.recipe, part)
+        (targets, grid), part = (job.targets, job.grid), job.parts[int(number)]
+    problem = pose(targets, grid, recipe, part)
     bounds = job.lamp_bounds
     if kind == "unit" and job.frozen:
         powers = _finished(store, level_name(1))[POWERS]
         bounds = (powers, powers)
     low, high = (bound[:, problem.part.colours] for bound in bounds)
-
-    def start() -> Floats | None:
-        found = start_of(job, store, level, problem.part)
-        return None if found is None else problem.unknowns(found)
-
-    passes = job.coarse_passes if kind == "level" else job.recipe.passes or job.recipe.solver.passes
-    return problem, start, (low, high), passes
+    return problem, (low, high)
 
 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats | None:
@@ -158,7 +174,7 @@ def known(job: Job, store: Store, name: str) -> Arrays | None:
         shape = (part.slices.stop - part.slices.start, *job.grid.shape[1:])
         channels = part.colours.stop - part.colours.start
     voxels = volume_from_unknowns(state["x"], shape, channels)
-    return {VOXELS: voxels, POWERS: state[POWERS], "history": state["history"]}
+    return {VOXELS: voxels, POWERS: state[POWERS], "history": np.concatenate([state[_EARLIER], state["history"]])}
 
 
 def _handed(arrays: Arrays | None) -> Mapping[str, NDArray[Any]] | None:
@@ -191,12 +207,12 @@ def _finished(store: Store, name: str) -> Arrays:
     return found
 
 
-def _bundle(problem: Problem, result: Result, stop_reason: str) -> dict[str, NDArray[Any]]:
+def _bundle(problem: Problem, result: Result, history: Reals, stop_reason: str) -> dict[str, NDArray[Any]]:
     """What is kept of a piece that is finished."""
     bundle: dict[str, NDArray[Any]] = {
         VOXELS: problem.extinction(result.x),
         POWERS: result.lamp_powers,
-        "history": result.residuals,
+        "history": history,
         "rejected": problem.pixels(result.rejected),
         "undetermined": np.array(0 if result.undetermined is None else np.sum(result.undetermined)),
         "stop_reason": np.array(stop_reason),
@@ -224,10 +240,8 @@ class _Watch:
         Whether the callback said so before that.
     """
 
-    def __init__(
-        self, job: Job, name: str, problem: Problem, store: Store, callback: Watching | None, *, checkpoints: bool
-    ) -> None:
-        self._name, self._problem, self._store, self._callback = name, problem, store, callback
+    def __init__(self, job: Job, name: str, store: Store, callback: Watching | None, *, checkpoints: bool) -> None:
+        self._name, self._job, self._store, self._callback = name, job, store, callback
         work = shares(job)
         names = list(work)
         self._before = sum(work[earlier] for earlier in names[: names.index(name)]) / sum(work.values())
@@ -235,15 +249,25 @@ class _Watch:
         self._level, self._most = name.startswith("level"), job.recipe.passes or 0
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
         self._wanted = 10 ** (-(job.recipe.enough_db + _SPARE_DB) / 10)
-        asked = job.recipe.enough_db < np.inf or not job.recipe.beams.is_thin
-        self._looks = asked and not self._level and job.recipe.solver.residual == "display"
-        self._least, self._since = np.inf, 0.0
+        self._least, self._since, self._part, self._expected = np.inf, 0.0, 0.0, np.inf
+        self._seen = 0, np.inf
         self.reason, self.stopped = "", False
 
-    def go_on_from(self, state: Mapping[str, NDArray[Any]] | None) -> None:
-        """Take up what was known where the solver stopped."""
-        if state is not None and _LOOKS in state:
-            self._least, self._since = (float(each) for each in state[_LOOKS])
+    def go_on_from(self, state: Arrays | None) -> Reals:
+        """Take up what was known where the solver stopped; return the history of the phases before."""
+        if state is None:
+            return np.empty(0)
+        self._least, self._since = (float(each) for each in state[_LOOKS])
+        return state[_EARLIER]
+
+    def begin(self, problem: Problem, number: int, earlier: Reals) -> None:
+        """Watch the phase of such a number, after others of such a history; at what the last one casts it looks."""
+        phases = self._job.phases(self._name)
+        self._problem, self._phase, self._earlier = problem, phases[number], earlier
+        self._done, self._to_come = (
+            sum(phase_work(self._job, each) for each in some) for some in (phases[:number], phases[number + 1 :])
+        )
+        self._looks = self._job.looks and not self._level and number + 1 == len(phases)
 
     def __call__(self, progress: Progress) -> bool:
         """Tell the solver whether it is to stop."""
@@ -263,6 +287,7 @@ class _Watch:
         It becomes worse in the end: a cube fits itself to the points that it is solved for, and to its mats.
         """
         error = self._problem.error(progress.x, progress.lamp_powers)
+        self._expect(progress, error)
         if 0 < error <= self._wanted:  # an exact 0 is not enough by itself
             self.reason = "enough"
         self._since = 0 if error < _BETTER * self._least else self._since + 1
@@ -270,15 +295,33 @@ class _Watch:
         if self._since > _IN_VAIN and not self.reason:
             self.reason = "best"
 
+    def _expect(self, progress: Progress, error: float) -> None:
+        """Reckon how many passes it will take: between what is allowed, and where errors that fall on were enough."""
+        now, (then, before) = progress.iteration, self._seen
+        self._seen = now, error
+        if then and 0 < self._wanted < error < before:
+            power = math.log(before / error) / math.log(now / then)
+            soonest = now * (error / self._wanted) ** (1 / power)
+            self._expected = math.sqrt(min(soonest, progress.iterations) * progress.iterations)
+
+    def _so_far(self, progress: Progress) -> float:
+        """Which part of the piece is done, as far as one can tell; it never becomes less."""
+        expected = min(max(self._expected, progress.iteration + 1), progress.iterations)
+        done, phase = self._done + phase_work(self._job, self._phase, progress.iteration), self._phase
+        whole = self._done + phase_work(self._job, phase, expected) + self._to_come
+        self._part = max(self._part, min(done / whole, 1.0))
+        return self._part
+
     def _keep(self, progress: Progress) -> None:
         began = time.monotonic()
-        kept = {POWERS: progress.lamp_powers, _LOOKS: np.array([self._least, self._since])}
+        kept = {POWERS: progress.lamp_powers, _LOOKS: np.array([self._least, self._since]), _EARLIER: self._earlier}
         self._store.keep(self._name, {**progress.state(), **kept})
         self._last = time.monotonic()
         self._gap = min(max(min(2 * self._gap, CHECKPOINT_S), _PATIENCE * (self._last - began)), _LATEST_S)
 
     def _step(self, progress: Progress) -> Step:
-        done = self._before + self._own * progress.iteration / progress.iterations
+        passes = len(self._earlier) + progress.iteration
+        done = self._before + self._own * self._so_far(progress)
         window = self._problem.rows, self._problem.part.colours
         if self._level:
             return Step(0, self._most, done, progress.residual, None, window)
@@ -286,4 +329,4 @@ class _Watch:
         def shown() -> NDArray[np.float32]:
             return self._problem.shown(progress.x, progress.lamp_powers)
 
-        return Step(progress.iteration, progress.iterations, done, progress.residual, shown, window)
+        return Step(passes, self._most or progress.iterations, done, progress.residual, shown, window)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -24,11 +24,22 @@ from lightcube.solvers.method import Method
 Powers = Literal["per-picture", "shared", "coarse"]
 #: For a look, for use, and for the last tenth of a dB.
 Quality = Literal["draft", "normal", "best"]
-#: At most so many passes of method display, the PSNR of all pixels, dB, that is enough, and how fine light is.
-QUALITIES: Mapping[Quality, tuple[int, float, Light]] = {
-    "draft": (30, 36.0, Light(5, 4)),
-    "normal": (200, 42.0, Light()),
-    "best": (400, math.inf, Light(34, 15)),
+
+
+class Effort(NamedTuple):
+    """At most so many passes of method display, and by thin beams; the PSNR of all pixels that is enough, dB; light."""
+
+    passes: int
+    thin_passes: int
+    enough_db: float
+    light: Light
+
+
+#: What the qualities mean.
+QUALITIES: Mapping[Quality, Effort] = {
+    "draft": Effort(30, 30, 36.0, Light(5, 4)),
+    "normal": Effort(120, 200, 42.0, Light()),
+    "best": Effort(400, 400, math.inf, Light(34, 15)),
 }
 
 
@@ -107,8 +118,20 @@ class Recipe:
     @checked
     def of_quality(cls, quality: Quality, **more: Any) -> Recipe:
         """So many passes, or fewer where the pictures are good enough before; `more` are the other fields."""
-        passes, enough, light = QUALITIES[quality]
-        return cls(**{"passes": passes, "enough_db": enough, "light": light, **more})
+        return cls(**{"enough_db": QUALITIES[quality].enough_db, "light": QUALITIES[quality].light, **more})._by(
+            quality
+        )
+
+    def _by(self, quality: Quality) -> Recipe:
+        """As many passes as a quality allows, unless that is said."""
+        effort = QUALITIES[quality]
+        passes = effort.thin_passes if self.beams.is_thin else effort.passes
+        return self if self.passes is not None else replace(self, passes=passes)
+
+    @property
+    def with_passes(self) -> Recipe:
+        """The same, with the passes of quality normal where method display was not told how many."""
+        return self._by("normal") if self.solver.residual == "display" else self
 
     @property
     def beams(self) -> Light:

@@ -11,7 +11,7 @@ import numpy as np
 from lightcube.backward.job import Job
 from lightcube.backward.needs import MEMORY, fewest_units
 from lightcube.backward.pieces import Watching, solve_pieces
-from lightcube.backward.recipe import QUALITIES, Recipe
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution, merged
 from lightcube.backward.store import MemoryStore, Store
 from lightcube.backward.units import most_units
@@ -101,8 +101,7 @@ def make_job(
     recipe = recipe or Recipe()
     check_targets(targets, grid)
     _check_method(recipe, targets.rig)
-    if recipe.passes is None and recipe.solver.residual == "display":
-        recipe = replace(recipe, passes=QUALITIES["normal"][0])
+    recipe = recipe.with_passes
     voxels = None if start is None else _as_start(start, grid, targets)
     job = Job(targets, grid, recipe, start=voxels, provenance=dict(provenance or {}))
     most = most_units(grid.shape, job.channels, level=job.level)

@@ -59,7 +59,7 @@ def solve(
     budget = None if memory is None else arguments.memory(memory)
     workers = 1 if scheduler is None else cluster.count_workers(scheduler)
     start = None if start_from is None else load(start_from)
-    job, said = _asked(pictures, options, budget, units, start, as_json=as_json)
+    job, said = _asked(pictures, options, budget, units, start, as_json=as_json, quiet=as_json and dry_run)
     del start
     if units is None:
         job = solving.divided(job, output, workers, budget)
@@ -103,12 +103,19 @@ def _solved(solution: Solution, output: str, seconds: float, *, as_json: bool) -
 
 
 def _asked(
-    pictures: str, options: Options, memory: int | None, units: int | None, start: Cube | None, *, as_json: bool
+    pictures: str,
+    options: Options,
+    memory: int | None,
+    units: int | None,
+    start: Cube | None,
+    *,
+    as_json: bool,
+    quiet: bool,
 ) -> tuple[Job, Callable[[], list[str]]]:
     """The job that `solve` is asked for, and a function that makes what is to be said of it."""
     planning = solving.read(pictures, options, told=False)
     with telling("planning", as_json=as_json) as tell:
-        planned = planning(solving.rehearsals(tell))
+        planned = planning(solving.rehearsals(None if quiet else tell))
     job = solving.job(planned, memory=memory, units=units, start=start)
     return job, lambda: [
         *words.in_short(planned, planned.order),

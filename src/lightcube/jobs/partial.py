@@ -48,7 +48,7 @@ from lightcube.pictures.targets import Targets
 from lightcube.solvers import check_lasting, find_method
 
 #: Of the folders that this version writes and reads.
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 
 _JOB, _TARGETS = "job.json", "targets.npz"
 _PIECE = re.compile(r"((?:level|unit)-[0-9]+)(\.state)?\.npz")
@@ -64,7 +64,7 @@ class _JobJson(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    format_version: Literal[3]
+    format_version: Literal[4]
     written_by: str
     fingerprint: dict[str, str | int | float | None]
     shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=3, max_length=3)]

@@ -4,6 +4,7 @@ import hashlib
 import math
 import shlex
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -146,17 +147,22 @@ def _mat(made: Recipe, command: Command) -> Iterator[str]:
 
 def _quality(made: Recipe) -> Quality | None:
     """The quality whose passes a cube was solved by."""
-    meant = {quality: (passes, enough) for quality, (passes, enough, _) in QUALITIES.items()}
-    found = [quality for quality, asked in meant.items() if asked == (made.passes, made.enough_db)]
+    thin = made.beams.is_thin
+    found: list[Quality] = [
+        quality
+        for quality, effort in QUALITIES.items()
+        if (effort.thin_passes if thin else effort.passes, effort.enough_db) == (made.passes, made.enough_db)
+    ]
     return found[0] if found and made.method == "display" else None
 
 
 def _light(light: Light, quality: Quality | None, command: Command) -> Iterator[str]:
     """How fine light is, where nothing that is said already says it."""
-    if light == (QUALITIES[quality][2] if quality else Light()):
-        return
     if light.is_thin:
         yield from ("--light", "thin")
+        return
+    yield from ("--grain", f"{light.grain:g}")
+    if replace(light, grain=0.0) == (QUALITIES[quality].light if quality else Light()):
         return
     if light.points != light.row_points:
         command.doubts.append(

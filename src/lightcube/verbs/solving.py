@@ -151,15 +151,15 @@ def divided(made: Job, output: str, workers: int, memory: int | None = None) -> 
 
 def needs(made: Job) -> dict[str, Any]:
     """What a job will need, for JSON: a smaller one is timed for it."""
-    passes = expected_passes(made)
-    seconds = None if passes is None else passes * seconds_a_pass(made)
+    work = expected_passes(made)
+    seconds = None if work is None else work * seconds_a_pass(made)
     return {
         "memory": job_memory(made),
         "free_memory": io.free_memory(),
         "units": made.units,
         "unit_voxels": [part.columns * made.grid.shape[1] * made.grid.shape[2] for part in made.parts],
         "coarse_sizes": made.levels,
-        "passes": passes,
+        "passes": None if work is None else made.recipe.passes or made.recipe.solver.passes,
         "seconds": seconds,
     }
 
