@@ -31,7 +31,7 @@ def turning() -> Cube:
     """A random cube on a turntable with a raised lamp, and random pictures wanted of it."""
     random = np.random.default_rng(3)
     rig = turntable(GRID, STOPS, elevation_deg=35.0, picture_shape=(ROWS, COLUMNS))
-    targets = random.integers(0, 256, (len(STOPS), ROWS, COLUMNS, 4), dtype=np.uint8)
+    targets = random.integers(0, 65536, (len(STOPS), ROWS, COLUMNS, 4), dtype=np.uint16)
     powers = random.uniform(0.5, 2.0, (len(STOPS), 3))
     return Cube(glass(GRID.shape), GRID, rig, powers, targets=targets, names=NAMES)
 

@@ -46,7 +46,7 @@ def make(shape: tuple[int, int, int] = (3, 5, 7), count: int = 2, channels: int 
         grid,
         rig,
         random.random((count, channels)) + 1e-3,
-        random.integers(0, 256, (count, 3, 5, channels + 1), dtype=np.uint8),
+        random.integers(0, 65536, (count, 3, 5, channels + 1), dtype=np.uint16),
         scores={"psnr_mean": 0.1 + 0.2, "pictures": [{"psnr": 1e-300}, {"psnr": None}]},
         provenance={"method": "display", "iterations": 7, "ok": True, "name": "ü\n"},
         **more,
@@ -97,7 +97,7 @@ def cubes(draw: st.DrawFn) -> Cube:
     angles_deg = draw(st.lists(st.floats(0, 359), min_size=count, max_size=count))
     flat = turntable(grid, angles_deg, elevation_deg=draw(st.floats(-80, 80)))
     origins_mm = draw(st_numpy.arrays(np.float64, (count, 3), elements=finite))
-    targets = st_numpy.arrays(np.uint8, (count, *picture, channels + 1))
+    targets = st_numpy.arrays(np.uint16, (count, *picture, channels + 1))
     names = st.lists(st.text(st.characters(codec="utf-8"), max_size=4), min_size=count, max_size=count)
     return Cube(
         draw(st_numpy.arrays(np.float32, (channels, *shape), elements=st.floats(0, 2.0**100, width=32))),
@@ -174,7 +174,7 @@ def test_the_folder_is_an_ome_zarr_image(tmp_path: Path) -> None:
     colours = [channel["color"] for channel in ome["omero"]["channels"]]
     assert colours == ["FF0000", "00FF00", "0000FF"]
     assert all(set(channel["window"]) == {"min", "max", "start", "end"} for channel in ome["omero"]["channels"])
-    assert zarr.open_array(tmp_path / "a.zarr", path="targets", mode="r").dtype == np.uint8
+    assert zarr.open_array(tmp_path / "a.zarr", path="targets", mode="r").dtype == np.uint16
 
 
 def test_the_archive_begins_with_the_metadata_and_is_not_packed_twice(tmp_path: Path) -> None:
@@ -371,8 +371,8 @@ def poke(path: Path, name: str, values: Any) -> None:
         ("0", np.ones((3, 3, 5, 7), np.float64), "float32"),
         ("0", np.ones((3, 5, 7), np.float32), "3 axes|4 axes"),
         ("0", np.ones((2, 3, 5, 7), np.float32), "lamp powers"),
-        ("targets", np.zeros((2, 3, 5, 3), np.uint8), "targets"),
-        ("targets", np.zeros((2, 3, 5, 4), np.uint16), "targets"),
+        ("targets", np.zeros((2, 3, 5, 3), np.uint16), "targets"),
+        ("targets", np.zeros((2, 3, 5, 4), np.uint8), "targets"),
     ],
 )
 def test_arrays_that_cannot_be_right_are_refused(

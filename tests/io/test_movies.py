@@ -18,7 +18,7 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.io import ClippedPictures, read_pictures, save
 from lightcube.optics.grid import Grid
-from lightcube.optics.transfer import Transfer, from_uint8, to_uint8
+from lightcube.optics.transfer import Transfer, from_levels, to_uint8
 from lightcube.optics.views import Views, turntable_views
 
 RANDOM = np.random.default_rng(21)
@@ -58,21 +58,21 @@ def read_levels(path: Path) -> Levels:
 def test_lossless_kinds_come_back_exactly(tmp_path: Path, suffix: str, shape: tuple[int, int]) -> None:
     wanted = levels(4, *shape)
     path = tmp_path / f"a{suffix}"
-    assert save(from_uint8(wanted), path) == path
+    assert save(from_levels(wanted), path) == path
     np.testing.assert_array_equal(read_levels(path), wanted)
     assert files_in(tmp_path) == [path.name]
 
 
 def test_a_gif_of_few_colours_comes_back_exactly(tmp_path: Path) -> None:
     wanted = levels()
-    save(from_uint8(wanted), tmp_path / "a.gif")
+    save(from_levels(wanted), tmp_path / "a.gif")
     np.testing.assert_array_equal(read_levels(tmp_path / "a.gif"), wanted)
 
 
 @pytest.mark.parametrize(("suffix", "least"), [(".mp4", 44.0), (".gif", 25.0)])
 def test_lossy_kinds_keep_the_colours(tmp_path: Path, suffix: str, least: float) -> None:
     wanted = smooth()
-    save(from_uint8(wanted), tmp_path / f"a{suffix}")
+    save(from_levels(wanted), tmp_path / f"a{suffix}")
     error = read_levels(tmp_path / f"a{suffix}").astype(float) - wanted
     assert error.shape == wanted.shape
     assert 20 * np.log10(255 / np.sqrt(np.mean(error**2))) > least
@@ -83,12 +83,12 @@ def test_an_mp4_keeps_the_colours_of_single_pixels(tmp_path: Path) -> None:
     wanted = np.zeros((2, 16, 16, 3), np.uint8)
     wanted[:, ::2, ::2] = 255, 0, 0
     wanted[:, 1::2, 1::2] = 0, 0, 255
-    save(from_uint8(wanted), tmp_path / "a.mp4")
+    save(from_levels(wanted), tmp_path / "a.mp4")
     assert np.max(np.abs(read_levels(tmp_path / "a.mp4").astype(int) - wanted)) < 25
 
 
 def test_an_mp4_says_which_colours_it_means(tmp_path: Path) -> None:
-    save(from_uint8(smooth(3)), tmp_path / "a.mp4")
+    save(from_levels(smooth(3)), tmp_path / "a.mp4")
     with av.open(str(tmp_path / "a.mp4")) as container:
         context = container.streams.video[0].codec_context
         assert context.name == "h264"
@@ -100,7 +100,7 @@ def test_an_mp4_says_which_colours_it_means(tmp_path: Path) -> None:
 @pytest.mark.parametrize("fps", [7.0, 30.0, 29.97])
 def test_movies_have_the_asked_speed(tmp_path: Path, suffix: str, fps: float) -> None:
     path = tmp_path / f"a{suffix}"
-    save(from_uint8(levels(6)), path, fps=fps)
+    save(from_levels(levels(6)), path, fps=fps)
     if suffix == ".webp":
         with Image.open(path) as image:
             delays = []
@@ -117,11 +117,11 @@ def test_movies_have_the_asked_speed(tmp_path: Path, suffix: str, fps: float) ->
 
 def test_a_gif_faster_than_browsers_play_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="at most 50 pictures a second"):
-        save(from_uint8(levels()), tmp_path / "a.gif", fps=51)
+        save(from_levels(levels()), tmp_path / "a.gif", fps=51)
 
 
 def test_a_gif_of_many_colours_has_one_palette(tmp_path: Path) -> None:
-    save(from_uint8(smooth()), tmp_path / "a.gif")
+    save(from_levels(smooth()), tmp_path / "a.gif")
     assert len(np.unique(read_levels(tmp_path / "a.gif").reshape(-1, 3), axis=0)) <= 256
 
 
@@ -135,7 +135,7 @@ def test_levels_follow_the_transfer(tmp_path: Path, transfer: Transfer) -> None:
 
 @pytest.mark.parametrize("suffix", ALL)
 def test_scale_makes_squares_of_pixels(tmp_path: Path, suffix: str) -> None:
-    small = from_uint8(levels(3))
+    small = from_levels(levels(3))
     save(small, tmp_path / f"a{suffix}", scale=3)
     save(np.kron(small, np.ones((1, 3, 3, 1), np.float32)), tmp_path / f"b{suffix}")
     if suffix == ".npy":
@@ -167,7 +167,7 @@ def test_clipped_values_are_counted_once(tmp_path: Path, suffix: str) -> None:
 def test_a_folder_holds_its_views(tmp_path: Path) -> None:
     wanted = levels(11)
     names = ['"quoted"', "back\\slash", "tab\tnew\nline", "\x7f", "ünï 日本 🎈", *"678901"]
-    save(from_uint8(wanted), tmp_path / "a", views=views(11), names=names)
+    save(from_levels(wanted), tmp_path / "a", views=views(11), names=names)
     assert files_in(tmp_path / "a") == [*(f"{index:02d}.png" for index in range(1, 12)), "views.toml"]
     read = read_pictures(tmp_path / "a")
     assert read.angles_deg is not None
@@ -177,7 +177,7 @@ def test_a_folder_holds_its_views(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_views_has_no_views_file(tmp_path: Path) -> None:
-    save(from_uint8(levels(2)), tmp_path / "a")
+    save(from_levels(levels(2)), tmp_path / "a")
     assert files_in(tmp_path / "a") == ["1.png", "2.png"]
 
 
@@ -193,12 +193,12 @@ def test_views_that_the_file_cannot_hold_are_refused(tmp_path: Path) -> None:
     near = replace(low, lamps=low.lamps + np.array([0, 0, 0, 1]))
     for wrong in (mixed, near):
         with pytest.raises(InputError, match="one elevation"):
-            save(from_uint8(levels(2)), tmp_path / "a", views=wrong)
+            save(from_levels(levels(2)), tmp_path / "a", views=wrong)
     assert files_in(tmp_path) == []
 
 
 def test_a_stream_is_taken_one_picture_at_a_time(tmp_path: Path) -> None:
-    wanted = from_uint8(levels(6))
+    wanted = from_levels(levels(6))
     alive: set[int] = set()
 
     class Watched(np.ndarray):
@@ -224,13 +224,13 @@ def test_a_stream_is_taken_one_picture_at_a_time(tmp_path: Path) -> None:
 @pytest.mark.parametrize("count", [3, 5])
 def test_a_wrong_count_leaves_nothing(tmp_path: Path, suffix: str, count: int) -> None:
     with pytest.raises(ValueError, match=r"of 3 has shape|were announced"):
-        save(iter(from_uint8(levels(4))), tmp_path / f"a{suffix}", count=count)
+        save(iter(from_levels(levels(4))), tmp_path / f"a{suffix}", count=count)
     assert files_in(tmp_path) == []
 
 
 def test_a_stream_needs_a_count(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="count"):
-        save(iter(from_uint8(levels())), tmp_path / "a.gif")
+        save(iter(from_levels(levels())), tmp_path / "a.gif")
 
 
 @pytest.mark.parametrize("suffix", ALL)
@@ -245,11 +245,11 @@ def test_a_stream_that_breaks_off_leaves_the_old_state(
 ) -> None:
     path = tmp_path / f"a{suffix}"
     if old:
-        save(from_uint8(levels(2)), path)
+        save(from_levels(levels(2)), path)
     before = {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()}
 
     def stream() -> Iterator[NDArray[np.float32]]:
-        yield from from_uint8(levels(3))
+        yield from from_levels(levels(3))
         raise raised
 
     with pytest.raises(caught):
@@ -259,7 +259,7 @@ def test_a_stream_that_breaks_off_leaves_the_old_state(
 
 
 def test_bad_input_is_refused_before_anything_is_written(tmp_path: Path) -> None:
-    light = from_uint8(levels(2))
+    light = from_levels(levels(2))
     for fps in (0, -1, float("nan"), float("inf"), 1e9):
         with pytest.raises(InputError, match="pictures per second"):
             save(light, tmp_path / "a.gif", fps=fps)
@@ -295,5 +295,5 @@ def test_what_a_codec_cannot_do_is_a_sentence(tmp_path: Path) -> None:
 )
 def test_any_pictures_come_back(tmp_path: Path, wanted: Levels, suffix: str) -> None:
     path = tmp_path / f"a{suffix}"
-    save(from_uint8(wanted), path, overwrite=True)
+    save(from_levels(wanted), path, overwrite=True)
     np.testing.assert_array_equal(read_levels(path), wanted)

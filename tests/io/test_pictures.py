@@ -17,7 +17,7 @@ from PIL import Image, ImageOps
 
 from lightcube.errors import InputError
 from lightcube.io import TransparentPictures, _decode, read_pictures, save
-from lightcube.optics.transfer import Transfer, decode, from_uint8, to_uint8
+from lightcube.optics.transfer import Transfer, decode, from_levels, to_uint8
 from lightcube.optics.views import spread_angles
 
 Array = NDArray[np.uint8] | NDArray[np.uint16]
@@ -138,7 +138,7 @@ def test_each_kind_of_file_gives_its_pictures_exactly(tmp_path: Path, suffix: st
     assert read.elevation_deg is None
     for image, picture in zip(read.images, pictures, strict=True):
         assert image.dtype == np.float32
-        np.testing.assert_array_equal(image, from_uint8(picture))
+        np.testing.assert_array_equal(image, from_levels(picture))
 
 
 @pytest.mark.parametrize("transfer", ["srgb", "linear"])
@@ -153,7 +153,7 @@ def test_a_folder_is_read_in_natural_order(tmp_path: Path, transfer: Transfer) -
     assert read.names == ("view 01", "View 2", "view 10")
     assert read.transfer == transfer
     for image, picture in zip(read.images, (first, second[:3], tenth), strict=True):
-        np.testing.assert_array_equal(image, from_uint8(picture, transfer))
+        np.testing.assert_array_equal(image, from_levels(picture, transfer))
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
@@ -193,7 +193,7 @@ def test_grey_palette_and_print_pictures_are_colours_too(tmp_path: Path, mode: s
     suffix = ".tif" if mode == "CMYK" else ".png"
     read = read_pictures(folder_of(tmp_path / "f", images, suffix))
     for image, original in zip(read.images, images, strict=True):
-        np.testing.assert_array_equal(image, from_uint8(np.asarray(original.convert("RGB"))))
+        np.testing.assert_array_equal(image, from_levels(np.asarray(original.convert("RGB"))))
 
 
 def test_transparent_pictures_are_put_on_white_in_linear_light(tmp_path: Path) -> None:
@@ -205,7 +205,7 @@ def test_transparent_pictures_are_put_on_white_in_linear_light(tmp_path: Path) -
         read = read_pictures(folder)
     assert len(caught) == 1
     assert caught[0].filename == __file__
-    light = from_uint8(pictures[..., :3].astype(np.uint8))
+    light = from_levels(pictures[..., :3].astype(np.uint8))
     opacity = pictures[..., 3:] / 255
     np.testing.assert_allclose(np.stack(read.images), opacity * light + (1 - opacity), atol=1e-6)
     np.testing.assert_array_equal(read.images[0][0, 0], 1)
@@ -240,7 +240,7 @@ def test_exif_orientation_turns_pictures_upright(tmp_path: Path, orientation: in
         image.getexif()[0x0112] = orientation
         wanted.append(np.asarray(ImageOps.exif_transpose(image)))
     for upright, correct in zip(read_pictures(tmp_path).images, wanted, strict=True):
-        np.testing.assert_array_equal(upright, from_uint8(correct))
+        np.testing.assert_array_equal(upright, from_levels(correct))
 
 
 @pytest.mark.parametrize("orientation", range(1, 9))
@@ -278,7 +278,7 @@ def test_a_turned_video_is_turned_upright(tmp_path: Path, quarters: int) -> None
     path.write_bytes(data[:at] + matrix + data[at + 36 :])
     for image, picture in zip(read_pictures(path).images, pictures, strict=True):
         # The matrix (a b; c d) takes x to a x + c y and y to b x + d y, y down: clockwise quarter turns.
-        np.testing.assert_array_equal(image, from_uint8(np.rot90(picture, -quarters)))
+        np.testing.assert_array_equal(image, from_levels(np.rot90(picture, -quarters)))
 
 
 def test_a_gif_of_changes_shows_whole_pictures(tmp_path: Path) -> None:
@@ -300,7 +300,7 @@ def test_the_still_picture_of_an_apng_is_left_out(tmp_path: Path) -> None:
     still, first, second = (Image.fromarray(picture) for picture in pictures)
     still.save(tmp_path / "a.png", save_all=True, append_images=[first, second], default_image=True)
     read = read_pictures(tmp_path / "a.png")
-    np.testing.assert_array_equal(np.stack(read.images), from_uint8(pictures[1:]))
+    np.testing.assert_array_equal(np.stack(read.images), from_levels(pictures[1:]))
 
 
 class TestViewsToml:

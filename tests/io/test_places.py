@@ -25,7 +25,7 @@ from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable
-from lightcube.optics.transfer import from_uint8, to_uint8
+from lightcube.optics.transfer import from_levels, to_uint8
 
 fsspec = pytest.importorskip("fsspec", reason="URLs need the extra remote")
 
@@ -38,7 +38,7 @@ SUFFIXES = (".zarr", ".zarr.zip", ".npz")
 def make(shape: tuple[int, int, int] = (3, 5, 7)) -> Cube:
     random = np.random.default_rng(22)
     extinction = random.random((3, *shape), dtype=np.float32)
-    targets = random.integers(0, 256, (4, *VIEWS.picture_shape, 4), dtype=np.uint8)
+    targets = random.integers(0, 65536, (4, *VIEWS.picture_shape, 4), dtype=np.uint16)
     return Cube(extinction, Grid(shape, 0.3), Rig.of(VIEWS), random.random((4, 3)) + 0.1, targets)
 
 
@@ -156,21 +156,21 @@ def test_pictures_come_back(folder: str, suffix: str) -> None:
     url = f"{folder}/a{suffix}"
     Output(url, "pictures").check()
     names = ("b", "a", "ü [1]", "c") if not suffix else None
-    assert save(from_uint8(LEVELS), url, views=None if suffix else VIEWS, names=names) == url
+    assert save(from_levels(LEVELS), url, views=None if suffix else VIEWS, names=names) == url
     read = read_pictures(url)
     np.testing.assert_array_equal(np.stack([to_uint8(image) for image in read.images]), LEVELS)
     if not suffix:
         assert read.names == names
         np.testing.assert_array_equal(read.angles_deg, VIEWS.angles_deg)
     with pytest.raises(InputError, match="exists already"):
-        save(from_uint8(LEVELS), url)
-    save(from_uint8(LEVELS[:2, :3]), url, overwrite=True)
+        save(from_levels(LEVELS), url)
+    save(from_levels(LEVELS[:2, :3]), url, overwrite=True)
     assert [image.shape for image in read_pictures(url).images] == [(3, 7, 3)] * 2
     assert len(files_at(url) if not suffix else files_at(folder)) == (2 if not suffix else 1)
 
 
 def test_only_pictures_are_fetched_of_a_folder(remote: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    save(from_uint8(LEVELS), f"{remote}/a", views=VIEWS)
+    save(from_levels(LEVELS), f"{remote}/a", views=VIEWS)
     for name in ("notes.txt", "[x].raw", "deep/0.png", ".hidden.png"):
         put(f"{remote}/a/{name}", b"x")
     sizes: dict[str, int] = {}
@@ -206,7 +206,7 @@ def test_an_interrupted_upload_is_never_taken_for_whole(
         if suffix:
             save(make(((3, 5, 7), (5, 3, 7))[number]), url, overwrite=overwrite)
         else:
-            save(from_uint8(LEVELS[: 4 - number]), url, overwrite=overwrite)
+            save(from_levels(LEVELS[: 4 - number]), url, overwrite=overwrite)
 
     def found() -> str:
         try:

@@ -47,7 +47,7 @@ def some_cube(**more: Any) -> Cube:
     """Lamps with discs, sampled; numbers that no decimal fraction is."""
     lamps = tuple(replace(lamp, size_deg=0.1 + 0.2) for lamp in ROOM.lamps)
     rig = divided(replace(ROOM, lamps=lamps).rig(), lamp=2, pixel=2)
-    levels = np.random.default_rng(1).integers(0, 256, (4, 5, 5, 4), np.uint8)
+    levels = np.random.default_rng(1).integers(0, 65536, (4, 5, 5, 4), np.uint16)
     return Cube(extinction(), GRID, rig, powers_of(rig), levels, **more)
 
 

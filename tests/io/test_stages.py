@@ -16,7 +16,7 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.io import TransparentPictures, is_stage, read_stage, read_stage_targets
 from lightcube.optics.stage import Lamp, Screen
-from lightcube.optics.transfer import from_uint8
+from lightcube.optics.transfer import from_levels
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import fit
 from lightcube.pictures.pictures import Pictures
@@ -58,7 +58,7 @@ def picture(path: Path, rows: int, columns: int) -> NDArray[np.float32]:
     """Noise in a file, and its linear light."""
     path.parent.mkdir(exist_ok=True)
     Image.fromarray(levels_of(rows, columns)).save(path)
-    return from_uint8(levels_of(rows, columns))
+    return from_levels(levels_of(rows, columns))
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +81,7 @@ def test_what_a_file_leaves_out_has_its_default(folder: Path) -> None:
     assert stage.screens == (Screen("wall", (90.0, 0.0, -45.0), (28.0, 20.0), 2.5),)
     assert [(shot.name, shot.screen, shot.lamps, shot.stop) for shot in stage.shots] == [("one", "wall", ("sun",), 0)]
     assert (pictures.names, pictures.transfer, fits) == (("one",), "srgb", ("crop",))
-    np.testing.assert_array_equal(pictures.images[0], from_uint8(levels_of(9, 11)))
+    np.testing.assert_array_equal(pictures.images[0], from_levels(levels_of(9, 11)))
 
 
 def test_a_screen_has_the_pitch_of_the_voxels(folder: Path) -> None:
@@ -110,7 +110,7 @@ def test_every_key_is_heard(folder: Path) -> None:
         for key, value in said.items():
             if key != "colour" or not isinstance(value, str):
                 assert getattr(made, key) == (tuple(value) if isinstance(value, list) else value), key
-    np.testing.assert_allclose(stage.lamps[1].colour, from_uint8(np.array([255, 128, 0], np.uint8)), atol=1e-6)
+    np.testing.assert_allclose(stage.lamps[1].colour, from_levels(np.array([255, 128, 0], np.uint8)), atol=1e-6)
     assert (stage.shots[0].lamps, stage.shots[0].stop, fits) == (("bulb", "sun"), 1, ("pad",))
 
 
@@ -133,7 +133,7 @@ def test_pictures_of_a_folder_go_to_stop_after_stop(folder: Path) -> None:
     assert fits == ("stretch", "stretch", "stretch", "crop", "crop")
     assert read.names == ("a", "b", "c", "one", "me")
     for image, size in zip(read.images, ((7, 6), (5, 7), (3, 8), (9, 11), (6, 5)), strict=True):
-        np.testing.assert_array_equal(image, from_uint8(levels_of(*size)))
+        np.testing.assert_array_equal(image, from_levels(levels_of(*size)))
 
 
 def test_a_movie_gives_its_pictures(folder: Path) -> None:
@@ -142,7 +142,7 @@ def test_a_movie_gives_its_pictures(folder: Path) -> None:
     tables = MINIMAL | {"turntable": {"count": 2}, "picture": [{"file": "two.webp", "screen": "wall"}]}
     stage, read, _ = read_stage(stage_file(folder, tables))
     assert [(shot.name, shot.stop) for shot in stage.shots] == [("1", 0), ("2", 1)]
-    np.testing.assert_array_equal(read.images[1], from_uint8(np.asarray(targets[1])))
+    np.testing.assert_array_equal(read.images[1], from_levels(np.asarray(targets[1])))
 
 
 def test_equal_names_are_told_apart(folder: Path) -> None:
@@ -189,7 +189,7 @@ def test_transfer_and_opacity_are_as_of_other_pictures(folder: Path, tmp_path: P
     tables = {"turntable": {"count": 2}, "picture": [{"file": "two", "screen": "wall"}]}
     _, pictures, _ = read_stage(stage_file(tmp_path, MINIMAL | tables), transfer="linear")
     for image, size in zip(pictures.images, ((2, 3), (4, 1)), strict=True):
-        np.testing.assert_array_equal(image, from_uint8(levels_of(*size), "linear"))
+        np.testing.assert_array_equal(image, from_levels(levels_of(*size), "linear"))
     with pytest.raises(InputError, match="transfer, not 'gamma': use one of srgb, linear"):
         read_stage(stage_file(folder, MINIMAL), transfer="gamma")  # type: ignore[arg-type]
 
@@ -206,7 +206,7 @@ def test_pictures_lie_at_the_upper_left_of_the_raster(folder: Path) -> None:
     assert targets.pictures.shape == (3, 11, 7, 3)
     assert len(targets.rig.views) == 4
     assert targets.names == tuple(shot.name for shot in stage.shots) == ("b", "one on floor", "one on wall")
-    np.testing.assert_array_equal(targets.pictures[0, :5, :7], from_uint8(levels_of(5, 7), "linear"))
+    np.testing.assert_array_equal(targets.pictures[0, :5, :7], from_levels(levels_of(5, 7), "linear"))
     windows = targets.rig.inside
     assert np.all(targets.weight <= windows)
     np.testing.assert_array_equal(targets.weight[[0, 2]], windows[[0, 2]])

@@ -27,7 +27,7 @@ from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
-from lightcube.optics.transfer import from_uint8, to_uint8
+from lightcube.optics.transfer import from_levels, to_uint8
 
 #: How much a kind that keeps less than all may be off: the mean over a picture, in levels.
 LOSSY = {".mp4": 3.0, ".gif": 6.0, ".jpg": 3.0, ".jpeg": 3.0, ".webp": 3.0}
@@ -58,7 +58,7 @@ def is_the_cube(cube: Cube, path: Path, suffix: str) -> None:
 
 
 def some_pictures(number: int, suffix: str) -> NDArray[np.float32]:
-    return from_uint8(noise(number, 1 if suffix == ".png" else 4 - number, 31 + number, 65))
+    return from_levels(noise(number, 1 if suffix == ".png" else 4 - number, 31 + number, 65))
 
 
 def are_the_pictures(pictures: NDArray[np.float32], path: Path, suffix: str) -> None:

@@ -16,7 +16,7 @@ GRID = lc.Grid((3, 5, 7))
 RIG = lc.turntable(GRID, [20, 70], elevation_deg=35, picture_shape=(3, 5))
 PICTURES, WEIGHTS = np.full((2, 3, 5, 3), 0.5, np.float32), np.ones((2, 3, 5), np.float32)
 EXTINCTION, POWERS = np.ones((3, 3, 5, 7), np.float32), np.ones((2, 3))
-LEVELS = np.full((2, 3, 5, 4), 9, np.uint8)
+LEVELS = np.full((2, 3, 5, 4), 9, np.uint16)
 CUBE = lc.Cube(EXTINCTION, GRID, RIG, POWERS, LEVELS)
 VIEWS = {name: getattr(RIG.views, name).copy() for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm")}
 

@@ -17,7 +17,7 @@ from lightcube.kernels.layout import (
 )
 from lightcube.optics.absorption import absorbance, extinction, transmittance, transparency
 from lightcube.optics.grid import Grid, picture_shape, raster_shape
-from lightcube.optics.transfer import check_transfer, decode, encode, from_uint8, to_uint8
+from lightcube.optics.transfer import check_transfer, decode, encode, from_levels, to_uint8
 from lightcube.optics.views import Views, spread_angles, turntable_views
 from tests.helpers import plain
 
@@ -145,7 +145,7 @@ def test_8_bit_levels_come_back() -> None:
     levels = np.arange(256, dtype=np.uint8)
     for transfer in ("srgb", "linear"):
         known = check_transfer(transfer)
-        assert np.array_equal(to_uint8(from_uint8(levels, known), known), levels)
+        assert np.array_equal(to_uint8(from_levels(levels, known), known), levels)
     assert to_uint8(np.array([2.0]))[0] == 255
 
 

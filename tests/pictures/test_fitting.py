@@ -13,7 +13,7 @@ from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, picture_shape
 from lightcube.optics.rig import turntable
-from lightcube.optics.transfer import to_uint8
+from lightcube.optics.transfer import to_uint16
 from lightcube.optics.views import distinct_angles, spread_angles
 from lightcube.pictures.fitting import Fit, as_levels, fit_report, targets_of
 from lightcube.pictures.pictures import Pictures
@@ -301,12 +301,12 @@ class TestTargets:
     def test_levels_and_scaled_weights(self) -> None:
         targets = self.targets()
         made = as_levels(targets)
-        assert made.dtype == np.uint8
-        np.testing.assert_array_equal(made[..., :3], to_uint8(targets.pictures, "linear"))
+        assert made.dtype == np.uint16
+        np.testing.assert_array_equal(made[..., :3], to_uint16(targets.pictures, "linear"))
         np.testing.assert_array_equal(made[..., 3] == 0, targets.weight == 0)
-        assert made[1, 2, 4, 3] == 255
+        assert made[1, 2, 4, 3] == 65535
         assert made[0, 1, 1, 3] == 1
-        np.testing.assert_allclose(made[..., 3] / 255 * 4, targets.weight, atol=4 / 255)
+        np.testing.assert_allclose(made[..., 3] / 65535 * 4, targets.weight, atol=4 / 65535)
 
     def test_a_picture_of_no_weight_is_refused(self) -> None:
         weights = self.targets().weight.copy()
@@ -319,8 +319,8 @@ class TestTargets:
     def test_a_cube_gives_its_targets_back(self, seed: int, transfer: str) -> None:
         grid = Grid((3, 5, 7))
         rig = turntable(grid, [1, 2], picture_shape=(3, 5))
-        levels = np.random.default_rng(seed).integers(0, 256, (2, 3, 5, 4), dtype=np.uint8)
-        levels[:, 0, 0, 3] = 255
+        levels = np.random.default_rng(seed).integers(0, 65536, (2, 3, 5, 4), dtype=np.uint16)
+        levels[:, 0, 0, 3] = 65535
         cube = Cube(
             np.zeros((3, 3, 5, 7), np.float32),
             grid,

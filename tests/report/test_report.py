@@ -143,8 +143,8 @@ def made(names: tuple[str, ...] = (), **changed: Any) -> Cube:
     random = np.random.default_rng(0)
     grid = Grid((3, 5, 7), 2.0)
     extinction = random.uniform(0, 0.1, (3, 3, 5, 7)).astype(np.float32)
-    targets = random.integers(1, 255, (3, 3, 5, 4), dtype=np.uint8)
-    targets[..., 3] = 255
+    targets = random.integers(1, 65535, (3, 3, 5, 4), dtype=np.uint16)
+    targets[..., 3] = 65535
     rig = turntable(grid, spread_angles(3, 360), elevation_deg=20, picture_shape=(3, 5))
     provenance = {"lightcube": "0.1.0", "method": "display", "powers": "per-picture", "lamp_max": 4.0}
     return replace(Cube(extinction, grid, rig, None, targets, names, provenance=provenance), **changed)
@@ -337,8 +337,9 @@ def test_pictures_are_those_wanted_and_shown(run: Run, pictures: Path) -> None:
     targets = load("a.npz").targets
     assert targets is not None
     for number, target in enumerate(targets, 1):
-        np.testing.assert_array_equal(found[f"wanted: {number}"], target[..., :3])
-        off = found[f"shown: {number}"].astype(int) - target[..., :3]
+        levels = np.rint(target[..., :3] / 257)
+        np.testing.assert_array_equal(found[f"wanted: {number}"], levels)
+        off = found[f"shown: {number}"].astype(int) - levels
         seen = found[f"difference: {number}"].astype(int) - 128
         inside = np.abs(off) < 120
         assert np.all(np.abs(seen - off)[inside] <= 2)

@@ -48,7 +48,7 @@ def random_cube(
     rig = rig.shifted(aside[..., 0].T)
     extinction = rng.exponential(0.1, (channels, *grid.shape)).astype(np.float32)
     powers = rng.uniform(0.5, 4, (len(angles_deg), channels))
-    targets = rng.integers(0, 256, (len(angles_deg), 3, 5, channels + 1), np.uint8)
+    targets = rng.integers(0, 65536, (len(angles_deg), 3, 5, channels + 1), np.uint16)
     return Cube(extinction, grid, rig, powers, targets=targets, **more)
 
 
@@ -137,7 +137,8 @@ def test_wanted_pictures_are_the_targets_and_clear_elsewhere(channels: int) -> N
     told = describe(cube, pack(cube), "three")
     for uri, levels in zip(told["wanted"], targets, strict=True):
         assert uri.startswith("data:image/png")
-        np.testing.assert_array_equal(picture(uri)[..., :3], np.broadcast_to(levels[..., :-1], (3, 5, 3)))
+        wanted = np.broadcast_to(np.rint(levels[..., :-1] / 257), (3, 5, 3))
+        np.testing.assert_array_equal(picture(uri)[..., :3], wanted)
         np.testing.assert_array_equal(picture(uri)[..., 3] > 0, levels[..., -1] > 0)
 
 

@@ -96,18 +96,19 @@ class Job:
         return asked and self.recipe.solver.residual == "display"
 
     def phases(self, name: str) -> list[Phase]:
-        """How a piece is solved: with few points a pixel first, unless it is small, or starts from another cube."""
+        """How a piece is solved: with few points a pixel first, unless it is small, or starts from another cube.
+
+        Coarse cubes have all points: what fits few of them only is a bad start (measured: 5 dB at 300 voxels).
+        """
         recipe, light = self.recipe, self.recipe.beams
-        passes = recipe.passes or recipe.solver.passes
-        few = recipe
-        if min(light.points, light.row_points) > max(FEW.points, FEW.row_points):
-            few = replace(recipe, light=replace(FEW, grain=light.grain))
         if name not in self.unit_names:
-            return [Phase(few, self.coarse_passes)]
+            return [Phase(recipe, self.coarse_passes)]
+        passes = recipe.passes or recipe.solver.passes
         first = 0 if passes is None else min(FEW_PASSES, int(_FEW_PART * passes))
-        if few is recipe or passes is None or self.start is not None or not first:
+        fewer = min(light.points, light.row_points) > max(FEW.points, FEW.row_points)
+        if passes is None or not (first and fewer) or self.start is not None:
             return [Phase(recipe, passes)]
-        return [Phase(few, first), Phase(recipe, passes - first)]
+        return [Phase(replace(recipe, light=replace(FEW, grain=light.grain)), first), Phase(recipe, passes - first)]
 
     @property
     def lamp_bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

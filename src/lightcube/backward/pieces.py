@@ -24,12 +24,13 @@ FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
 _PATIENCE, _LATEST_S = 20.0, 60.0
 #: Pictures are enough so much above what is asked for, dB: what is cast is looked at more and more rarely.
 _SPARE_DB, _FIRST_LOOK, _LATER_LOOK = 0.5, 8, 1.15
-#: The solver ends where so many looks found the mean squared difference not so much smaller than it has been.
-_IN_VAIN, _BETTER = 2, 0.99
+#: The solver ends where the mean squared difference was never so much smaller than it has been for so many passes, and
+#: for so large a part of all of them: some turns take long.
+_BETTER, _IN_VAIN, _PART_IN_VAIN = 0.99, 30, 1 / 3
 #: What is kept of a finished piece, beside its figures: voxels ``(channel, z, y, x)``, and its lamps' powers. Those are
 #: in a checkpoint too, beside the solver's own arrays, none of which is called so.
 VOXELS, POWERS = "extinction", "lamp-powers"
-#: In a checkpoint: the least mean squared difference that was seen, and how many looks since then were in vain.
+#: In a checkpoint: the least mean squared difference that was seen, and after how many passes.
 _LOOKS = "looks"
 #: And the history of the phases that are finished.
 _EARLIER = "earlier-history"
@@ -249,7 +250,7 @@ class _Watch:
         self._level, self._most = name.startswith("level"), job.recipe.passes or 0
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
         self._wanted = 10 ** (-(job.recipe.enough_db + _SPARE_DB) / 10)
-        self._least, self._since, self._part, self._expected = np.inf, 0.0, 0.0, np.inf
+        self._least, self._best_at, self._part, self._expected = np.inf, 0.0, 0.0, np.inf
         self._seen = 0, np.inf
         self.reason, self.stopped = "", False
 
@@ -257,7 +258,7 @@ class _Watch:
         """Take up what was known where the solver stopped; return the history of the phases before."""
         if state is None:
             return np.empty(0)
-        self._least, self._since = (float(each) for each in state[_LOOKS])
+        self._least, self._best_at = (float(each) for each in state[_LOOKS])
         return state[_EARLIER]
 
     def begin(self, problem: Problem, number: int, earlier: Reals) -> None:
@@ -290,9 +291,10 @@ class _Watch:
         self._expect(progress, error)
         if 0 < error <= self._wanted:  # an exact 0 is not enough by itself
             self.reason = "enough"
-        self._since = 0 if error < _BETTER * self._least else self._since + 1
+        if error < _BETTER * self._least:
+            self._best_at = progress.iteration
         self._least = min(self._least, error)
-        if self._since > _IN_VAIN and not self.reason:
+        if progress.iteration - self._best_at > max(_IN_VAIN, _PART_IN_VAIN * progress.iteration) and not self.reason:
             self.reason = "best"
 
     def _expect(self, progress: Progress, error: float) -> None:
@@ -314,7 +316,7 @@ class _Watch:
 
     def _keep(self, progress: Progress) -> None:
         began = time.monotonic()
-        kept = {POWERS: progress.lamp_powers, _LOOKS: np.array([self._least, self._since]), _EARLIER: self._earlier}
+        kept = {POWERS: progress.lamp_powers, _LOOKS: np.array([self._least, self._best_at]), _EARLIER: self._earlier}
         self._store.keep(self._name, {**progress.state(), **kept})
         self._last = time.monotonic()
         self._gap = min(max(min(2 * self._gap, CHECKPOINT_S), _PATIENCE * (self._last - began)), _LATEST_S)

@@ -17,7 +17,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 
 #: Of the files that this version writes; it reads no earlier ones, which were never released.
-FORMAT_VERSION = 4
+FORMAT_VERSION = 5
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Strict = ConfigDict(extra="forbid", strict=True)
@@ -28,7 +28,7 @@ class _CubeJson(BaseModel):
 
     model_config = _Strict
 
-    format_version: Literal[4]
+    format_version: Literal[5]
     written_by: str
     extinction_unit: Literal["1/mm"]
     voxel_mm: Annotated[_Number, Field(gt=0)]
@@ -73,7 +73,9 @@ def plain(value: Any) -> Any:
     return value if value is None or isinstance(value, bool | int | str) else str(value)
 
 
-def from_json(path: Path, document: object, extinction: NDArray[np.float32], targets: NDArray[np.uint8] | None) -> Cube:
+def from_json(
+    path: Path, document: object, extinction: NDArray[np.float32], targets: NDArray[np.uint16] | None
+) -> Cube:
     """Build the cube again; `InputError` naming `path` and the key where the document cannot be right."""
     check_version(path, document)
     try:

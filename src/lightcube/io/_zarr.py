@@ -24,7 +24,7 @@ from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 
 Value = TypeVar("Value")
-Parts = tuple[object, NDArray[np.float32], NDArray[np.uint8] | None]
+Parts = tuple[object, NDArray[np.float32], NDArray[np.uint16] | None]
 
 #: A chunk is as many whole slices as fit into this many bytes, at least one.
 _CHUNK_BYTES = 8 << 20
@@ -136,7 +136,7 @@ async def _read(path: Path, store: LocalStore | ZipStore) -> Parts:
         extinction = await _array(path, group, _IMAGE, np.dtype(np.float32))
         if extinction is None:
             raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await _array(path, group, _TARGETS, np.dtype(np.uint8))
+        return document, extinction, await _array(path, group, _TARGETS, np.dtype(np.uint16))
     finally:
         store.close()
 

@@ -18,7 +18,7 @@ Counts: TypeAlias = NDArray[np.intp]
 Integers: TypeAlias = NDArray[np.int64]
 Flags: TypeAlias = NDArray[np.bool_]
 #: Display values from 0 to 255.
-Levels: TypeAlias = NDArray[np.uint8]
+Levels: TypeAlias = NDArray[np.uint16]
 #: Pictures in linear light.
 Images: TypeAlias = NDArray[np.float32]
 #: Extinction of voxels, 1/mm.

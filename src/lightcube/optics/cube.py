@@ -89,9 +89,11 @@ class Cube:
         if self.targets is not None:
             wanted = (pictures, *self.rig.picture_shape, channels + 1)
             given = np.asarray(self.targets)
-            if given.shape != wanted or given.dtype != np.uint8:
-                raise InputError(f"targets must be 8-bit numbers of shape {wanted}, not {given.dtype} of {given.shape}")
-            keep(self, targets=np.uint8)
+            if given.shape != wanted or given.dtype != np.uint16:
+                raise InputError(
+                    f"targets must be 16-bit numbers of shape {wanted}, not {given.dtype} of {given.shape}"
+                )
+            keep(self, targets=np.uint16)
         names = self.names or tuple(str(i + 1) for i in range(pictures))
         if len(names) != pictures:
             raise InputError(f"{pictures} pictures have {len(names)} names: give one name per picture")

@@ -48,9 +48,15 @@ def to_uint8(linear: NDArray[np.floating], transfer: Transfer = "srgb") -> NDArr
     return np.clip(np.rint(encode(linear, transfer) * 255), 0, 255).astype(np.uint8)
 
 
-def from_uint8(levels: NDArray[np.uint8], transfer: Transfer = "srgb") -> NDArray[np.float32]:
-    """8-bit display levels to linear light, float32."""
-    return decode(levels.astype(np.float32) / np.float32(255), transfer).astype(np.float32, copy=False)
+def to_uint16(linear: NDArray[np.floating], transfer: Transfer = "srgb") -> NDArray[np.uint16]:
+    """Linear light to 16-bit display levels, clipped to [0, 65535] and rounded to the nearest level."""
+    return np.clip(np.rint(encode(linear, transfer) * 65535), 0, 65535).astype(np.uint16)
+
+
+def from_levels(levels: NDArray[np.uint8] | NDArray[np.uint16], transfer: Transfer = "srgb") -> NDArray[np.float32]:
+    """8- or 16-bit display levels to linear light, float32."""
+    display = levels.astype(np.float32) / np.float32(np.iinfo(levels.dtype).max)
+    return decode(display, transfer).astype(np.float32, copy=False)
 
 
 #: The darkest that a screen can show, in display values: half a display level.

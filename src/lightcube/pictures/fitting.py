@@ -15,7 +15,7 @@ from lightcube.optics.arrays import Images, Levels, locked
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.rig import Rig
-from lightcube.optics.transfer import from_uint8, to_uint8
+from lightcube.optics.transfer import from_levels, to_uint16
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 
@@ -85,26 +85,26 @@ def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] =
 
 
 def as_levels(targets: Targets) -> Levels:
-    """Targets as 8-bit display levels ``(view, row, column, channel + 1)``, the last channel the weight.
+    """Targets as 16-bit display levels ``(view, row, column, channel + 1)``, the last channel the weight.
 
-    Weights are scaled so that the largest is 255; none that is above 0 becomes 0.
+    Weights are scaled so that the largest is 65535; none that is above 0 becomes 0.
     """
     most = float(targets.weight.max())
-    made = np.empty((*targets.pictures.shape[:3], targets.pictures.shape[3] + 1), np.uint8)
+    made = np.empty((*targets.pictures.shape[:3], targets.pictures.shape[3] + 1), np.uint16)
     for levels, picture, weight in zip(
         made, targets.pictures, targets.weight, strict=True
     ):  # one by one, for the memory
-        levels[..., :-1] = to_uint8(picture, targets.transfer)
-        levels[..., -1] = np.where(weight > 0, np.maximum(np.rint(weight.astype(np.float64) / most * 255), 1), 0)
+        levels[..., :-1] = to_uint16(picture, targets.transfer)
+        levels[..., -1] = np.where(weight > 0, np.maximum(np.rint(weight.astype(np.float64) / most * 65535), 1), 0)
     return made
 
 
 def targets_of(cube: Cube) -> Targets:
-    """Return the targets that `cube` was made for, from its 8-bit targets; `InputError` where it has none."""
+    """Return the targets that `cube` was made for, from its 16-bit targets; `InputError` where it has none."""
     if cube.targets is None:
         raise InputError("this cube was not made from pictures, so it has no targets: give the pictures themselves")
-    pictures = from_uint8(cube.targets[..., :-1], cube.transfer)
-    weights = cube.targets[..., -1].astype(np.float32) / np.float32(255)
+    pictures = from_levels(cube.targets[..., :-1], cube.transfer)
+    weights = cube.targets[..., -1].astype(np.float32) / np.float32(65535)
     return Targets(locked(pictures), cube.rig, locked(weights), cube.names, cube.transfer)
 
 

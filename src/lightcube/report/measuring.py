@@ -114,6 +114,6 @@ def _apart(cube: Cube, targets: Targets) -> int | None:
     if cube.targets is None:
         return None
     return max(
-        int(np.max(np.abs(own.astype(np.int16) - given)))
+        int(np.max(np.abs(own.astype(np.int32) - given)))
         for own, given in zip(cube.targets, as_levels(targets), strict=True)
     )

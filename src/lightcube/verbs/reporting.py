@@ -55,6 +55,6 @@ def _compared(found: Findings, source: str | None) -> str:
         )
     if found.apart == 0:
         return f"Compared with the pictures in {Path(source).name}, which are those that the cube was made from."
-    off = "" if found.apart is None else f": they differ from these by up to {found.apart} levels of 255"
+    off = "" if found.apart is None else f": they differ from these by up to {found.apart / 257:.2g} levels of 255"
     about = "which are not known to be those that it was made from"
     return f"Compared with the pictures in {Path(source).name}, {about}{off}."

@@ -144,9 +144,10 @@ def _wanted(cube: Cube) -> list[str]:
     """The wanted pictures as data URIs, clear where nothing is wanted: exact ones, or where these are large, WebP."""
     images = []
     windows = cube.rig.stops.window
-    for levels, (rows, columns) in zip([] if cube.targets is None else cube.targets, windows, strict=False):
-        picture = levels[:rows, :columns]
-        colours = np.broadcast_to(picture[..., :-1], (*picture.shape[:2], 3))
+    for kept, (rows, columns) in zip([] if cube.targets is None else cube.targets, windows, strict=False):
+        picture = kept[:rows, :columns]
+        levels = np.rint(picture[..., :-1] / 257).astype(np.uint8)
+        colours = np.broadcast_to(levels, (*picture.shape[:2], 3))
         images.append(Image.fromarray(np.dstack([colours, np.where(picture[..., -1:] > 0, 255, 0).astype(np.uint8)])))
     exact: list[str] = []
     for image in images:
