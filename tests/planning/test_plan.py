@@ -77,17 +77,18 @@ def test_where_all_are_good_they_fill_the_cube(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_hold_grows_while_it_costs_less_than_a_decibel(formula: list[float]) -> None:
-    """At 0.8 dB a degree a hold of 1 degree is the longest of those tried; where nothing is good there is the least."""
-    planned = plan(pictures(), 64, longest_hold=True, picture_width=0.4)
-    without = plan(pictures(), 64, picture_width=0.4)
+    """At 0.8 dB a degree a hold of 1 degree is the longest of those tried by thin beams; of areas there is the least."""
+    thin = Recipe(light=Light.thin())
+    planned = plan(pictures(), 64, thin, longest_hold=True, picture_width=0.4)
+    without = plan(pictures(), 64, thin, picture_width=0.4)
     assert planned.recipe.hold_deg == 1.0
     assert planned.prediction.psnr_mean == pytest.approx(without.prediction.psnr_mean - 0.8)
     assert 40 < without.prediction.psnr_mean < 45
-    perfect = plan(pictures(), 64, longest_hold=True, picture_width=0.25)
+    perfect = plan(pictures(), 64, thin, longest_hold=True, picture_width=0.25)
     assert 1 < perfect.recipe.hold_deg <= perfect.targets.rig.widest_hold_deg
     assert perfect.prediction.psnr_mean >= 44
-    assert plan(pictures(), 64, longest_hold=True, picture_width=0.6).recipe.hold_deg == 0.25
-    thin = Recipe(light=Light.thin())
+    for width in (0.25, 0.6):  # where light is averaged, longer ones cost more
+        assert plan(pictures(), 64, longest_hold=True, picture_width=width).recipe.hold_deg == 0.25
     assert plan(pictures(), 64, thin, longest_hold=True, picture_width=0.6).recipe.hold_deg == 0
 
 

@@ -276,8 +276,13 @@ def smallest_gap_deg(angles_deg: Reals, period: float) -> float:
     return float(np.min(np.diff(stops, append=stops[0] + period)))
 
 
+#: Angles of a hold that does not go to its ends are so much of a step apart at most: else the picture falls apart between
+#: them (measured: 34.5 dB at a stop between angles 1.5 steps apart, 40.3 dB at 0.75).
+_APART = 0.9
+
+
 def hold_offsets_deg(hold_deg: float, most: float, step: float, *, to_the_ends: bool = True) -> Reals:
-    """Degrees off its stop at which a picture is asked for, at most `step` apart.
+    """Degrees off its stop at which a picture is asked for, less than `step` apart.
 
     To the ends of the hold, with 0 in the middle; or in the middles of equal parts of it, the outer ones half as wide
     again, which takes fewer.
@@ -295,7 +300,9 @@ def hold_offsets_deg(hold_deg: float, most: float, step: float, *, to_the_ends: 
             f"a hold of {hold_deg:g} degrees is wider than half the way to the next stop: use at most {most:g}"
         )
     if hold_deg > 0 and not to_the_ends:
-        count = max(2, math.ceil(2 * hold_deg / step - 1e-9))
+        count = 2
+        while 2 * hold_deg * (1 - 0.5 / count) > _APART * step * (count - 1):
+            count += 1
         return (1 - 0.5 / count) * np.linspace(-hold_deg, hold_deg, count)
     aside = max(math.ceil(hold_deg / step - 1e-9), int(hold_deg > 0))
     return np.linspace(-hold_deg, hold_deg, 2 * aside + 1)

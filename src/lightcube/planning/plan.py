@@ -146,9 +146,9 @@ def plan(
     fit
         What happens to pictures of another aspect, as `lightcube.fit` takes it.
     longest_hold
-        Hold pictures as long as is predicted to cost less than 1 dB (of what lies below 45 dB), at most half the way
-        to the next stop, instead of as long as the recipe says. Where light is averaged over areas, over at least a
-        quarter of a degree for 64 voxels across: turned by less than one can turn by hand, a picture stands.
+        Hold pictures over a quarter of a degree for 64 voxels across, instead of as long as the recipe says: turned by
+        less than one can turn by hand, a picture stands. By thin beams as long as is predicted to cost less than 1 dB
+        (of what lies below 45 dB), at most half the way to the next stop.
     smooth
         Let the points of pixels weigh 0.01 beside their means where 38 dB are expected: from near by pictures are the
         calmer, at hardly any cost.
@@ -298,8 +298,11 @@ def least_hold_deg(rig: Rig, grid: Grid, recipe: Recipe) -> float:
 
 
 def held_longest(without: Plan, small: Rehearsals) -> Plan:
-    """Find the longest hold that costs less than 1 dB of what is predicted for the plan `without`."""
-    if without.prediction.psnr_mean < PLANNED_DB:  # pictures that drown in each other are held at no cost
+    """Find the longest hold by thin beams that costs less than 1 dB of what is predicted for the plan `without`.
+
+    Pictures that drown in each other are held at no cost; where light is averaged more than the least costs more.
+    """
+    if without.prediction.psnr_mean < PLANNED_DB or not without.recipe.beams.is_thin:
         return without
     step, most = dense_step_deg(without.grid), without.targets.rig.widest_hold_deg
     enough = min(without.prediction.psnr_mean, BEST_SEEN_DB) - HOLD_COSTS_DB

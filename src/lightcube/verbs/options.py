@@ -76,7 +76,7 @@ class Options:
     ] = None
     hold_deg: Annotated[
         float | None,
-        Option("Degrees around its stop over which each picture shall stand; default what costs below 1 dB."),
+        Option("Degrees around its stop over which each picture shall stand.  [default: 16 / voxels across]"),
     ] = None
     black: Annotated[float | None, Option("Display value, 0.002 to 1, that the screen cannot be darker than.")] = None
     max_extinction: Annotated[
