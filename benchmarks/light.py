@@ -10,7 +10,10 @@ must        sixteen to sixty-four pictures of many shapes, quality best
 hold        pictures that stand over a range of angles, the least PSNR within it
 mat         pictures in a dark mat, and held
 points      points of a pixel, lattices and square grids, and the judge against 32 x 32 beams
+grain       how much points weigh beside a pixel's mean: pictures alone, and with mats and held
+scenes      traced scenes: the juggler under a raised lamp, gems under a level one
 default     sixteen pictures with all defaults, n = 64 and 128
+large       the same, n = 300
 
 Rows that are in FOLDER (out/light) are not measured again. Seconds are those of the solve alone, with kernels warm.
 """
@@ -182,17 +185,46 @@ def judge(which: str) -> Row:
     return {"psnr_mean": float(found[0].mean()), "psnr_min": float(found[0].min()), "off_db": float(off.max())}
 
 
+def grain(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """Weights of points beside means."""
+    for weight in (0.0, 0.003, 0.01, 0.03, 0.1, 0.3):
+        light = lc.Light(13, 7, weight)
+        asked = which, 16, 32, 32, 35
+        yield f"{weight:g}, alone", partial(solved, asked, 16.0, lc.Recipe(passes=120, light=light))
+        held = lc.Recipe(passes=120, light=light, mat=lc.Mat(), hold_deg=0.25)
+        yield f"{weight:g}, in a mat and held", partial(solved, asked, 16.0, held)
+
+
+def scenes(_: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """Pictures that belong together, and pictures that do not."""
+    yield "juggler, 32 of 48 x 48, 35", partial(traced, "juggler", 32, (48, 48), 35.0)
+    yield "gems, 64 of 64 x 64, level", partial(traced, "gems", 64, (64, 64), 0.0)
+
+
+def traced(name: str, count: int, shape: tuple[int, int], elevation_deg: float) -> Row:
+    """Figures of a cube for a scene's pictures."""
+    grid = lc.Grid((64, 64, 64), 100 / 64)
+    angles_deg = lc.spread_angles(count, elevation_deg=elevation_deg)
+    rig = lc.turntable(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=shape)
+    return measured(lc.scene_targets(lc.read_scene(name), rig, grid), grid, BEST)[0]
+
+
 def default(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
     """All defaults."""
     for n in (64, 128):
         yield f"n = {n}", partial(planned, which, n)
 
 
+def large(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """All defaults, of as many voxels as the paper's cube of an animation."""
+    yield "n = 300", partial(planned, which, 300)
+
+
 def planned(which: str, n: int) -> Row:
     """Sixteen square pictures as `solve` plans them."""
     began = time.perf_counter()
     recipe = lc.Recipe.of_quality("normal", mat=lc.Mat())
-    made = plan(pictures(which, 16, 1.0), n, recipe, longest_hold=True)
+    made = plan(pictures(which, 16, 1.0), n, recipe, longest_hold=True, smooth=True)
     planning = time.perf_counter() - began
     row, _ = measured(made.targets, made.grid, made.recipe)
     width = made.targets.rig.picture_shape[1] / n
@@ -200,7 +232,16 @@ def planned(which: str, n: int) -> Row:
     return {"width": width, "hold_deg": made.recipe.hold_deg, "planning": planning, **told, **row}
 
 
-TABLES = {"must": must, "hold": hold, "mat": mat, "points": points, "default": default}
+TABLES = {
+    "must": must,
+    "hold": hold,
+    "mat": mat,
+    "points": points,
+    "grain": grain,
+    "scenes": scenes,
+    "default": default,
+    "large": large,
+}
 
 
 def main() -> None:

@@ -33,6 +33,7 @@ def main() -> None:
     recipes = {
         "thin": lc.Recipe(passes=100, light=lc.Light.thin()),
         "area": lc.Recipe(passes=100),
+        "smooth": lc.Recipe(passes=100, light=lc.Light(grain=0.03)),
         "mat": lc.Recipe(passes=100, mat=lc.Mat()),
         "grey": lc.Recipe(passes=100, mat=lc.Mat(0.25)),
     }
@@ -42,7 +43,7 @@ def main() -> None:
     rows += [[shown(cubes[name], p, light) for p in few] for name, light in (("thin", "thin"), ("thin", "area"))]
     rows += [[shown(cubes["area"], p, "area") for p in few]]
     save(folder / "light-area.png", [[larger(each, SCALE) for each in row] for row in rows])
-    fine = [[closely(cubes[name], p) for p in few] for name in ("thin", "area")]
+    fine = [[closely(cubes[name], p) for p in few] for name in ("thin", "area", "smooth")]
     save(folder / "light-grain.png", [[larger(each, SCALE // PARTS) for each in row] for row in fine])
     mats = [[larger(surrounded(cubes[name], p), 4) for p in few] for name in ("area", "mat", "grey")]
     save(folder / "light-mat.png", mats)

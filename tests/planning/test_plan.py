@@ -77,7 +77,7 @@ def test_where_all_are_good_they_fill_the_cube(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_hold_grows_while_it_costs_less_than_a_decibel(formula: list[float]) -> None:
-    """At 0.8 dB a degree a hold of 1 degree is the longest of those tried by thin beams; of areas there is the least."""
+    """At 0.8 dB a degree a hold of 1 degree is the longest of those tried by thin beams; areas have the least."""
     thin = Recipe(light=Light.thin())
     planned = plan(pictures(), 64, thin, longest_hold=True, picture_width=0.4)
     without = plan(pictures(), 64, thin, picture_width=0.4)

@@ -276,7 +276,7 @@ def smallest_gap_deg(angles_deg: Reals, period: float) -> float:
     return float(np.min(np.diff(stops, append=stops[0] + period)))
 
 
-#: Angles of a hold that does not go to its ends are so much of a step apart at most: else the picture falls apart between
+#: Angles of a hold that does not go to its ends are so much of a step apart at most: else pictures fall apart between
 #: them (measured: 34.5 dB at a stop between angles 1.5 steps apart, 40.3 dB at 0.75).
 _APART = 0.9
 
