@@ -42,7 +42,7 @@ class Mat:
     """
 
     tone: float = TONES["dark"]
-    weight: float = 0.03
+    weight: float = 0.05
     width: float = 0.375
 
     def __post_init__(self) -> None:
