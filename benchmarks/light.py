@@ -11,6 +11,7 @@ hold        pictures that stand over a range of angles, the least PSNR within it
 mat         pictures in a dark mat, and held
 points      points of a pixel, lattices and square grids, and the judge against 32 x 32 beams
 default     sixteen pictures with all defaults, n = 64 and 128
+play        how far whole screens, and parts of pixels, are off means of very many beams
 
 Rows that are in FOLDER (out/light) are not measured again. Seconds are those of the solve alone, with kernels warm.
 """
@@ -200,7 +201,40 @@ def planned(which: str, n: int) -> Row:
     return {"width": width, "hold_deg": made.recipe.hold_deg, "planning": planning, **told, **row}
 
 
-TABLES = {"must": must, "hold": hold, "mat": mat, "points": points, "default": default}
+def play(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """What `play` shows, of pixels and of parts of them."""
+    yield "32 x 32, 35", partial(seen, which, 32, 35.0)
+    yield "32 x 64, level", partial(seen, which, 64, 0.0)
+
+
+def seen(which: str, rows: int, elevation_deg: float) -> Row:
+    """Root of the mean square of what display values are off, 1, 2, 4 and 8 parts a side, in pictures and around."""
+    targets, grid = cube_for(which, 16, 32, rows, elevation_deg)
+    cube = lc.solve(targets, grid, lc.Recipe(passes=100, mat=lc.Mat())).cube
+    angles_deg = cube.angles_deg[[0, 5, 10]]
+    finest = np.stack([halves(lc.play(cube, [each], zoom=16)[0]) for each in angles_deg])
+    row = {}
+    for zoom in (8, 4, 2, 1):
+        shown = lc.play(cube, angles_deg, zoom=zoom)
+        own = zoom * np.array(targets.rig.picture_shape)
+        (top, left), (high, wide) = (np.array(shown.shape[1:3]) - own) // 2, own
+        inside = np.zeros(shown.shape[:3], bool)
+        inside[:, top : top + high, left : left + wide] = True
+        shadow = np.any(finest < 1, axis=-1)
+        squares = np.diff(np.clip(encode(np.stack([shown, finest])), 0, 1), axis=0)[0] ** 2
+        for name, chosen in (("pictures", inside), ("around", shadow & ~inside)):
+            row[f"{name} in {zoom} x {zoom}"] = float(np.sqrt(np.mean(squares[chosen])))
+        finest = np.stack([halves(each) for each in finest])
+    return row
+
+
+def halves(picture: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The means of two by two pixels."""
+    rows, columns, channels = picture.shape
+    return picture.reshape(rows // 2, 2, columns // 2, 2, channels).mean(axis=(1, 3))
+
+
+TABLES = {"must": must, "hold": hold, "mat": mat, "points": points, "default": default, "play": play}
 
 
 def main() -> None:

@@ -220,7 +220,9 @@ def over_the_hold(cube: lc.Cube, targets: lc.Targets, degrees: float) -> Row:
         [
             [
                 psnr(encode(shown, targets.transfer), *pair)
-                for shown, *pair in zip(lc.play(cube, cube.angles_deg + offset), wanted, targets.weight, strict=True)
+                for shown, *pair in zip(
+                    lc.play(cube, cube.angles_deg + offset, picture_only=True), wanted, targets.weight, strict=True
+                )
             ]
             for offset in np.append(np.arange(-degrees, degrees - 1e-9, 0.1), degrees)
         ]

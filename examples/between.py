@@ -70,7 +70,7 @@ def over_the_turn(found: Curve) -> str:
 
 def strip(cube: lc.Cube, spacing: float) -> np.ndarray:
     """What is seen from the first stop to the next, side by side, 8-bit, each picture 32 pixels wide."""
-    shown = lc.play(cube, cube.angles_deg[0] + spacing * np.array(PARTS))
+    shown = lc.play(cube, cube.angles_deg[0] + spacing * np.array(PARTS), picture_only=True)
     every = shown.shape[2] // 32
     padded = np.pad(shown[:, ::every, ::every], [(0, 0), (0, 2), (0, 2), (0, 0)], constant_values=1)
     return to_uint8(np.concatenate(list(padded), axis=1))

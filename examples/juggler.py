@@ -20,7 +20,7 @@ def main(out: str) -> None:
     targets = lc.scene_targets(lc.read_scene("juggler"), views, grid)
     cube = lc.solve(targets, grid).cube
     chosen = list(STOPS)
-    shadows = lc.play(cube, angles_deg[chosen], whole_shadow=True)
+    shadows = lc.play(cube, angles_deg[chosen])
     lower = np.concatenate(list(shadows), axis=1)
     rows, columns = shadows.shape[1:3]
     wanted = np.ones((5, 48, columns, 3), np.float32)

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import lightcube as lc
-from lightcube.backward.mat import widened
 from lightcube.backward.pieces import Step
 from lightcube.optics.transfer import encode, to_uint8
 from lightcube.pictures import samples
@@ -44,7 +43,8 @@ def main() -> None:
     save(folder / "light-area.png", [[larger(each, SCALE) for each in row] for row in rows])
     fine = [[closely(cubes[name], p) for p in few] for name in ("thin", "area")]
     save(folder / "light-grain.png", [[larger(each, SCALE // PARTS) for each in row] for row in fine])
-    mats = [[larger(surrounded(cubes[name], p), 4) for p in few] for name in ("area", "mat", "grey")]
+    screens = [lc.play(cubes[name], angles_deg[few]) for name in ("area", "mat", "grey")]
+    mats = [[larger(np.minimum(encode(each), 1), 2) for each in screen] for screen in screens]
     save(folder / "light-mat.png", mats)
     save(folder / "light-db.png", [[larger(each, SCALE) for each in ladder(grid)]])
 
@@ -57,14 +57,7 @@ def shown(cube: lc.Cube, picture: int, light: str) -> NDArray[np.floating]:
 
 def closely(cube: lc.Cube, picture: int) -> NDArray[np.floating]:
     """A picture of a cube, each pixel in many parts."""
-    rig = cube.rig.take([picture]).with_pixels(1 / PARTS, (PIXELS * PARTS, PIXELS * PARTS))
-    return encode(next(lc.cast(cube, rig, cube.powers[[picture]])))
-
-
-def surrounded(cube: lc.Cube, picture: int) -> NDArray[np.floating]:
-    """A picture of a cube and what is around it."""
-    rig = widened(cube.rig, cube.grid, lc.Mat()).take([picture])
-    return encode(next(lc.cast(cube, rig, cube.powers[[picture]])))
+    return encode(next(lc.cast(cube, cube.rig.take([picture]), cube.powers[[picture]], zoom=PARTS)))
 
 
 def ladder(grid: lc.Grid) -> list[NDArray[np.floating]]:

@@ -127,7 +127,7 @@ def test_the_callback_is_shown_the_screen_and_can_stop() -> None:
     assert len(seen) == 3
     assert solution.cube.status == "interrupted"
     assert solution.stop_reason == "callback"
-    assert np.allclose(seen[-1], casting.play(solution.cube), rtol=1e-4, atol=1e-5)
+    assert np.allclose(seen[-1], casting.play(solution.cube, picture_only=True), rtol=1e-4, atol=1e-5)
 
 
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])

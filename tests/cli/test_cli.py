@@ -15,7 +15,6 @@ from PIL import Image
 
 from lightcube import load
 from lightcube.cli import demo, main
-from lightcube.forward.casting import play
 from lightcube.io import save
 from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
@@ -86,7 +85,7 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
     played = run("play", tmp_path / "ball.zarr", "-o", tmp_path / "ball.gif", "--count", 5, "--scale", 4)
     assert played.code == 0
     with Image.open(tmp_path / "ball.gif") as movie:
-        assert movie.size == (24, 24)
+        assert movie.size == (40, 24)  # the whole screen
     scored = run("score", tmp_path / "ball.zarr", tmp_path / "ball", "--json", "--sheet", tmp_path / "sheet.png")
     scores = json.loads(scored.out)
     area = ["psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "pictures"]
@@ -123,29 +122,6 @@ def test_gauss_seidel_says_what_it_threw_out(run, pictures: Path, tmp_path: Path
     done = run("solve", pictures, "-o", tmp_path / "a.npz", "--n", 6, *literal)
     assert done.code == 0
     assert "thrown out" in done.out
-
-
-@pytest.mark.parametrize("suffix", ["", ".npy", ".webp"])
-def test_play_writes_by_suffix(run, cube: Path, tmp_path: Path, suffix: str) -> None:  # type: ignore[no-untyped-def]
-    target = tmp_path / f"shadows{suffix}"
-    assert run("play", cube, "-o", target, "--angles-deg", "0,12.5,90").code == 0
-    assert target.exists()
-    if suffix == ".npy":
-        shown = np.load(target)
-        assert shown.shape == (3, 4, 5, 3)
-        assert np.allclose(shown, play(load(cube), [0, 12.5, 90]))
-
-
-def test_play_shows_stops_targets_and_the_whole_screen(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    solved = tmp_path / "a.npz"
-    run("solve", pictures, "-o", solved, "--n", 6, "--iterations", 2, "--paper")
-    run("play", solved, "-o", tmp_path / "stops.npy", "--stops")
-    assert np.array_equal(np.load(tmp_path / "stops.npy"), play(load(solved)))
-    run("play", solved, "-o", tmp_path / "beside.npy", "--stops", "--target")
-    assert np.load(tmp_path / "beside.npy").shape == (4, 6, 14, 3)
-    run("play", solved, "-o", tmp_path / "whole.npy", "--stops", "--whole-shadow")
-    assert np.load(tmp_path / "whole.npy").shape == (4, 6, 10, 3)
-    assert run("play", solved, "-o", tmp_path / "no.npy", "--target", "--whole-shadow").code == 2
 
 
 def pressed(*_: object) -> float:
@@ -280,6 +256,12 @@ BAD = [
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--count", "0"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--from-deg", "inf"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--scale", "0"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--zoom", "0"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--zoom", "17"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--zoom", "1.5"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--room", "--zoom", "2"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--room", "--zoom", "0"),
+    ("play", "{cube}", "-o", "{tmp}/a.gif", "--room", "--picture-only"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--fps", "0"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--target"),
     ("score", "{cube}"),

@@ -10,10 +10,10 @@ from PIL import Image
 from lightcube import load, score
 from lightcube.backward.recipe import QUALITIES
 from lightcube.errors import InputError
-from lightcube.forward.casting import play
 from lightcube.verbs.options import Options
 from tests.cli.test_cli import pictures, run
 from tests.conftest import INTERPRETED
+from tests.helpers.wall import play
 
 __all__ = ["pictures", "run"]
 
@@ -212,7 +212,7 @@ def test_a_lamp_with_a_size_is_solved_played_scored_and_minded(run, unlike: Path
     assert np.all(rig.behind_mm > 150)
     scores = json.loads(run("score", solved, "--robust", "--json").out)
     assert "disc" not in scores["robust"]
-    assert run("play", solved, "-o", tmp_path / "a.npy", "--whole-shadow").code == 0
+    assert run("play", solved, "-o", tmp_path / "a.npy").code == 0
     thin = run("check", unlike, *small[:4], *small[6:], "--light", "thin")
     assert "thin beams do not mind the size of lamp 'lamp'" in thin.out
 

@@ -8,7 +8,6 @@ import pytest
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
@@ -22,6 +21,7 @@ from lightcube.scoring.metrics import score
 pytest.importorskip("matplotlib", reason="matplotlib is not installed")
 
 from lightcube.drawing.plots import capacity_plot, geometry_plot, sheet_plot
+from tests.helpers.wall import play
 
 SHAPE, MM = (3, 5, 7), 2.0
 GRID = Grid(SHAPE, MM)

@@ -11,11 +11,11 @@ from lightcube.drawing.camera import Camera, fitting
 from lightcube.drawing.room import camera_for, room_picture, room_player
 from lightcube.drawing.standing import extent, standing
 from lightcube.errors import InputError
-from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
+from tests.helpers.wall import play
 
 Array = NDArray[np.floating[Any]]
 GRID = Grid((3, 5, 4), 4.0)

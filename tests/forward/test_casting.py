@@ -58,16 +58,16 @@ def test_many_views_come_in_order_and_one_by_one() -> None:
 
 
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
-@pytest.mark.parametrize("whole_shadow", [False, True])
-def test_a_player_shows_what_play_does_however_often_it_is_asked(elevation_deg: float, whole_shadow: bool) -> None:
+@pytest.mark.parametrize("picture_only", [False, True])
+def test_a_player_shows_what_play_does_however_often_it_is_asked(elevation_deg: float, picture_only: bool) -> None:
     powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
     cube = make_cube([10.0, 100.0], elevation_deg, powers)
-    show = player(cube, whole_shadow=whole_shadow)
+    show = player(cube, picture_only=picture_only)
     angles_deg = [3.0, 100.0, -77.7]
-    expected = play(cube, angles_deg, whole_shadow=whole_shadow)
+    expected = play(cube, angles_deg, picture_only=picture_only)
     assert np.array_equal(show(angles_deg), expected)
     assert np.array_equal(np.concatenate([show(angle_deg) for angle_deg in angles_deg]), expected)
-    assert np.array_equal(show(None), play(cube, whole_shadow=whole_shadow))
+    assert np.array_equal(show(None), play(cube, picture_only=picture_only))
 
 
 def test_a_player_refuses_what_are_no_angles() -> None:
@@ -95,7 +95,7 @@ def test_strips_of_beams_and_batches_leave_no_seam(elevation_deg: float, window:
 
 def test_beams_that_miss_the_cube_show_the_lamp() -> None:
     cube = make_cube([10.0], powers=np.array([[3.0, 2.0, 1.0]]))
-    whole = play(cube, [0.0], whole_shadow=True)
+    whole = play(cube, [0.0], picture_only=False)
     assert np.allclose(whole[0, :, 0], [3.0, 2.0, 1.0])
     window = play(cube, [0.0])
     assert np.allclose(whole[0][:, 2:-2], window[0], rtol=1e-6)
@@ -103,7 +103,7 @@ def test_beams_that_miss_the_cube_show_the_lamp() -> None:
 
 def test_the_whole_screen_at_the_stops_has_the_pictures_in_its_middle() -> None:
     cube = make_cube([10.0, 77.0], 35.0)
-    whole, window = play(cube, whole_shadow=True), play(cube)
+    whole, window = play(cube, picture_only=False), play(cube)
     top, left = ((big - small) // 2 for big, small in zip(whole.shape[1:3], window.shape[1:3], strict=True))
     rows, columns = window.shape[1:3]
     assert np.allclose(whole[:, top : top + rows, left : left + columns], window, rtol=1e-6)
@@ -189,7 +189,7 @@ def test_a_turn_meets_every_stop_and_stays_even_elsewhere(elevation_deg: float, 
 def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
     powers = np.array([[1.0, 2.0, 0.5], [4.0, 1.0, 1.0]])
     cube = make_cube([10.0, 100.0], 35.0, powers, names=("a", "b"))
-    shown = casting.play(cube)
+    shown = casting.play(cube, picture_only=True)
     random = np.random.default_rng(3)
     targets = Targets(
         np.clip(shown * random.uniform(0.8, 1.1, shown.shape), 0, None).astype(np.float32),
@@ -213,7 +213,7 @@ def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
 
 def test_the_score_without_targets_is_against_the_8_bit_ones() -> None:
     cube = make_cube([10.0, 100.0])
-    targets = Targets(np.clip(casting.play(cube), 0, 1), cube.rig)
+    targets = Targets(np.clip(casting.play(cube, picture_only=True), 0, 1), cube.rig)
     with_targets = Cube(cube.extinction, cube.grid, cube.rig, targets=as_levels(targets))
     assert 55 < score(with_targets)["psnr_mean"] < 65
     with pytest.raises(InputError, match="no targets"):
@@ -257,6 +257,9 @@ def test_the_nearest_stop_stands_beside() -> None:
     beside = np.stack(list(beside_targets(shown, targets, np.array([1.0, 359.0, 181.0]))))
     assert beside.shape == (3, 3, 12, 3)
     assert [float(p[0, -1, 0]) for p in beside] == [0.25, 0.75, 0.75]
+    higher = next(iter(beside_targets(np.full((1, 16, 9, 3), 9, np.float32), targets, np.array([1.0]), zoom=2)))
+    assert higher.shape == (16, 9 + 2 + 10, 3)
+    assert [float(row) for row in higher[:, -1, 0]] == 5 * [0.0] + 6 * [0.25] + 5 * [0.0]
 
 
 def test_cast_is_lazy() -> None:
@@ -275,7 +278,7 @@ def test_a_picture_that_stands_aside_is_shown_there(elevation_deg: float) -> Non
     extinction = np.random.default_rng(5).random((3, 5, 8, 6)).astype(np.float32)
     cube = Cube(extinction, grid, moved)
     assert np.allclose(play(cube), play(cube, [20.0, 110.0]), atol=1e-6)
-    whole = play(cube, [20.3], whole_shadow=True)[0]
+    whole = play(cube, [20.3], picture_only=False)[0]
     rows, columns = whole.shape[0] // 2, whole.shape[1] // 2
     window = whole[rows - 1 - 1 : rows + 2 - 1, columns - 1 + 1 : columns + 1 + 1]
     assert np.allclose(play(cube, [20.3])[0], window, atol=1e-6)

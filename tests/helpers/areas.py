@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.forward.turning import moment
+from lightcube.forward.turning import powers_of
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import seeds
 from lightcube.optics.rig import Rig
@@ -50,11 +50,11 @@ def averaged(
 
 def _moved(cube: Cube, angles_deg: Sequence[float], across: float, down: float, whole: bool) -> NDArray[Any]:
     """Thin beams beside the pixels' middles."""
-    rig, powers = moment(cube, angles_deg, whole_shadow=whole)
+    rig, _ = (cube.rig.whole(cube.grid) if whole else cube.rig).at(angles_deg)
     views = rig.views
     origins_mm = views.origins_mm + across * views.column_steps_mm + down * views.row_steps_mm
     moved = replace(rig, views=replace(views, origins_mm=origins_mm))
-    return np.stack(list(cast(cube, moved, powers))).astype(np.float64)
+    return np.stack(list(cast(cube, moved, powers_of(cube, rig)))).astype(np.float64)
 
 
 def divided(rig: Rig, *, lamp: int = 1, pixel: int = 1) -> Rig:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lightcube import load, play, save
+from lightcube import load, save
 from lightcube.backward.job import Job, differences, fingerprint
 from lightcube.backward.pieces import solve_piece
 from lightcube.backward.solution import merged
@@ -25,6 +25,7 @@ from lightcube.pictures.targets import Targets
 from tests.backward.test_job import same
 from tests.helpers.areas import divided
 from tests.helpers.recipes import asked
+from tests.helpers.wall import play
 from tests.io.test_cubes import SUFFIXES, change, partial_path, put
 from tests.io.test_cubes import assert_same as assert_same_field
 from tests.optics.test_rig import GRID, ROOM, extinction, made, powers_of

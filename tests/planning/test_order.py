@@ -240,7 +240,7 @@ def test_a_moved_window_shows_that_part_of_the_whole_screen() -> None:
     cube = Cube(np.random.default_rng(3).random((3, *GRID.shape)).astype(np.float32), GRID, targets.rig)
     offsets = np.array([[1, 2], [-1, 0], [0, -2], [2, 1]])
     shown = play(replace(cube, rig=targets.rig.shifted(offsets)))
-    whole = play(cube, whole_shadow=True, angles_deg=targets.rig.views.angles_deg)
+    whole = play(cube, picture_only=False, angles_deg=targets.rig.views.angles_deg)
     for picture, screen, (right, down) in zip(shown, whole, offsets, strict=True):
         top, side = (screen.shape[0] - 3) // 2 + down, (screen.shape[1] - 5) // 2 + right
         np.testing.assert_allclose(picture, screen[top : top + 3, side : side + 5], rtol=1e-5)

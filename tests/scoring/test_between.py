@@ -16,7 +16,7 @@ from PIL import Image
 from lightcube import io
 from lightcube.drawing import plots
 from lightcube.errors import InputError
-from lightcube.forward.casting import cast, play
+from lightcube.forward.casting import cast
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
@@ -30,6 +30,7 @@ from lightcube.scoring.between import curve
 from lightcube.scoring.metrics import psnr, score, ssim
 from lightcube.scoring.robust import disturbances, disturbed, robust
 from tests.cli.test_cli import run
+from tests.helpers.wall import play
 
 SHAPE = (3, 5, 7)
 __all__ = ["run"]

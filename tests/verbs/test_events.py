@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from lightcube.events import Interrupted, Progress, Said, Tell
-from lightcube.forward.casting import play
 from lightcube.io import read_scene, save
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
@@ -18,6 +17,7 @@ from lightcube.pictures.targets import Targets
 from lightcube.scoring import metrics
 from lightcube.verbs import reporting, scoring, tracing, viewing
 from lightcube.viewer import smaller
+from tests.helpers.wall import play
 
 
 @pytest.fixture

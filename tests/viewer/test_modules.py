@@ -13,7 +13,7 @@ from hatchling.builders.wheel import WheelBuilder
 
 import lightcube
 from lightcube.drawing.standing import drawn, standing
-from lightcube.forward.turning import moment
+from lightcube.forward.turning import moment, powers_of
 from lightcube.optics.light import JUDGE_DISC, discs_sampled
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import decode, encode
@@ -304,7 +304,7 @@ def test_a_whole_shadow_has_its_middle_in_the_middle(evaluate: Evaluate, name: s
       return { exposure, room: standing(scene, angle, true), picture: castPicture(cube, exposure, [[0, 0]]) };
     })"""
     found = asked(evaluate, data, expression, angles_deg=ANGLES)
-    rig = moment(cube, ANGLES, whole_shadow=True)[0]
+    rig, _ = cube.rig.whole(cube.grid).at(ANGLES)
     wanted = averaged(packed.cube, ANGLES, THIN, whole=True)
     for i, each in enumerate(found):
         exposure, room = each["exposure"], each["room"]
@@ -326,7 +326,8 @@ def test_a_lamp_with_a_size_blurs_the_whole_shadow_on_its_own_screen(evaluate: E
     expression = """argument.angles_deg.map((angle) =>
       castPicture(cube, exposures(scene, angle, true)[0], [[0, 0]]))"""
     found = asked(evaluate, data, expression, angles_deg=ANGLES)
-    now, powers = moment(packed.cube, ANGLES, whole_shadow=True)
+    now, _ = packed.cube.rig.whole(packed.cube.grid).at(ANGLES)
+    powers = powers_of(packed.cube, now)
     for each, picture in zip(found, cast(packed.cube, discs_sampled(now), powers), strict=True):
         nearly(np.reshape(each, picture.shape), picture, 2e-6)
 

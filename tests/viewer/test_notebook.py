@@ -22,7 +22,6 @@ from PIL import Image
 import lightcube as lc
 from lightcube.drawing.strip import thumbnails
 from lightcube.errors import InputError
-from lightcube.forward.casting import play
 from lightcube.optics import showing
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
@@ -34,6 +33,7 @@ from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.modules import joined, source
 from lightcube.viewer.packing import pack
 from tests.conftest import INTERPRETED
+from tests.helpers.wall import play
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples" / "light-cube.ipynb"

@@ -11,7 +11,6 @@ import pytest
 from lightcube import io
 from lightcube.backward import solving
 from lightcube.backward.recipe import Recipe
-from lightcube.forward.casting import play
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
@@ -27,6 +26,7 @@ from lightcube.viewer.smaller import shown_coarsely, smaller
 from tests.backward.test_stages import known, stage
 from tests.cli.test_cli import run
 from tests.helpers.recipes import asked
+from tests.helpers.wall import play
 
 __all__ = ["run"]
 

@@ -13,7 +13,7 @@ from lightcube.cli.console import done, err, progress
 from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, threaded
 from lightcube.errors import InputError
 from lightcube.jobs.reading import load
-from lightcube.optics.light import Beams
+from lightcube.optics.light import Beams, check_zoom
 from lightcube.verbs import playing, words
 
 
@@ -28,20 +28,24 @@ def play(
     ] = None,
     count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120 or more]")] = None,
     stops: Annotated[bool, typer.Option("--stops", help="Play just the pictures that the cube was made for.")] = False,
+    zoom: Annotated[
+        int, typer.Option(help="Show each pixel in K x K parts, each the mean of its own light: finer, 1 to 16.")
+    ] = 1,
     scale: Annotated[
-        int | None, typer.Option(help="Enlarge each pixel to a square of so many.  [default: movies about 256 high]")
+        int | None,
+        typer.Option(help="Repeat each pixel (or part of one), a square of so many.  [default: movies about 256 high]"),
     ] = None,
     target: Annotated[
         bool, typer.Option("--target", help="Put the wanted picture of the nearest stop to the right.")
     ] = False,
-    whole_shadow: Annotated[
-        bool, typer.Option("--whole-shadow", help="Show the whole shadow, not the picture's window.")
+    picture_only: Annotated[
+        bool, typer.Option("--picture-only", help="Show the picture's window alone, not what stands around it.")
     ] = False,
     screens: Annotated[
         bool, typer.Option("--screens", help="Show all screens of a stage side by side; with --stops each stop once.")
     ] = False,
     room: Annotated[
-        bool, typer.Option("--room", help="Show the room in perspective: cube, lamps, and screens with their shadows.")
+        bool, typer.Option("--room", help="Show the room in perspective: cube, lamps, and screens with their pictures.")
     ] = False,
     light: Annotated[
         Beams, typer.Option(help="What a wall shows, averaged over pixels, or the paper's thin beams.")
@@ -50,28 +54,28 @@ def play(
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix."""
+    """Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.
+
+    Shows the whole screen: the picture, its mat, and what stands around it. A screen with edges is its picture.
+    """
     movie = io.Output(output, "pictures", overwrite)
     movie.check()
-    if target and whole_shadow:
-        raise InputError("--target shows the picture's window: leave out --whole-shadow")
-    if room and (target or whole_shadow or screens):
-        raise InputError("--room shows all there is: leave out --screens, --target and --whole-shadow")
+    look = playing.Look(picture_only, check_zoom(zoom), light)
+    if room and (target or picture_only or screens or zoom > 1):
+        raise InputError("--room shows all there is: leave out --screens, --target, --picture-only and --zoom")
     loaded = load(cube)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
         raise InputError(f"{cube} has several screens: leave out --target, and see score --sheet")
-    if whole_shadow and not np.all(loaded.rig.screens.endless):
-        raise InputError(f"the screens of {cube} have edges and are shown whole: leave out --whole-shadow")
     turned = arguments.play_angles(loaded, angles_deg, start_deg, end_deg, count, stops=stops)
     if room:
         show = playing.of_room(loaded, np.unique(turned) if stops else turned)
     elif screens or (many and not stops):
-        show = playing.of_screens(loaded, np.unique(turned) if stops else turned, light=light)
+        show = playing.of_screens(loaded, np.unique(turned) if stops else turned, look)
     elif stops:
-        show = playing.of_stops(loaded, target=target, whole_shadow=whole_shadow, light=light)
+        show = playing.of_stops(loaded, look, target=target)
     else:
-        show = playing.of_turn(loaded, turned, target=target, whole_shadow=whole_shadow, light=light)
+        show = playing.of_turn(loaded, turned, look, target=target)
     for sentence in words.unsampled(loaded.rig, light):
         if not as_json:
             err.print(sentence)

@@ -90,7 +90,7 @@ def sheet_plot(cube: Cube, targets: Targets | None = None) -> "Figure":
     """
     wanted = targets_of(cube) if targets is None else targets
     check_same_views(cube, wanted)
-    shown = play(cube)
+    shown = play(cube, picture_only=True)
     scores = score_pictures(shown, wanted)["pictures"]
     count = len(wanted)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))

@@ -51,7 +51,7 @@ def room_player(cube: Cube, camera: Camera) -> Callable[[float], NDArray[np.floa
 
     What does not turn is drawn once, and the cube is laid out for casting once.
     """
-    cast = player(cube)
+    cast = player(cube, picture_only=True)
     glass = columns_from_volume(cube.extinction)
     low = min(float(extent(cube.grid, standing(cube, angle_deg))[:, 2].min()) for angle_deg in _AROUND)
     empty = Canvas(camera)

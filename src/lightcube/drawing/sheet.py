@@ -68,18 +68,30 @@ def triple(shown: NDArray[np.float32], targets: Targets, view: int) -> list[NDAr
 
 
 def beside_targets(
-    shown: Iterable[NDArray[np.float32]], targets: Targets, angles_deg: NDArray[np.float64]
+    shown: Iterable[NDArray[np.float32]], targets: Targets, angles_deg: NDArray[np.float64], zoom: int = 1
 ) -> Iterator[NDArray[np.float32]]:
-    """Yield each picture with the wanted one of the nearest stop to its right, ``(row, 2 column + 2, channel)``.
+    """Yield each picture with the wanted one of the nearest stop to its right, between them two black columns.
 
-    Pictures are in linear light; `angles_deg` are theirs, in degrees. Pixels that nobody cares about are grey.
+    Parameters
+    ----------
+    shown
+        ``(row, column, channel)`` in linear light. Where it is higher than what was wanted, that stands in the middle.
+    angles_deg
+        Of what is shown, degrees.
+    zoom
+        Parts a side that the pixels of what is shown are in: those of what was wanted are as large.
+
+    Notes
+    -----
+    Pixels that nobody cares about are grey.
     """
     for picture, angle_deg in zip(shown, angles_deg, strict=True):
         apart = np.abs(np.remainder(targets.angles_deg - angle_deg + 180, 360) - 180)
         nearest = int(np.argmin(apart))
         wanted = np.where(targets.weight[nearest][..., None] > 0, targets.pictures[nearest], np.float32(0.2))
-        gap = np.zeros((len(picture), 2, picture.shape[2]), np.float32)
-        yield np.concatenate([picture, gap, wanted], axis=1)
+        wanted = wanted.repeat(zoom, axis=0).repeat(zoom, axis=1)
+        spare = len(picture) - len(wanted)
+        yield np.concatenate([picture, np.pad(wanted, ((spare // 2, spare - spare // 2), (2, 0), (0, 0)))], axis=1)
 
 
 def beside_each_other(pictures: list[NDArray[np.float32]], windows: NDArray[np.integer[Any]]) -> NDArray[np.float32]:

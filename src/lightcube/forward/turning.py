@@ -10,20 +10,14 @@ from lightcube.optics.rig import Rig
 from lightcube.optics.views import smallest_gap_deg
 
 
-def moment(cube: Cube, angles_deg: ArrayLike, *, whole_shadow: bool = False) -> tuple[Rig, NDArray[np.float64]]:
+def moment(cube: Cube, angles_deg: ArrayLike) -> tuple[Rig, NDArray[np.float64]]:
     """The room of a cube and its lamps' powers ``(pairs, channels)`` at any turntable angles (degrees).
 
     The pictures of an angle follow each other, one for each screen (`lightcube.optics.rig.Rig.at`). The power of each
     lamp is linear in ln P between the stops at which it shines on that screen, constant where a stop's picture is held,
     and repeats after a whole turn; where half a turn shows the mirror image, after half a turn.
-
-    Parameters
-    ----------
-    whole_shadow
-        Show the whole shadow and its surroundings instead of the picture, where the screen has no edges.
     """
-    rig = cube.rig
-    now, _ = (rig.whole(cube.grid) if whole_shadow else rig).at(angles_deg)
+    now, _ = cube.rig.at(angles_deg)
     return now, powers_of(cube, now)
 
 

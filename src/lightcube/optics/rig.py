@@ -44,6 +44,8 @@ from lightcube.optics.views import (
 
 #: Stops nearer to each other than this, in degrees, are one.
 _SAME_STOP = 1e-6
+#: Places nearer to each other than this, in pixels, are one.
+_SAME_PIXEL = 1e-6
 #: A part of a vector smaller than this is none.
 _NONE = 1e-9
 
@@ -356,20 +358,36 @@ class Rig:
     def whole(self, grid: Grid) -> Rig:
         """Pictures as large as the cube's whole shadow, in its middle, on screens without edges; others as they are.
 
-        The middle is where the beam through the cube's lands.
+        The middle is where the beam through the cube's lands, or as near as the pictures' pixels allow, which are among
+        those of the whole shadow: `places_in` says where. It is larger where a picture stands out of the shadow.
         """
         if not np.all(self.screens.endless[self.stops.screen]):
             return self
         views, light = self.views, self.views.lamps[:, :3]
         normals = np.cross(views.column_steps_mm, views.row_steps_mm)
         behind = np.sum(views.origins_mm * normals, axis=1) / np.sum(light * normals, axis=1)
-        origins_mm = behind[:, None] * light
-        shape = self._whole_shape(grid)
-        stops = replace(self.stops, window=np.tile(shape, (len(self), 1)))
-        return replace(self, views=replace(views, origins_mm=origins_mm, picture_shape=shape), stops=stops)
+        middles_mm = behind[:, None] * light
+        off = -views.place_of(middles_mm)  # of the pictures, pixels right and down
+        pixels = np.rint(off)
+        rest = np.where(np.abs(off - pixels) < _SAME_PIXEL, 0.0, off - pixels)
+        origins_mm = middles_mm + rest[:, :1] * views.column_steps_mm + rest[:, 1:] * views.row_steps_mm
+        sizes = zip(self._whole_shape(grid), views.picture_shape, rest.T[::-1], pixels.T[::-1], strict=True)
+        rows, columns = (
+            _of_parity(max(most + 2 * math.ceil(np.max(np.abs(r))), own + 2 * int(np.max(np.abs(p)))), own)
+            for most, own, r, p in sizes
+        )
+        stops = replace(self.stops, window=np.tile((rows, columns), (len(self), 1)))
+        return replace(self, views=replace(views, origins_mm=origins_mm, picture_shape=(rows, columns)), stops=stops)
+
+    def places_in(self, whole: Rig) -> Counts:
+        """Row and column of the `whole` rig's pictures at which those of this one begin, ``(pictures, 2)``."""
+        first = self.starts[:-1]
+        right_down = whole.views.take(first).place_of(self.views.origins_mm[first])
+        spare = np.subtract(whole.picture_shape, self.picture_shape) / 2
+        return np.rint(spare + right_down[:, ::-1]).astype(np.intp)
 
     def _whole_shape(self, grid: Grid) -> tuple[int, int]:
-        """Rows and columns of the cube's whole shadow, and of its blur where a lamp has a disc."""
+        """Rows and columns of pixels of the cube's whole shadow, and of its blur where a lamp has a disc."""
         raised, wide = np.radians(np.abs(self.views.elevations_deg)), np.radians(self.sums.disc_deg / 2)
         behind = self.behind_mm / grid.voxel_mm
         higher = behind * (np.tan(raised + wide) - np.tan(raised))
@@ -379,7 +397,12 @@ class Rig:
         wider = behind * aside + np.hypot(*grid.shape[1:]) / 2 * (np.hypot(1, aside) - 1)
         rows, columns = raster_shape(grid, float(np.max(np.degrees(raised + wide))))
         more_rows, more_columns = (2 * math.ceil(float(np.max(more)) - _NONE) for more in (higher, wider))
-        return rows + more_rows, columns + more_columns
+        high, across = (
+            grid.voxel_mm / float(np.min(np.linalg.norm(steps, axis=1)))
+            for steps in (self.views.row_steps_mm, self.views.column_steps_mm)
+        )
+        pixels = ((rows + more_rows) * high, (columns + more_columns) * across)
+        return math.ceil(pixels[0] - _SAME_PIXEL), math.ceil(pixels[1] - _SAME_PIXEL)
 
     @property
     def behind_mm(self) -> Reals:
@@ -472,6 +495,11 @@ def soft(rig: Rig, grid: Grid, lamp_deg: float, screen_mm: float | None = None) 
     further = (wanted_mm - rig.behind_mm) / np.linalg.norm(light[:, :2], axis=1)
     views = replace(rig.views, origins_mm=rig.views.origins_mm + further[:, None] * light)
     return replace(rig, views=views, sums=replace(rig.sums, disc_deg=np.full(len(views), lamp_deg)))
+
+
+def _of_parity(count: int, own: int) -> int:
+    """The same count, or one more where it is not even or odd like another one."""
+    return count + (count - own) % 2
 
 
 def _taken(part: Any, chosen: Counts) -> Any:

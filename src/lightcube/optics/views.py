@@ -110,6 +110,17 @@ class Views:
             self.picture_shape,
         )
 
+    def place_of(self, points_mm: Reals) -> Reals:
+        """Where a point of each screen's plane, ``(views, 3)``, lies on it, right and down of its picture's middle.
+
+        Returns
+        -------
+        ``(views, 2)``, in pixels.
+        """
+        steps = np.stack([self.column_steps_mm, self.row_steps_mm], axis=1)
+        onto = steps @ (points_mm - self.origins_mm)[:, :, None]
+        return np.asarray(np.linalg.solve(steps @ steps.transpose(0, 2, 1), onto)[..., 0])
+
     @checked
     def joined(self, other: Views) -> Views:
         """Return these views and then the others, of the same shape of pictures."""

@@ -1,6 +1,6 @@
 """What `play` shows: a cube's pictures at its stops or other angles, its screens side by side, or the whole room."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lightcube.drawing.room import camera_for, room_player
 from lightcube.drawing.sheet import beside_each_other, beside_targets
-from lightcube.forward import casting, turning
+from lightcube.forward import casting
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Beams
 from lightcube.optics.rig import Rig
@@ -41,44 +41,57 @@ class Show:
     names: tuple[str, ...] | None = None
 
 
-def of_stops(cube: Cube, *, target: bool, whole_shadow: bool, light: Beams) -> Show:
+@dataclass(frozen=True)
+class Look:
+    """How screens are shown: of each the picture alone, how much finer than pixels, and in what light.
+
+    As `lightcube.forward.casting.play` takes them.
+    """
+
+    picture_only: bool = False
+    zoom: int = 1
+    light: Beams = "area"
+
+    def of(self, cube: Cube) -> Callable[[NDArray[np.float64] | None], Iterator[Picture]]:
+        """A function of the angles that yields what is shown there; None = at the stops."""
+        return casting.screens(cube, picture_only=self.picture_only, zoom=self.zoom, light=self.light)
+
+    def rig(self, cube: Cube) -> Rig:
+        """The cube's, with pictures as large as what is shown, in pixels."""
+        return cube.rig if self.picture_only else cube.rig.whole(cube.grid)
+
+
+def of_stops(cube: Cube, look: Look, *, target: bool) -> Show:
     """The pictures that a cube was made for, one by one."""
-    rig = cube.rig.whole(cube.grid) if whole_shadow else cube.rig
-    return _shown(cube, rig, cube.powers, cube.angles_deg, cube.names, light, target=target)
+    return _shown(cube, look, look.rig(cube), look.of(cube)(None), cube.names, target=target)
 
 
-def of_turn(cube: Cube, angles_deg: NDArray[np.float64], *, target: bool, whole_shadow: bool, light: Beams) -> Show:
+def of_turn(cube: Cube, angles_deg: NDArray[np.float64], look: Look, *, target: bool) -> Show:
     """The one screen of a cube at some angles."""
-    rig, powers = turning.moment(cube, angles_deg, whole_shadow=whole_shadow)
-    return _shown(cube, rig, powers, angles_deg, None, light, target=target)
+    return _shown(cube, look, look.rig(cube).at(angles_deg)[0], look.of(cube)(angles_deg), None, target=target)
 
 
 def _shown(
-    cube: Cube,
-    rig: Rig,
-    powers: NDArray[np.float64],
-    angles_deg: NDArray[np.float64],
-    names: tuple[str, ...] | None,
-    light: Beams,
-    *,
-    target: bool,
+    cube: Cube, look: Look, rig: Rig, pictures: Iterator[Picture], names: tuple[str, ...] | None, *, target: bool
 ) -> Show:
     """Pictures of a rig, each beside the wanted one if asked for."""
-    pictures, rows = casting.cast(cube, rig, powers, light=light), rig.picture_shape[0]
+    rows = look.zoom * rig.picture_shape[0]
     if target:
-        return Show(beside_targets(pictures, targets_of(cube), angles_deg), len(rig), rows, None, names)
+        beside = beside_targets(pictures, targets_of(cube), rig.stops.angle_deg, look.zoom)
+        return Show(beside, len(rig), rows, None, names)
     return Show(pictures, len(rig), rows, None if rig.elevation_deg is None else rig.views, names)
 
 
-def of_screens(cube: Cube, angles_deg: NDArray[np.float64], *, light: Beams) -> Show:
+def of_screens(cube: Cube, angles_deg: NDArray[np.float64], look: Look) -> Show:
     """All screens of each angle side by side."""
+    rig, show = look.rig(cube), look.of(cube)
 
     def beside() -> Iterator[Picture]:
         for angle_deg in angles_deg:
-            rig, powers = turning.moment(cube, [angle_deg])
-            yield beside_each_other(list(casting.cast(cube, rig, powers, light=light)), rig.stops.window)
+            now, _ = rig.at([angle_deg])
+            yield beside_each_other(list(show(np.array([angle_deg]))), look.zoom * now.stops.window)
 
-    return Show(beside(), len(angles_deg), int(cube.rig.stops.window[:, 0].max()))
+    return Show(beside(), len(angles_deg), look.zoom * int(rig.stops.window[:, 0].max()))
 
 
 def of_room(cube: Cube, angles_deg: NDArray[np.float64]) -> Show:

@@ -65,7 +65,9 @@ def score(cube: Cube, targets: Targets, tell: Tell, *, between: bool = False, of
 
 def sheet(cube: Cube, targets: Targets, found: Found) -> NDArray[np.uint8]:
     """Wanted, shown and difference of each view, ``(row, column, 3)`` display levels."""
-    return contact_sheet(casting.play(cube), targets, [view["psnr"] for view in found.scores["pictures"]])
+    return contact_sheet(
+        casting.play(cube, picture_only=True), targets, [view["psnr"] for view in found.scores["pictures"]]
+    )
 
 
 def plot(found: Curve) -> "Figure":

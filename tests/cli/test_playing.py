@@ -1,0 +1,84 @@
+"""`play` on the command line: the whole screen or the picture, beside what was wanted, in parts, and in folders."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lightcube import load, read_pictures
+from lightcube.forward import casting
+from lightcube.pictures.fitting import targets_of
+from tests.cli.test_cli import cube, pictures, run
+from tests.helpers.wall import play
+
+__all__ = ["cube", "pictures", "run"]
+
+
+@pytest.mark.parametrize("suffix", ["", ".npy", ".webp"])
+def test_play_writes_by_suffix(run, cube: Path, tmp_path: Path, suffix: str) -> None:  # type: ignore[no-untyped-def]
+    target = tmp_path / f"shadows{suffix}"
+    assert run("play", cube, "-o", target, "--angles-deg", "0,12.5,90").code == 0
+    assert target.exists()
+    if suffix == ".npy":
+        shown = np.load(target)
+        assert shown.shape[0] == 3
+        assert np.array_equal(shown, casting.play(load(cube), [0, 12.5, 90]))
+
+
+@pytest.fixture
+def played(run, pictures: Path, tmp_path: Path):  # type: ignore[no-untyped-def]
+    """A cube of four pictures of 6 x 6, and what `play` shows of it."""
+    solved = tmp_path / "a.npz"
+    assert run("solve", pictures, "-o", solved, "--n", 6, "--iterations", 2, "--paper").code == 0
+
+    def show(*options: object) -> np.ndarray[Any, np.dtype[np.float32]]:
+        done = run("play", solved, "-o", tmp_path / "shown.npy", "--overwrite", *options)
+        assert done.code == 0, done.err
+        return np.asarray(np.load(tmp_path / "shown.npy"))
+
+    return load(solved), show
+
+
+def test_play_shows_the_whole_screen_or_the_picture_only(played) -> None:  # type: ignore[no-untyped-def]
+    cube, show = played
+    whole, picture = show("--stops"), show("--stops", "--picture-only")
+    assert (whole.shape, picture.shape) == ((4, 6, 10, 3), (4, 6, 6, 3))
+    assert np.array_equal(whole, casting.play(cube))
+    assert np.array_equal(picture, play(cube))
+    assert np.array_equal(whole[:, :, 2:-2], picture)
+    turned = show("--angles-deg", "3,50")
+    assert np.array_equal(turned, casting.play(cube, [3, 50]))
+    assert np.array_equal(turned, show("--angles-deg", "3,50", "--screens"))
+
+
+def test_play_puts_what_was_wanted_beside_it(played) -> None:  # type: ignore[no-untyped-def]
+    """As high as what is shown, in the middle, its pixels as large."""
+    cube, show = played
+    wanted = targets_of(cube).pictures
+    for zoom in (1, 2):
+        larger = wanted.repeat(zoom, axis=1).repeat(zoom, axis=2)
+        for more, columns in ((["--picture-only"], 6), ([], 10)):
+            shown = show("--stops", "--target", "--zoom", zoom, *more)
+            assert shown.shape == (4, 6 * zoom, (columns + 6) * zoom + 2, 3)
+            assert np.array_equal(shown[:, :, -6 * zoom :], larger)
+            assert not np.any(shown[:, :, columns * zoom : columns * zoom + 2])
+
+
+def test_play_shows_pixels_in_parts(played) -> None:  # type: ignore[no-untyped-def]
+    """Finer; while a scale repeats what is there."""
+    cube, show = played
+    assert np.array_equal(show("--stops", "--zoom", 3), casting.play(cube, zoom=3))
+    thin = show("--stops", "--zoom", 2, "--light", "thin", "--scale", 3)
+    assert np.array_equal(thin, casting.play(cube, zoom=2, light="thin").repeat(3, axis=1).repeat(3, axis=2))
+
+
+def test_a_folder_of_pictures_is_read_again_where_it_has_nothing_else(run, played, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    cube, _ = played
+    for more, size in (((), (10, 6)), (("--picture-only",), (6, 6))):
+        folder = tmp_path / f"shown{len(more)}"
+        assert run("play", tmp_path / "a.npz", "-o", folder, "--stops", *more).code == 0
+        read = read_pictures(folder)
+        assert {image.shape[1::-1] for image in read.images} == {size}
+        assert read.angles_deg == pytest.approx(cube.angles_deg)
+    assert run("solve", tmp_path / "shown1", "-o", tmp_path / "b.npz", "--n", 6, "--iterations", 2).code == 0
