@@ -211,11 +211,15 @@ def test_the_score_is_of_what_is_cast_lamp_and_all() -> None:
     assert score(cube, Targets(shown, cube.rig))["psnr_mean"] == 100
 
 
-def test_the_score_without_targets_is_against_the_8_bit_ones() -> None:
+def test_the_score_without_targets_is_that_of_the_pictures() -> None:
+    """Targets are kept so finely that the file tells what was told when the cube was solved."""
     cube = make_cube([10.0, 100.0])
-    targets = Targets(np.clip(casting.play(cube, picture_only=True), 0, 1), cube.rig)
+    noise = np.random.default_rng(0).normal(0, 0.001, (2, *cube.rig.picture_shape, 3)).astype(np.float32)
+    targets = Targets(np.clip(casting.play(cube, picture_only=True) + noise, 0, 1), cube.rig)
     with_targets = Cube(cube.extinction, cube.grid, cube.rig, targets=as_levels(targets))
-    assert 55 < score(with_targets)["psnr_mean"] < 65
+    told, exact = score(with_targets)["psnr_mean"], score(cube, targets)["psnr_mean"]
+    assert 55 < exact < 75
+    assert told == pytest.approx(exact, abs=0.01)
     with pytest.raises(InputError, match="no targets"):
         score(cube)
     with pytest.raises(InputError, match="do not fit"):
