@@ -10,11 +10,12 @@ import pytest
 from lightcube.backward.problem import pose
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
+from lightcube.backward.wishes import asked
 from lightcube.errors import InputError
 from lightcube.forward import casting
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.light import Light, sampled
+from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import swept_mm
@@ -137,7 +138,7 @@ def test_turned_and_held_it_stands_where_another_turntable_does() -> None:
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 def test_solving_takes_the_fast_engine(elevation_deg: float) -> None:
     rig = disc_of(3.0, None, elevation_deg)
-    views = sampled(rig, GRID, Light(13)).views
+    views = asked(rig, GRID, Recipe(light=Light(13))).rig.views
     assert len(views) == 3 * 3 * 13
     assert is_stacked(GRID, views)
     problem = pose(Targets(np.full((3, 4, 5, 3), 0.5, np.float32), rig), GRID, Recipe())

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
+from lightcube.backward.recipe import Recipe
+from lightcube.backward.wishes import asked
 from lightcube.errors import InputError
 from lightcube.forward import casting
 from lightcube.optics.cube import Cube
@@ -22,7 +24,6 @@ from lightcube.optics.light import (
     judged,
     judged_one_by_one,
     lattice,
-    sampled,
     seeds,
     soft_lattice,
 )
@@ -73,7 +74,7 @@ def test_the_judges_points_are_a_fibonacci_lattice() -> None:
 @pytest.mark.parametrize("count", [*range(1, 40), 48])
 def test_points_in_a_row_are_none_of_the_judges(count: int) -> None:
     rig = rig_of(0.0)
-    moved = sampled(rig, GRID, Light(3, count)).views.origins_mm[: max(count, 1)]
+    moved = asked(rig, GRID, Recipe(light=Light(3, count))).rig.views.origins_mm[: max(count, 1)]
     judge = judged(rig, GRID).views.origins_mm[:JUDGE_ROW]
     assert np.min(np.linalg.norm(moved[:, None] - judge, axis=-1)) > 1e-6
     np.testing.assert_allclose(moved[:, 2], rig.views.origins_mm[0, 2])  # none higher or lower
@@ -171,10 +172,8 @@ def test_the_more_points_the_nearer_to_the_mean_of_a_disc() -> None:
     rig = replace(rig, sums=replace(rig.sums, disc_deg=np.full(2, 20.0)))
     cube = some_cube(rig)
     many = np.stack(list(cast(cube, divided(rig, pixel=12, lamp=40))))
-    off = [
-        float(np.sqrt(np.mean((np.stack(list(cast(cube, sampled(rig, GRID, Light(count))))) - many) ** 2)))
-        for count in (5, 13, 34, 89)
-    ]
+    rigs = (asked(rig, GRID, Recipe(light=Light(count))).rig for count in (5, 13, 34, 89))
+    off = [float(np.sqrt(np.mean((np.stack(list(cast(cube, each))) - many) ** 2))) for each in rigs]
     assert np.all(np.diff(off) < 0)
     assert off[3] < off[0] / 4
 
@@ -194,5 +193,5 @@ def test_points_that_cannot_be_are_refused(counts: tuple[int, int]) -> None:
 
 def test_thin_light_leaves_the_rig_as_it_is() -> None:
     rig = rig_of(35.0)
-    assert sampled(rig, GRID, Light.thin()) is rig
-    assert len(sampled(rig, GRID, Light(13)).views) == 26
+    assert asked(rig, GRID, Recipe(light=Light.thin())).rig is rig
+    assert len(asked(rig, GRID, Recipe(light=Light(13))).rig.views) == 26

@@ -100,20 +100,6 @@ class Light:
         return self.points == self.row_points == 1 and not self.grain
 
 
-def sampled(rig: Rig, grid: Grid, light: Light) -> Rig:
-    """Each view as several, whose mean is its light over areas; where light is thin, the rig as it is.
-
-    Parameters
-    ----------
-    grid
-        The cube in whose slices pixels may be one high.
-    """
-    if light.is_thin:
-        return rig
-    bare, soft = bundle(light, in_slices=is_in_slices(rig, grid))
-    return rig.split([soft if disc_deg else bare for disc_deg in rig.sums.disc_deg])
-
-
 def bundle(light: Light, *, in_slices: bool) -> tuple[Reals, Reals]:
     """Points of a pixel as `Rig.split` takes them, under a lamp without a disc and under one with a disc."""
     if in_slices:

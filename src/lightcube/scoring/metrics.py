@@ -88,8 +88,7 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
     Parameters
     ----------
     targets
-        The wanted pictures, on the cube's rig; None = the 8-bit targets stored in the cube, which cap
-        the PSNR at about 58.9 dB where the pictures were resampled.
+        The wanted pictures, on the cube's rig; None = the 16-bit targets stored in the cube.
 
     Returns
     -------
