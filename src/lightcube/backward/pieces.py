@@ -303,8 +303,9 @@ class _Watch:
         self._seen = now, error
         if then and 0 < self._wanted < error < before:
             power = math.log(before / error) / math.log(now / then)
-            soonest = now * (error / self._wanted) ** (1 / power)
-            self._expected = math.sqrt(min(soonest, progress.iterations) * progress.iterations)
+            most = math.log(progress.iterations)
+            soonest = math.log(now) + math.log(error / self._wanted) / power
+            self._expected = math.exp((min(soonest, most) + most) / 2)
 
     def _so_far(self, progress: Progress) -> float:
         """Which part of the piece is done, as far as one can tell; it never becomes less."""
