@@ -53,7 +53,7 @@ def run(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     grid = Grid((_SIDE, _SIDE, _SIDE), 100 / _SIDE)
     out.print(f"Two cubes of {_SIDE} x {_SIDE} x {_SIDE} voxels, 100 mm wide.")
-    planned = plan(photographs(), _SIDE, longest_hold=True)
+    planned = plan(photographs(), _SIDE, longest_hold=True, smooth=True)
     rows = [
         _one("photographs", planned.targets, grid, folder, planned.recipe),
         _one("juggler", _juggler(grid), grid, folder, Recipe.of_quality("normal", mat=Mat())),
