@@ -92,8 +92,8 @@ class Job:
     @property
     def looks(self) -> bool:
         """Whether what is cast is looked at, and the passes end where it is good enough, or becomes no better."""
-        asked = self.recipe.enough_db < math.inf or not self.recipe.beams.is_thin
-        return asked and self.recipe.solver.residual == "display"
+        can_be_enough = self.recipe.enough_db < math.inf or not self.recipe.beams.is_thin
+        return can_be_enough and self.recipe.solver.residual == "display"
 
     def phases(self, name: str) -> list[Phase]:
         """How a piece is solved: the cube itself with few points a pixel first, unless it starts from another one."""
@@ -174,8 +174,8 @@ def _work(job: Job, name: str) -> float:
 
 def phase_work(job: Job, phase: Phase, passes: float | None = None) -> float:
     """Work of a phase, or of so many of its passes, in passes of the piece as the job's recipe has it."""
-    asked = (phase.passes or 1) if passes is None else passes
-    return asked * phase.recipe.beams.points / job.recipe.beams.points
+    count = (phase.passes or 1) if passes is None else passes
+    return count * phase.recipe.beams.points / job.recipe.beams.points
 
 
 def fingerprint(job: Job) -> Fingerprint:

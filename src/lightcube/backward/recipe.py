@@ -118,9 +118,8 @@ class Recipe:
     @checked
     def of_quality(cls, quality: Quality, **more: Any) -> Recipe:
         """So many passes, or fewer where the pictures are good enough before; `more` are the other fields."""
-        return cls(**{"enough_db": QUALITIES[quality].enough_db, "light": QUALITIES[quality].light, **more})._by(
-            quality
-        )
+        effort = QUALITIES[quality]
+        return cls(**{"enough_db": effort.enough_db, "light": effort.light, **more})._by(quality)
 
     def _by(self, quality: Quality) -> Recipe:
         """As many passes as a quality allows, unless that is said."""

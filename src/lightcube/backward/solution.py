@@ -179,5 +179,6 @@ def _made_with(job: Job) -> dict[str, Any]:
         **recipe,
         "angles_per_picture": len(held(job.targets.rig, job.recipe, job.grid)) // len(job.targets),
         "units": job.units,
+        **({} if job.start is None else {"started_from": "another cube"}),
         **job.provenance,
     }
