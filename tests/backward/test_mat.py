@@ -69,6 +69,15 @@ def test_screens_with_edges_have_no_mat() -> None:
 
 
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_asked_for_a_calm_shadow_beyond_the_mat_it_becomes_calmer(elevation_deg: float) -> None:
+    targets = some_targets(elevation_deg, (4, 4))
+    mats = Mat(width=0.25, beyond=0), Mat(width=0.25, beyond=0.1)
+    chaos, calm = (score(solve(targets, GRID, Recipe(mat=mat, passes=60, light=Light(5, 3))).cube) for mat in mats)
+    assert calm["beyond_rms"] < 0.5 * chaos["beyond_rms"]
+    assert calm["psnr_mean"] > 20
+
+
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 def test_asked_for_a_mat_becomes_calmer_and_the_pictures_hardly_worse(elevation_deg: float) -> None:
     targets = some_targets(elevation_deg, (4, 6))
     recipes = [Recipe(mat=mat, passes=60, light=Light(5, 3)) for mat in (None, Mat(weight=0.3))]
@@ -89,7 +98,9 @@ def test_a_mat_is_judged_beside_the_picture_but_for_a_seam() -> None:
     assert np.any(chosen[:, : rows - 1])
 
 
-@pytest.mark.parametrize("said", [{"tone": -0.1}, {"tone": 1.1}, {"weight": 0.0}, {"weight": 2.0}, {"width": 0.0}])
+@pytest.mark.parametrize(
+    "said", [{"tone": -0.1}, {"tone": 1.1}, {"weight": 0.0}, {"weight": 2.0}, {"width": 0.0}, {"beyond": -1}]
+)
 def test_a_mat_that_cannot_be_is_refused(said: dict[str, float]) -> None:
     with pytest.raises(InputError, match="a mat has a tone from 0 to 1"):
         Mat(**said)

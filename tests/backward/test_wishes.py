@@ -1,12 +1,13 @@
 """What is asked of pictures: their means at all points, their mats at few, smoothness at single ones."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from lightcube.backward import wishes
-from lightcube.backward.mat import Mat, framed, inner
+from lightcube.backward.mat import Mat, framed, inner, judged_beyond, widened
 from lightcube.backward.problem import pose
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
@@ -28,10 +29,12 @@ def moved(rig: Rig, other: Rig) -> Any:
 
 
 def test_each_wish_has_its_own_points_for_all_pictures_and_angles() -> None:
-    recipe = Recipe(light=Light(5, 3, 0.1), mat=Mat(width=0.5), hold_deg=1.0)
+    recipe = Recipe(light=Light(5, 3, 0.1), mat=Mat(width=0.5, beyond=0), hold_deg=1.0)
     rig = some_targets(35.0).rig
     all_that = asked(rig, GRID, recipe)
-    assert (all_that.angles, len(all_that.wishes)) == (2, 2 + SMOOTH)
+    assert len(all_that.wishes) == 2 + SMOOTH
+    assert all_that.wish.tolist() == np.repeat(np.arange(2 + SMOOTH), 6).tolist()
+    assert all_that.angle.tolist() == [0, 1] * 3 * (2 + SMOOTH)
     assert all_that.stop.tolist() == [0, 0, 1, 1, 2, 2] * (2 + SMOOTH)
     counts = np.diff(np.append(all_that.rig.starts, len(all_that.rig.views)))[: len(all_that.rig)]
     assert counts.tolist() == [5] * 6 + [COARSE] * 6 + [1] * 6 * SMOOTH
@@ -46,16 +49,16 @@ def test_thin_beams_have_one_wish_and_no_more_beams() -> None:
     rig = some_targets(35.0).rig
     all_that = asked(rig, GRID, Recipe(light=Light.thin(), mat=Mat(), hold_deg=1.0))
     assert len(all_that.wishes) == 1
-    assert len(all_that.rig.views) == len(all_that.rig) == 3 * all_that.angles
+    assert len(all_that.rig.views) == len(all_that.rig) == len(all_that.stop) == 3 * (1 + all_that.angle.max())
 
 
 def test_few_points_are_for_pictures_and_mats_alike() -> None:
     """A mat at more points than the picture would cost more than it."""
-    assert len(asked(some_targets(35.0).rig, GRID, Recipe(light=Light(COARSE), mat=Mat())).wishes) == 1
+    assert len(asked(some_targets(35.0).rig, GRID, Recipe(light=Light(COARSE), mat=Mat(beyond=0))).wishes) == 1
 
 
 def test_every_pixel_counts_in_one_wish_but_for_smoothness() -> None:
-    targets, mat = some_targets(35.0), Mat(width=0.5)
+    targets, mat = some_targets(35.0), Mat(width=0.5, beyond=0)
     recipe = Recipe(light=Light(5, 3, 0.1), mat=mat)
     heavy = pose(targets, GRID, recipe).weights
     wide = framed(targets, GRID, mat)
@@ -68,6 +71,38 @@ def test_every_pixel_counts_in_one_wish_but_for_smoothness() -> None:
     assert not np.any(by_wish[1, :, inside])
     for each in by_wish[2:]:
         np.testing.assert_allclose(each, by_wish[0] * np.float32(0.1 / SMOOTH))
+
+
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+@pytest.mark.parametrize("shift", [(0, 0), (2, 1)])
+def test_every_pixel_of_the_shadow_beyond_the_mat_is_asked_for_once_at_one_point(
+    elevation_deg: float, shift: tuple[int, int]
+) -> None:
+    targets, mat = some_targets(elevation_deg), Mat(width=0.2, beyond=0.01)
+    if elevation_deg:
+        targets = replace(targets, rig=targets.rig.shifted(np.tile(shift, (3, 1))))
+    recipe = Recipe(light=Light(5, 4), mat=mat, hold_deg=1.0)
+    all_that, problem = asked(targets.rig, GRID, recipe), pose(targets, GRID, recipe)
+    whole, wide = targets.rig.whole(GRID), widened(targets.rig, GRID, mat)
+    rows, columns = wide.picture_shape
+    heavy = problem.weights.reshape(-1, columns, rows, 3)[:, :, ::-1, 0].transpose(0, 2, 1)
+    beyond = [index for index, wish in enumerate(all_that.wish) if all_that.wishes[wish].is_beyond]
+    assert set(all_that.angle[beyond]) == {1}  # of two
+    counted = np.zeros((3, *np.add(whole.picture_shape, (4 * rows, 4 * columns))))
+    middle = wide.places_in(whole) + np.array([2 * rows, 2 * columns])
+    for index in beyond:
+        right, down = all_that.wishes[all_that.wish[index]].place
+        stop = all_that.stop[index]
+        top, left = middle[stop] + (down, right)
+        counted[stop, top : top + rows, left : left + columns] += heavy[index]
+    expected = np.pad(0.01 * judged_beyond(targets.rig, GRID, mat), ((0, 0), (2 * rows,) * 2, (2 * columns,) * 2))
+    assert np.count_nonzero(expected) > 100
+    np.testing.assert_allclose(counted, expected, rtol=1e-6)
+    counts = np.diff(np.append(all_that.rig.starts, len(all_that.rig.views)))
+    assert set(counts[beyond]) == {1}
+    turned = wishes.held(wide, recipe, GRID).take(2 * all_that.stop[beyond] + 1)
+    placed = [all_that.wishes[wish].place for wish in all_that.wish[beyond]]
+    np.testing.assert_allclose(moved(all_that.rig.take(beyond), turned), placed, atol=1e-9)
 
 
 def test_all_wishes_of_a_picture_are_under_its_lamp() -> None:

@@ -222,6 +222,7 @@ _WORDS = {
     "mat_tone": "tone of the mat",
     "mat_weight": "weight of the mat",
     "mat_width": "width of the mat",
+    "mat_beyond": "weight beyond the mat",
 }
 _CHECKSUMS = ("pictures", "weights", "names", "lamps and screens", "voxels to start from")
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.mat import framed, inner
+from lightcube.backward.mat import framed, inner, weights_beyond
 from lightcube.backward.recipe import Powers, Recipe
 from lightcube.backward.units import Part
 from lightcube.backward.wishes import Asked, asked
@@ -146,8 +146,9 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
     Pixels darker than the screen's black are wanted at it. The ends of a hold by thin beams, with nothing to hold on to
     beyond, count twice: else they are what falls apart first (measured).
     """
-    wanted, all_that = framed(targets, grid, recipe.mat), asked(targets.rig, grid, recipe)
-    rig, views, heavy = all_that.rig, all_that.rig.views, _weights(wanted, targets.rig, grid, recipe, all_that)
+    all_that = asked(targets.rig, grid, recipe)
+    rig, views = all_that.rig, all_that.rig.views
+    wanted, heavy = _wanted(targets, grid, recipe, all_that)
     matrix = Projector(grid, views, (heavy > 0)[rig.sums.picture])
     darkest = decode(targets.rig.screens.black[targets.rig.stops.screen].astype(np.float32), targets.transfer)
     high, channels = views.picture_shape[0], targets.pictures.shape[-1]
@@ -160,12 +161,12 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
         columns = columns_from_pictures(pictures.astype(recipe.dtype))
         return columns.reshape(columns.shape[0] * (1 if matrix.level else high), -1)
 
-    light = np.maximum(wanted.pictures[:, rows, :, part.colours], darkest[:, None, None, None])
+    light = np.maximum(wanted[:, rows, :, part.colours], darkest[all_that.stop, None, None, None])
     own = np.repeat(heavy[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1)
     mixture = None if rig.is_thin else Mixture.of(rig, channels, part.colours, rows)
     return Problem(
         matrix=matrix,
-        light=block(light[all_that.stop]),
+        light=block(light),
         weights=block(own),
         lighting=Lighting(lamp_numbers(targets.rig, rig, all_that.stop, recipe.powers), mixture),
         part=part,
@@ -176,16 +177,24 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
     )
 
 
-def _weights(wanted: Targets, rig: Rig, grid: Grid, recipe: Recipe, all_that: Asked) -> Images:
-    """``(picture of the matrix, row, column)``: how much each pixel counts."""
-    inside = np.zeros(wanted.weight.shape[1:], np.float32)
-    inside[inner(rig, grid, recipe.mat)] = 1
-    counts = [each.picture * inside + each.mat * (1 - inside) for each in all_that.wishes]
-    importance = np.ones(all_that.angles, np.float32)
-    if all_that.angles > 1 and recipe.beams.is_thin:
-        importance[[0, -1]] = 2
-    heavy = np.stack(counts)[:, None, None] * wanted.weight[:, None] * importance[:, None, None]
-    return np.asarray(heavy.reshape(-1, *inside.shape), np.float32)
+def _wanted(targets: Targets, grid: Grid, recipe: Recipe, all_that: Asked) -> tuple[Images, Images]:
+    """Linear light of the matrix's pictures, ``(picture, row, column, channel)``, and how much each pixel counts."""
+    mat, own = recipe.mat, targets.rig
+    frames = framed(targets, grid, mat)
+    inside = np.zeros(frames.weight.shape[1:], np.float32)
+    inside[inner(own, grid, mat)] = 1
+    light, heavy = frames.pictures[all_that.stop], frames.weight[all_that.stop]
+    for number, wish in enumerate(all_that.wishes):
+        here = all_that.wish == number
+        if mat is not None and wish.is_beyond:
+            light[here] = decode(np.array(mat.tone, np.float32), targets.transfer)
+            heavy[here] = weights_beyond(own, grid, mat, wish.place)[all_that.stop[here]]
+        else:
+            heavy[here] *= wish.picture * inside + wish.mat * (1 - inside)
+    last = all_that.angle.max()
+    if last and recipe.beams.is_thin:
+        heavy[(all_that.angle == 0) | (all_that.angle == last)] *= 2
+    return light, heavy
 
 
 def _judge(rig: Rig, recipe: Recipe, grid: Grid) -> tuple[Rig, NDArray[np.intp]]:

@@ -1,16 +1,18 @@
 """What is asked of each picture, at each of its angles: its pixels' means, a calm mat, and smoothness inside pixels.
 
 Each wish is a picture of its own, with points and weights of its own, under the lamps of the picture that it is for. A
-mat is a coarse thing, and a few points do for it; smoothness is asked for at single points.
+mat is a coarse thing, and a few points do for it; for what lies beyond it a single one, at one angle of a hold.
+Smoothness is asked for at single points.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from lightcube.backward.mat import widened
+from lightcube.backward.mat import places_beyond, widened
 from lightcube.backward.recipe import Recipe
 from lightcube.optics.arrays import Counts, Reals
 from lightcube.optics.grid import Grid, dense_step_deg
@@ -19,13 +21,15 @@ from lightcube.optics.rig import Rig
 
 #: How finely light is averaged over the pixels of a mat, where that is coarser than over those of the pictures.
 MAT = Light(3, 3)
+#: And over those of the shadow beyond it.
+BEYOND = Light.thin()
 #: The points of a pixel at which smoothness is asked for.
 SMOOTH = Light(2, 2)
 
 
 @dataclass(frozen=True, eq=False)
 class Wish:
-    """One thing that is asked of each picture at each angle.
+    """One thing that is asked of each picture, at each angle of its hold or at one.
 
     Parameters
     ----------
@@ -33,12 +37,20 @@ class Wish:
         Of each pixel, ``(count, 4)`` as `Rig.split` takes them: under lamps without and with a disc.
     picture, mat
         How much the pixels of the picture and of its mat count, beside the weights that they have.
+    place
+        How far from the picture's window, in pixels right and down, its own stands: elsewhere lies what is beyond mats.
     """
 
     points: Reals
     soft_points: Reals
-    picture: float
-    mat: float
+    picture: float = 0.0
+    mat: float = 0.0
+    place: tuple[int, int] = (0, 0)
+
+    @property
+    def is_beyond(self) -> bool:
+        """Whether the shadow beyond the mats is asked to be calm."""
+        return self.place != (0, 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,31 +63,35 @@ class Asked:
         Its pictures are those of the first wish, of all stops and their angles in turn, then those of the next.
     wishes
         What is asked.
-    angles
-        At how many angles of a hold each picture is asked for.
+    wish, stop, angle
+        ``(pictures of the rig,)``: which of the wishes each is, for which picture, at which of the angles of a hold.
     """
 
     rig: Rig
     wishes: list[Wish]
-    angles: int
-
-    @property
-    def stop(self) -> Counts:
-        """``(pictures of the rig,)``: which picture each is for."""
-        stops = len(self.rig) // (len(self.wishes) * self.angles)
-        return np.tile(np.repeat(np.arange(stops), self.angles), len(self.wishes))
+    wish: Counts
+    stop: Counts
+    angle: Counts
 
 
 def asked(rig: Rig, grid: Grid, recipe: Recipe) -> Asked:
     """All that a recipe asks of a rig's pictures: with their mats, at all angles of a hold, every wish in turn."""
     turned = held(widened(rig, grid, recipe.mat), recipe, grid)
-    wishes, angles = _wishes(turned, grid, recipe), len(turned) // len(rig)
-    if recipe.beams.is_thin:
-        return Asked(turned, wishes, angles)
-    every = turned.take(np.tile(np.arange(len(turned)), len(wishes)))
-    of = (wishes[picture // len(turned)] for picture in every.sums.picture)
-    points = [each.soft_points if disc else each.points for each, disc in zip(of, every.sums.disc_deg, strict=True)]
-    return Asked(every.split(points), wishes, angles)
+    every, angles = np.arange(len(turned)), len(turned) // len(rig)
+    wishes = _wishes(turned, grid, recipe) + _beyond(rig, grid, recipe)
+    pictures = [every[every % angles == angles // 2] if each.is_beyond else every for each in wishes]
+    picture, wish = np.concatenate(pictures), np.repeat(np.arange(len(wishes)), [len(each) for each in pictures])
+    if not recipe.beams.is_thin:
+        turned = _split(turned.take(picture), [wishes[each] for each in wish])
+    return Asked(turned, wishes, wish, picture // angles, picture % angles)
+
+
+def _split(rig: Rig, wishes: Sequence[Wish]) -> Rig:
+    """Pictures where and at the points at which they are wanted, each as a wish says."""
+    placed = rig.shifted(np.array([each.place for each in wishes]))
+    of = (wishes[picture] for picture in rig.sums.picture)
+    discs = rig.sums.disc_deg
+    return placed.split([each.soft_points if disc else each.points for each, disc in zip(of, discs, strict=True)])
 
 
 def held(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
@@ -90,8 +106,16 @@ def _wishes(rig: Rig, grid: Grid, recipe: Recipe) -> list[Wish]:
     apart = recipe.mat is not None and len(own[0]) > len(coarse[0])
     found = [Wish(*own, picture=1.0, mat=0.0 if apart else 1.0)]
     if apart:
-        found.append(Wish(*coarse, picture=0.0, mat=1.0))
+        found.append(Wish(*coarse, mat=1.0))
     if light.grain:
         weight = light.grain / len(single[0])
-        found += [Wish(bare[None], soft[None], weight, 0.0) for bare, soft in zip(*single, strict=False)]
+        found += [Wish(bare[None], soft[None], picture=weight) for bare, soft in zip(*single, strict=False)]
     return found
+
+
+def _beyond(rig: Rig, grid: Grid, recipe: Recipe) -> list[Wish]:
+    """What is asked of the shadow beyond the mats: nothing by thin beams."""
+    if recipe.beams.is_thin:
+        return []
+    points = bundle(BEYOND, in_slices=False)
+    return [Wish(*points, place=(int(right), int(down))) for right, down in places_beyond(rig, grid, recipe.mat)]

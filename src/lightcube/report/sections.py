@@ -48,7 +48,8 @@ def head(found: Findings, compared: str) -> str:
         "thin beams": (f"{number(scores['thin_psnr_mean'])} dB", "through the middles of pixels, as in the paper"),
     }
     if "mat_rms" in scores:
-        tiles["mat"] = (number(scores["mat_rms"], 3), "off its tone; 0 is calm")
+        beyond = f"; beyond it {number(scores['beyond_rms'], 2)}" if "beyond_rms" in scores else ""
+        tiles["mat"] = (number(scores["mat_rms"], 3), f"off its tone; 0 is calm{beyond}")
     shown = "".join(
         element("div", text("dt", name) + text("dd", value, class_="figure") + text("dd", more, class_="more"))
         for name, (value, more) in tiles.items()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from skimage import color
 from skimage import metrics as similarities
 
-from lightcube.backward.mat import judged_pixels, widened
+from lightcube.backward.mat import Mat, judged_beyond, judged_pixels, widened
 from lightcube.backward.recipe import recipe_of
 from lightcube.errors import InputError
-from lightcube.forward.casting import cast
+from lightcube.forward.casting import cast, screens
 from lightcube.optics.arrays import Images, Reals
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
@@ -96,7 +96,7 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
     delta_e`` of each; ``thin_psnr_mean, thin_psnr_min`` of the thin beams; ``grain_rms``, how far a pixel's beams are
     off the pixel's value (root of the mean square, display values), and ``grain_db``, how much lower the PSNR of all
     beams one by one is than that of their means; and where the pictures have mats ``mat_rms``, how far those are off
-    their tone (root of the mean square, display values).
+    their tone (root of the mean square, display values), and ``beyond_rms``, how far the rest of the shadow is.
 
     Raises
     ------
@@ -121,15 +121,24 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
 
 
 def _mat(cube: Cube) -> dict[str, float]:
-    """How far the mats of a cube's pictures are off their tone, where they have any."""
+    """How far the mats of a cube's pictures are off their tone, and the shadow beyond, where they have any."""
     mat = recipe_of(cube).mat
-    chosen = None if mat is None else judged_pixels(cube.rig, cube.grid, mat)
-    if mat is None or chosen is None or not np.any(chosen):
+    if mat is None:
         return {}
+    near = cast(cube, widened(cube.rig, cube.grid, mat)), judged_pixels(cube.rig, cube.grid, mat)
+    beyond = screens(cube, picture_only=False, zoom=1, light="area")(None), judged_beyond(cube.rig, cube.grid, mat)
+    off = {"mat_rms": _off_tone(cube, mat, *near), "beyond_rms": _off_tone(cube, mat, *beyond)}
+    return {name: value for name, value in off.items() if value is not None}
+
+
+def _off_tone(cube: Cube, mat: Mat, shown: Iterator[Images], chosen: Images) -> float | None:
+    """How far chosen pixels of some pictures are off a mat's tone; None where there are none."""
+    if not np.any(chosen):
+        return None
     error = 0.0
-    for picture, weight in zip(cast(cube, widened(cube.rig, cube.grid, mat)), chosen, strict=True):
+    for picture, weight in zip(shown, chosen, strict=True):
         error += float(np.sum(weight[..., None] * (encode(picture, cube.transfer) - mat.tone) ** 2))
-    return {"mat_rms": float(np.sqrt(error / (np.sum(chosen) * len(cube.extinction))))}
+    return float(np.sqrt(error / (np.sum(chosen) * len(cube.extinction))))
 
 
 @dataclass(frozen=True, eq=False)
