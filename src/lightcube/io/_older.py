@@ -44,7 +44,9 @@ def targets_dtype(document: object) -> np.dtype[Any]:
 
 def has_cut_pixels(document: object) -> bool:
     """Whether each pixel is in several views, as those of stages could be: light on areas would be averaged twice."""
-    made = document.get("provenance") if isinstance(document, Mapping) else None
+    if not isinstance(document, Mapping) or _format(document) > _EIGHT_BIT:
+        return False
+    made = document.get("provenance")
     return isinstance(made, Mapping) and made.get("pixel_samples", 1) != 1
 
 
