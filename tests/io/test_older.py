@@ -186,9 +186,10 @@ def test_methods_other_than_display_had_a_lamp_of_power_1(tmp_path: Path) -> Non
     assert (rig.lamps.least[0], rig.lamps.most[0]) == (1, 1)
 
 
-def test_nothing_of_an_older_document_is_changed() -> None:
-    with np.load(LAST.path) as arrays:
-        document = json.loads(str(arrays["lightcube"]))
+@each(FIRST, STAGE, THIRD, THIN)
+def test_nothing_of_an_older_document_is_changed(told: Told) -> None:
+    with zipfile.ZipFile(told.path) as archive:
+        document = json.loads(archive.read("zarr.json"))["attributes"]["lightcube"]
     before = json.dumps(document)
     _older.newest(document, None)
     assert json.dumps(document) == before
