@@ -298,10 +298,11 @@ def test_a_newer_format_is_refused(tmp_path: Path, suffix: str, found: int) -> N
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_a_format_that_was_never_released_is_refused(tmp_path: Path, suffix: str) -> None:
+@pytest.mark.parametrize("found", [0, -1])
+def test_a_format_that_never_was_is_refused(tmp_path: Path, suffix: str, found: int) -> None:
     path = save(make(), tmp_path / f"a{suffix}")
-    change(path, lambda document: {"format_version": 2, "something": "else"})
-    with pytest.raises(InputError, match="in format 2 of a lightcube that was never released"):
+    change(path, lambda document: {"format_version": found, "something": "else"})
+    with pytest.raises(InputError, match=f"in format {found}, which no lightcube wrote"):
         load(path)
 
 
@@ -319,6 +320,8 @@ def test_a_file_without_our_metadata_is_no_cube(tmp_path: Path, suffix: str, doc
     ("edit", "message"),
     [
         (put("format_version", value="1"), "format_version"),
+        (put("format_version", value=True), "format_version"),
+        (put("format_version", value=4.0), "format_version"),
         (put("voxel_mm", value=0), "voxel_mm"),
         (put("voxel_mm", value=float("nan")), "voxel_mm"),
         (put("rig", "views", "lamps", 1, 2, value=float("inf")), r"rig\.views\.lamps\.1\.2"),

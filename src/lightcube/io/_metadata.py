@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lightcube.errors import InputError
+from lightcube.io import _older
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.cube import Cube, Status
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 
-#: Of the files that this version writes; it reads no earlier ones, which were never released.
+#: Of the files that this version writes; earlier ones are told as this one when they are read (`lightcube.io._older`).
 FORMAT_VERSION = 5
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -73,13 +74,11 @@ def plain(value: Any) -> Any:
     return value if value is None or isinstance(value, bool | int | str) else str(value)
 
 
-def from_json(
-    path: Path, document: object, extinction: NDArray[np.float32], targets: NDArray[np.uint16] | None
-) -> Cube:
+def from_json(path: Path, document: object, extinction: NDArray[np.float32], targets: NDArray[Any] | None) -> Cube:
     """Build the cube again; `InputError` naming `path` and the key where the document cannot be right."""
-    check_version(path, document)
+    newest, targets = _newest(path, check_version(path, document), targets)
     try:
-        said = _CubeJson.model_validate(document)
+        said = _CubeJson.model_validate(newest)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
@@ -105,18 +104,35 @@ def from_json(
         raise damaged(path, str(error)) from error
 
 
-def check_version(path: Path, document: object) -> None:
-    """Raise `InputError` unless `document` is a light cube's, in a format that this version knows."""
+def _newest(
+    path: Path, document: Mapping[str, Any], targets: NDArray[Any] | None
+) -> tuple[dict[str, Any], NDArray[Any] | None]:
+    """The document and the targets as the newest format has them; `InputError` where they are not as their own says."""
+    try:
+        return _older.newest(document, targets)
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        detail = f"{type(error).__name__}: {' '.join(str(error).split())[:100]}"
+        raise damaged(path, f"it is not as format {document['format_version']} was, {detail}") from error
+
+
+def check_version(path: Path, document: object) -> Mapping[str, Any]:
+    """Return `document`, or raise `InputError` unless it is a light cube's, in a format that this version reads."""
     if not isinstance(document, Mapping) or "format_version" not in document:
         raise InputError(f"{path} is no light cube: it has no lightcube metadata, give a file that lightcube wrote")
     found = document["format_version"]
-    if isinstance(found, int) and found < FORMAT_VERSION:
-        raise InputError(f"{path} is in format {found} of a lightcube that was never released: make it again")
     if isinstance(found, int) and found > FORMAT_VERSION:
         raise InputError(
             f"{path} is in format {found} of a newer lightcube, and this one reads up to {FORMAT_VERSION}: "
             "update lightcube"
         )
+    if isinstance(found, int) and found < _older.FIRST:
+        raise InputError(f"{path} is in format {found}, which no lightcube wrote: get another copy or make it again")
+    if _older.has_cut_pixels(document):
+        raise InputError(
+            f"{path} was solved for pixels that an earlier lightcube cut into parts, and this one averages light over "
+            "each pixel by itself: make it again"
+        )
+    return document
 
 
 def damaged(path: Path, what: str) -> InputError:

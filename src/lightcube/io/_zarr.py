@@ -18,13 +18,13 @@ from zarr.codecs import ZstdCodec
 from zarr.storage import LocalStore, ZipStore
 
 from lightcube.errors import InputError
-from lightcube.io import _metadata
+from lightcube.io import _metadata, _older
 from lightcube.io._files import system_errors
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 
 Value = TypeVar("Value")
-Parts = tuple[object, NDArray[np.float32], NDArray[np.uint16] | None]
+Parts = tuple[object, NDArray[np.float32], NDArray[Any] | None]
 
 #: A chunk is as many whole slices as fit into this many bytes, at least one.
 _CHUNK_BYTES = 8 << 20
@@ -136,7 +136,7 @@ async def _read(path: Path, store: LocalStore | ZipStore) -> Parts:
         extinction = await _array(path, group, _IMAGE, np.dtype(np.float32))
         if extinction is None:
             raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await _array(path, group, _TARGETS, np.dtype(np.uint16))
+        return document, extinction, await _array(path, group, _TARGETS, _older.targets_dtype(document))
     finally:
         store.close()
 
