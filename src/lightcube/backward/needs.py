@@ -3,6 +3,7 @@
 import math
 import time
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -157,11 +158,24 @@ def expected_passes(job: Job) -> float | None:
     return sum(shares(replace(job, recipe=recipe)).values())
 
 
-def seconds_a_pass(job: Job) -> float:
-    """Seconds that a pass of the whole cube is expected to take: a smaller one is measured and scaled by its work.
+class Speed(NamedTuple):
+    """Seconds of a pass for each multiply-add, but for a factor, and beside these for each number at hand."""
 
-    Products grow with their multiply-adds, all else with the numbers of unknowns and pixels. The measurement takes a
-    second or two, besides what numba compiles.
+    products: float
+    rest: float
+
+
+def seconds_a_pass(job: Job, speed: Speed | None = None) -> float:
+    """Seconds that a pass of the whole cube is expected to take, at a speed that was measured; None = now."""
+    multiplied, numbers = _work(job, job.targets, job.grid)
+    products, rest = speed or measured_speed(job)
+    return products * multiplied + rest * numbers
+
+
+def measured_speed(job: Job) -> Speed:
+    """How fast a job's method is here and now, by a smaller cube: products in both directions, and all else.
+
+    It takes a second or two, besides what numba compiles.
     """
     targets, grid = job.targets, job.grid
     while _work(job, targets, grid)[0] > _REHEARSED:
@@ -177,13 +191,11 @@ def seconds_a_pass(job: Job) -> float:
         callback=lambda progress: marks.append(time.perf_counter()),
     )
     if len(marks) < 2:
-        return 0.0
+        return Speed(0.0, 0.0)
     products = _seconds_of_products(problem)
     rest = max(0.0, float(np.median(np.diff(marks))) - products)
-    more = [
-        whole / small for whole, small in zip(_work(job, job.targets, job.grid), _work(job, targets, grid), strict=True)
-    ]
-    return products * more[0] + rest * more[1]
+    multiplied, numbers = _work(job, targets, grid)
+    return Speed(products / multiplied, rest / numbers)
 
 
 def _seconds_of_products(problem: Problem) -> float:

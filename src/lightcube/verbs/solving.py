@@ -1,19 +1,25 @@
 """What `check` and `solve` share: from pictures or a stage, and options, to a plan and a job."""
 
+import json
+import platform
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from hashlib import sha256
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from lightcube import io
 from lightcube.backward.job import Job
 from lightcube.backward.mat import Mat
-from lightcube.backward.needs import expected_passes, job_memory, memory_needed, seconds_a_pass
+from lightcube.backward.needs import Speed, expected_passes, job_memory, measured_speed, memory_needed, seconds_a_pass
 from lightcube.backward.solving import make_job
 from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.events import Tell
 from lightcube.jobs.partial import begun_units
+from lightcube.kernels.tasks import threads
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.planning.plan import Plan, plan, plan_stage
@@ -150,9 +156,9 @@ def divided(made: Job, output: str, workers: int, memory: int | None = None) -> 
 
 
 def needs(made: Job) -> dict[str, Any]:
-    """What a job will need, for JSON: a smaller one is timed for it."""
+    """What a job will need, for JSON: a smaller one is timed for it, unless one like it was timed here before."""
     work = expected_passes(made)
-    seconds = None if work is None else work * seconds_a_pass(made)
+    seconds = None if work is None else work * seconds_a_pass(made, _speed(made))
     return {
         "memory": job_memory(made),
         "free_memory": io.free_memory(),
@@ -162,6 +168,21 @@ def needs(made: Job) -> dict[str, Any]:
         "passes": None if work is None else made.recipe.passes or made.recipe.solver.passes,
         "seconds": seconds,
     }
+
+
+def _speed(made: Job) -> Speed:
+    """How fast jobs like this one are on this machine, with so many threads, as they were when it was last measured."""
+    kind = made.recipe.method if isinstance(made.recipe.method, str) else ""
+    asked = [version("lightcube"), platform.node(), threads(), kind, made.recipe.dtype, made.level, made.channels]
+    known, name = io.Remembered(), sha256(json.dumps(["speed", *asked]).encode()).hexdigest()
+    if kind and name in known:
+        with suppress(TypeError, ValueError):
+            products, rest = known[name]
+            return Speed(float(products), float(rest))
+    speed = measured_speed(made)
+    if kind:
+        known[name] = speed
+    return speed
 
 
 def check_memory(needed: int) -> None:
