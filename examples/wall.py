@@ -76,7 +76,8 @@ def ladder(grid: lc.Grid) -> list[NDArray[np.floating]]:
                 found.append(picture)
         return len(found) == 5
 
-    lc.solve(targets, grid, lc.Recipe(passes=300), callback=watch)
+    clear = lc.Cube(np.zeros((3, *grid.shape), np.float32), grid, rig)  # else small cubes come first, and it jumps
+    lc.solve(targets, grid, lc.Recipe(passes=300), start=clear, callback=watch)
     return [*found, right]
 
 

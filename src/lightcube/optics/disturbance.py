@@ -29,6 +29,8 @@ class Disturbance:
     disc_deg
         Angular diameter of the lamp's disc where it should have none, degrees; the screen then stands one cube width
         behind the turning cube's reach (`lightcube.optics.rig.soft`).
+    further
+        By how much of the cube's width every screen stands too far away, along the light through its picture's middle.
     """
 
     turn_deg: float = 0.0
@@ -39,16 +41,18 @@ class Disturbance:
     black: float = 0.0
     turn_of_64_deg: float = 0.0
     disc_deg: float = 0.0
+    further: float = 0.0
 
     def __post_init__(self) -> None:
         numbers = self.turn_deg, self.turn_of_64_deg, self.right_voxels, self.up_voxels, self.lamp, self.black
         least = min(self.levels, self.black, self.disc_deg)
-        if not np.all(np.isfinite([*numbers, self.disc_deg])) or self.lamp <= -1 or least < 0:
+        if not np.all(np.isfinite([*numbers, self.disc_deg, self.further])) or self.lamp <= -1 or least < 0:
             raise InputError(
                 f"no set-up is off by {self!r}: give finite numbers, lamp above -1, levels, black, disc of at least 0"
             )
 
     def __str__(self) -> str:
+        off = "too far" if self.further > 0 else "too near"
         said = {
             f"turned {self.turn_deg:g}°": self.turn_deg,
             f"turned {self.turn_of_64_deg:g}° · 64 / n": self.turn_of_64_deg,
@@ -58,11 +62,13 @@ class Disturbance:
             f"extinction in {self.levels + 1} levels": self.levels,
             f"black at {100 * self.black:.3g} % of white": self.black,
             f"lamp of {self.disc_deg:g}°, screen a cube's width behind": self.disc_deg,
+            f"screen {100 * abs(self.further):g} % of the cube's width {off}": self.further,
         }
         return ", ".join(words for words, number in said.items() if number) or "as made"
 
 
-#: What `robust` tries, by name; lamps of a size only where they have none, on a turntable.
+#: What `robust` tries, by name; lamps of a size only where they have none, on a turntable; other distances of screens
+#: only where they matter.
 DISTURBANCES = {
     "undisturbed": Disturbance(),
     "turned": Disturbance(turn_deg=0.2),
@@ -73,5 +79,7 @@ DISTURBANCES = {
     "extinction": Disturbance(levels=255),
     "black": Disturbance(black=0.01),
     "disc": Disturbance(disc_deg=0.5),
+    "far": Disturbance(further=0.05),
+    "near": Disturbance(further=-0.05),
     "all": Disturbance(0.2, 0.5, 0.5, 0.02, 255, 0.01),
 }

@@ -12,6 +12,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.rig import soft
 from lightcube.optics.transfer import encode
+from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
 from lightcube.scoring.metrics import check_same_views, psnr
 
@@ -24,11 +25,19 @@ def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float
     views = rig.views
     # In the cube's own axes it is the screen that moves, the other way; its columns and rows are one voxel apart.
     shift = disturbance.up_voxels * views.row_steps_mm - disturbance.right_voxels * views.column_steps_mm
+    shift = shift + disturbance.further * cube.grid.size_mm[1] * _ways(views)
     rig = replace(rig, views=replace(views, origins_mm=views.origins_mm + shift))
     if disturbance.levels:
         cube = replace(cube, extinction=_rounded(cube.extinction, disturbance.levels))
     for picture in cast(cube, rig, cube.powers * (1 + disturbance.lamp)):
         yield picture + np.float32(disturbance.black)
+
+
+def _ways(views: Views) -> NDArray[np.float64]:
+    """``(views, 3)``: the way of the light at each picture's middle, of length 1."""
+    lamps, is_near = views.lamps[:, :3], views.lamps[:, 3:] > 0
+    light = np.where(is_near, views.origins_mm - lamps, lamps)
+    return np.asarray(light / np.linalg.norm(light, axis=1, keepdims=True))
 
 
 def _rounded(extinction: NDArray[np.float32], levels: int) -> NDArray[np.float32]:
@@ -38,13 +47,18 @@ def _rounded(extinction: NDArray[np.float32], levels: int) -> NDArray[np.float32
 
 
 def disturbances(cube: Cube) -> dict[str, Disturbance]:
-    """Those of `DISTURBANCES` that can befall a cube: parallel lamps of a turntable may have a disc unawares."""
+    """Those of `DISTURBANCES` that can befall a cube: parallel lamps of a turntable may have a disc unawares.
+
+    How far screens stand away matters under lamps that are near, or have a disc.
+    """
     rig = cube.rig
+    spreads = bool(np.any(rig.sums.disc_deg) or np.any(rig.views.lamps[:, 3]))
     raised = None if np.any(rig.sums.disc_deg) or not np.all(rig.screens.endless) else rig.elevation_deg
     return {
         name: each
         for name, each in DISTURBANCES.items()
-        if not each.disc_deg or (raised is not None and abs(raised) + each.disc_deg / 2 < 90)
+        if (not each.disc_deg or (raised is not None and abs(raised) + each.disc_deg / 2 < 90))
+        and (spreads or not each.further)
     }
 
 
@@ -53,7 +67,8 @@ def robust(cube: Cube, targets: Targets, *, callback: Callable[[int, int], None]
 
     The `disturbances` are: none, the cube turned by 0.2 degrees, by 0.2 degrees times 64 / n of its n voxels across,
     half a voxel to the right, half a voxel up, every lamp power 2 % too high, extinction in 8 bits, a screen's black of
-    1 % of white, on a turntable a lamp of half a degree, and all at once but the lamp's size and the second turn.
+    1 % of white, on a turntable a lamp of half a degree, under lamps that are near or have a disc screens 5 % of the
+    cube's width too far and too near, and all at once but the lamp's size, the screens and the second turn.
 
     Parameters
     ----------
