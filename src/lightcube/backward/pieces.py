@@ -1,6 +1,5 @@
 """Solving the pieces of a job, one call of a solver each: watched, checkpointed, and continued where they stopped."""
 
-import math
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -9,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.backward.job import Job, level_name, phase_work, shares
+from lightcube.backward.job import Job, level_name
 from lightcube.backward.problem import Problem, pose, volume_from_unknowns
 from lightcube.backward.recipe import Recipe
+from lightcube.backward.reckoning import Reckoning, is_look, is_look_ahead
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape, coarser
 from lightcube.optics.arrays import Reals
@@ -23,7 +23,7 @@ FIRST_CHECKPOINT_S, CHECKPOINT_S = 2.0, 30.0
 #: Checkpoints that take long are rarer: between two lie so many times as many seconds as one took, at most so many.
 _PATIENCE, _LATEST_S = 20.0, 60.0
 #: Pictures are enough so much above what is asked for, dB: what is cast is looked at more and more rarely.
-_SPARE_DB, _FIRST_LOOK, _LATER_LOOK = 0.5, 8, 1.15
+_SPARE_DB = 0.5
 #: The solver ends where the mean squared difference was never so much smaller than it has been for so many passes, and
 #: for so large a part of all of them: some turns take long.
 _BETTER, _IN_VAIN, _PART_IN_VAIN = 0.99, 30, 1 / 3
@@ -221,14 +221,6 @@ def _bundle(problem: Problem, result: Result, history: Reals, stop_reason: str) 
     return bundle if result.lower_bound is None else bundle | {"lower_bound": np.array(result.lower_bound)}
 
 
-def _is_look(iteration: int) -> bool:
-    """Whether what is cast is looked at after so many iterations: the same ones wherever a solver goes on."""
-    look = _FIRST_LOOK
-    while look < iteration:
-        look = int(look * _LATER_LOOK) + 1
-    return look == iteration
-
-
 class _Watch:
     """What the solver of a piece calls after each iteration: checkpoints, and the caller's callback.
 
@@ -243,15 +235,11 @@ class _Watch:
 
     def __init__(self, job: Job, name: str, store: Store, callback: Watching | None, *, checkpoints: bool) -> None:
         self._name, self._job, self._store, self._callback = name, job, store, callback
-        work = shares(job)
-        names = list(work)
-        self._before = sum(work[earlier] for earlier in names[: names.index(name)]) / sum(work.values())
-        self._own = work[name] / sum(work.values())
         self._level, self._most = name.startswith("level"), job.recipe.passes or 0
         self._checkpoints, self._last, self._gap = checkpoints, time.monotonic(), FIRST_CHECKPOINT_S
         self._wanted = 10 ** (-(job.recipe.enough_db + _SPARE_DB) / 10)
-        self._least, self._best_at, self._part, self._expected = np.inf, 0.0, 0.0, np.inf
-        self._seen = 0, np.inf
+        self._reckoning = Reckoning(job, name, self._wanted)
+        self._least, self._best_at = np.inf, 0.0
         self.reason, self.stopped = "", False
 
     def go_on_from(self, state: Arrays | None) -> Reals:
@@ -263,17 +251,17 @@ class _Watch:
 
     def begin(self, problem: Problem, number: int, earlier: Reals) -> None:
         """Watch the phase of such a number, after others of such a history; at what the last one casts it looks."""
-        phases = self._job.phases(self._name)
-        self._problem, self._phase, self._earlier = problem, phases[number], earlier
-        self._done, self._to_come = (
-            sum(phase_work(self._job, each) for each in some) for some in (phases[:number], phases[number + 1 :])
-        )
-        self._looks = self._job.looks and not self._level and number + 1 == len(phases)
+        self._problem, self._earlier = problem, earlier
+        self._reckoning.begin(number)
+        self._is_last = number + 1 == len(self._job.phases(self._name))
 
     def __call__(self, progress: Progress) -> bool:
         """Tell the solver whether it is to stop."""
-        if self._looks and _is_look(progress.iteration):
-            self._look(progress)
+        if self._job.looks and not self._level:
+            if self._is_last and is_look(progress.iteration):
+                self._look(progress)
+            elif not self._is_last and is_look_ahead(progress.iteration, progress.iterations):
+                self._reckoning.looked_ahead(self._problem.error(progress.x, progress.lamp_powers))
         asked = self._callback is not None and bool(self._callback(self._step(progress)))
         if self.reason:  # finished, whatever the callback says of the pieces to come
             return True
@@ -288,7 +276,7 @@ class _Watch:
         It becomes worse in the end: a cube fits itself to the points that it is solved for, and to its mats.
         """
         error = self._problem.error(progress.x, progress.lamp_powers)
-        self._expect(progress, error)
+        self._reckoning.looked(progress.iteration, error)
         if 0 < error <= self._wanted:  # an exact 0 is not enough by itself
             self.reason = "enough"
         if error < _BETTER * self._least:
@@ -296,24 +284,6 @@ class _Watch:
         self._least = min(self._least, error)
         if progress.iteration - self._best_at > max(_IN_VAIN, _PART_IN_VAIN * progress.iteration) and not self.reason:
             self.reason = "best"
-
-    def _expect(self, progress: Progress, error: float) -> None:
-        """Reckon how many passes it will take: between what is allowed, and where errors that fall on were enough."""
-        now, (then, before) = progress.iteration, self._seen
-        self._seen = now, error
-        if then and 0 < self._wanted < error < before:
-            power = math.log(before / error) / math.log(now / then)
-            most = math.log(progress.iterations)
-            soonest = math.log(now) + math.log(error / self._wanted) / power
-            self._expected = math.exp((min(soonest, most) + most) / 2)
-
-    def _so_far(self, progress: Progress) -> float:
-        """Which part of the piece is done, as far as one can tell; it never becomes less."""
-        expected = min(max(self._expected, progress.iteration + 1), progress.iterations)
-        done, phase = self._done + phase_work(self._job, self._phase, progress.iteration), self._phase
-        whole = self._done + phase_work(self._job, phase, expected) + self._to_come
-        self._part = max(self._part, min(done / whole, 1.0))
-        return self._part
 
     def _keep(self, progress: Progress) -> None:
         began = time.monotonic()
@@ -324,7 +294,7 @@ class _Watch:
 
     def _step(self, progress: Progress) -> Step:
         passes = len(self._earlier) + progress.iteration
-        done = self._before + self._own * self._so_far(progress)
+        done = self._reckoning.done(progress.iteration, progress.iterations)
         window = self._problem.rows, self._problem.part.colours
         if self._level:
             return Step(0, self._most, done, progress.residual, None, window)
