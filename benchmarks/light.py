@@ -9,6 +9,7 @@ photographs, or 32 others: crops of Middlebury's motorcycle (scikit-image, CC0),
 must        sixteen to sixty-four pictures of many shapes, quality best
 hold        pictures that stand over a range of angles, the least PSNR within it
 mat         pictures in a dark mat, and held
+beyond      how much the rest of the shadow counts, beyond the mat
 points      points of a pixel, lattices and square grids, and the judge against 32 x 32 beams
 grain       how much points weigh beside a pixel's mean: pictures alone, and with mats and held
 scenes      traced scenes: the juggler under a raised lamp, gems under a level one
@@ -94,7 +95,7 @@ def measured(targets: lc.Targets, grid: lc.Grid, recipe: lc.Recipe) -> tuple[Row
     solution = lc.solve(targets, grid, recipe)
     seconds = time.perf_counter() - began
     scores = lc.score(solution.cube, targets)
-    names = ("psnr_mean", "psnr_min", "thin_psnr_mean", "grain_rms", "mat_rms")
+    names = ("psnr_mean", "psnr_min", "thin_psnr_mean", "grain_rms", "mat_rms", "beyond_rms")
     figures = {name: scores[name] for name in names if name in scores}
     return {**figures, "passes": len(solution.residuals), "seconds": seconds}, solution.cube
 
@@ -161,6 +162,13 @@ def mat(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
         "none": lc.Recipe(passes=150, light=light),
     }.items():
         yield name, partial(solved, (which, 16, 32, 32, 35), 16.0, recipe)
+
+
+def beyond(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """Weights of the shadow beyond the mat."""
+    for weight in (0.0, 0.001, 0.003, 0.01):
+        recipe = lc.Recipe(passes=120, light=lc.Light(grain=0.01), mat=lc.Mat(beyond=weight), hold_deg=0.25)
+        yield f"{weight:g}", partial(solved, (which, 16, 32, 32, 35), 16.0, recipe)
 
 
 def points(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
@@ -270,6 +278,7 @@ TABLES = {
     "must": must,
     "hold": hold,
     "mat": mat,
+    "beyond": beyond,
     "points": points,
     "grain": grain,
     "scenes": scenes,
