@@ -9,6 +9,8 @@ photographs, or 32 others: crops of Middlebury's motorcycle (scikit-image, CC0),
 must        sixteen to sixty-four pictures of many shapes, quality best
 hold        pictures that stand over a range of angles, the least PSNR within it
 mat         pictures in a dark mat, and held
+tilts       lamps of one, two and three elevations in turn, and screens square to the light; n = 32
+starts      from smaller cubes, a clear one, and random ones; n = 32
 beyond      how much the rest of the shadow counts, beyond the mat
 points      points of a pixel, lattices and square grids, and the judge against 32 x 32 beams
 grain       how much points weigh beside a pixel's mean: pictures alone, and with mats and held
@@ -89,10 +91,12 @@ def cube_for(
     return lc.fit(pictures(which, count, columns / rows), rig), grid
 
 
-def measured(targets: lc.Targets, grid: lc.Grid, recipe: lc.Recipe) -> tuple[Row, lc.Cube]:
+def measured(
+    targets: lc.Targets, grid: lc.Grid, recipe: lc.Recipe, start: lc.Cube | None = None
+) -> tuple[Row, lc.Cube]:
     """Solve, and say how good it is by area, how long it took and how many passes."""
     began = time.perf_counter()
-    solution = lc.solve(targets, grid, recipe)
+    solution = lc.solve(targets, grid, recipe, start=start)
     seconds = time.perf_counter() - began
     scores = lc.score(solution.cube, targets)
     names = ("psnr_mean", "psnr_min", "thin_psnr_mean", "grain_rms", "mat_rms", "beyond_rms")
@@ -169,6 +173,56 @@ def beyond(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
     for weight in (0.0, 0.001, 0.003, 0.01):
         recipe = lc.Recipe(passes=120, light=lc.Light(grain=0.01), mat=lc.Mat(beyond=weight), hold_deg=0.25)
         yield f"{weight:g}", partial(solved, (which, 16, 32, 32, 35), 16.0, recipe)
+
+
+def tilts(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """Where lamps and screens may stand."""
+    for count, side in ((16, 20), (32, 16)):
+        for raised in ((35,), (25, 45), (20, 35, 50), (35, -35)):
+            name = f"{count} of {side} x {side}, {' and '.join(map(str, raised))} degrees"
+            yield name, partial(tilted, which, count, side, raised)
+        for high in (side, side - 2):
+            yield f"{count} of {high} x {high}, 35, square", partial(tilted, which, count, high, (35,), square=True)
+
+
+def tilted(which: str, count: int, side: int, raised: tuple[float, ...], *, square: bool = False) -> Row:
+    """Pictures under lamps of several elevations in turn, on screens that are upright or face the light."""
+    grid, angles_deg = lc.Grid((32, 32, 32), 100 / 32), lc.spread_angles(count, elevation_deg=35)
+    order = np.argsort(np.arange(count) % len(raised), kind="stable")
+    each = [
+        lc.turntable(grid, angles_deg[number :: len(raised)], elevation_deg=elevation_deg, picture_shape=(side, side))
+        for number, elevation_deg in enumerate(raised)
+    ]
+    views = each[0].views
+    for rig in each[1:]:
+        views = views.joined(rig.views)
+    if square:
+        light, right = views.lamps[:, :3], views.column_steps_mm
+        down = np.cross(light, right)
+        down *= -np.sign(down[:, 2:]) * grid.voxel_mm / np.linalg.norm(down, axis=1, keepdims=True)
+        views = replace(views, row_steps_mm=down)
+    targets = lc.fit(pictures(which, count, 1.0), lc.Rig.of(views, angles_deg[order], power_max=16.0))
+    return measured(targets, grid, lc.Recipe(passes=120))[0]
+
+
+def starts(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """Where one ends that starts elsewhere: what is asked for is not convex."""
+    for seed, count, side in ((0, 8, 20), (1, 12, 18), (2, 16, 16), (3, 16, 20), (4, 24, 16)):
+        for name in ("smaller cubes", "clear", "random, 1", "random, 3"):
+            yield f"{count} of {side} x {side} from {name}", partial(started, which, seed, count, side, name)
+
+
+def started(which: str, seed: int, count: int, side: int, name: str) -> Row:
+    """A cube that starts from smaller ones, or from one that lets e^-1 or e^-3 of the light through on average."""
+    rng, grid = np.random.default_rng(seed), lc.Grid((32, 32, 32), 100 / 32)
+    angles_deg = lc.spread_angles(count, elevation_deg=35) + rng.uniform(0, 20)
+    rig = lc.turntable(grid, angles_deg, elevation_deg=35, picture_shape=(side, side))
+    targets, start = lc.fit(pictures(which, count, 1.0), rig), None
+    if name != "smaller cubes":
+        dark = 0.0 if name == "clear" else float(name[-1]) / 100
+        extinction = rng.exponential(1, (3, *grid.shape)).astype(np.float32) * np.float32(dark)
+        start = lc.Cube(extinction, grid, rig)
+    return measured(targets, grid, lc.Recipe(passes=400, light=lc.Light(8, 5)), start)[0]
 
 
 def points(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
@@ -278,6 +332,8 @@ TABLES = {
     "must": must,
     "hold": hold,
     "mat": mat,
+    "tilts": tilts,
+    "starts": starts,
     "beyond": beyond,
     "points": points,
     "grain": grain,
