@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ STOPS = [10.0, 100.0, 250.0]
 BETWEEN = [10.0, 191.0, 60.0]
 
 
-def cube_of(elevation_deg: float = 35.0, picture_shape: tuple[int, int] = (3, 5), **more: float) -> Cube:
+def cube_of(elevation_deg: float = 35.0, picture_shape: tuple[int, int] = (3, 5), **more: Any) -> Cube:
     rig = turntable(GRID, STOPS, elevation_deg=elevation_deg, picture_shape=picture_shape, **more)
     random = np.random.default_rng(2)
     extinction = random.gamma(0.5, 1.5, (3, *GRID.shape)).astype(np.float32)

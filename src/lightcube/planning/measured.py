@@ -12,17 +12,28 @@ from lightcube.optics.rig import Rig
 
 
 def is_measured(rig: Rig, grid: Grid) -> bool:
-    """Whether one parallel lamp, raised alike for all pictures, shines on a screen behind, its pixels as voxels."""
+    """Whether one parallel lamp, raised alike for all pictures, shines on a screen behind, its pixels whole voxels."""
+    return rig.is_thin and rig.elevation_deg is not None and voxels_a_pixel(rig, grid) > 0
+
+
+def voxels_a_pixel(rig: Rig, grid: Grid) -> int:
+    """How many voxels all pixels are wide and high, to a millionth; 0 where that is not one whole number."""
     steps = rig.views.column_steps_mm, rig.views.row_steps_mm
-    as_voxels = all(np.allclose(np.linalg.norm(each, axis=1), grid.voxel_mm, rtol=1e-6) for each in steps)
-    return rig.is_thin and rig.elevation_deg is not None and as_voxels
+    sides = np.concatenate([np.linalg.norm(each, axis=1) for each in steps]) / grid.voxel_mm
+    pixel = round(float(sides[0]))
+    return pixel if np.allclose(sides, pixel, rtol=1e-6, atol=0) else 0
 
 
-def unmeasured(rig: Rig) -> list[str]:
-    """A sentence where a lamp has a size: rehearsals mind it, but their law was fitted to lamps without one."""
-    if not np.any(rig.sums.disc_deg):
-        return []
-    return ["how much a lamp's size costs was not measured: pictures may become worse than expected"]
+def unmeasured(rig: Rig, grid: Grid) -> list[str]:
+    """Sentences on what rehearsals mind, and their law was not fitted to: a lamp with a size, pixels of many voxels."""
+    found = []
+    if np.any(rig.sums.disc_deg):
+        found.append("how much a lamp's size costs was not measured: pictures may become worse than expected")
+    if voxels_a_pixel(rig, grid) > 1:
+        found.append(
+            "how much pixels larger than voxels bring was not measured: pictures may become better than expected"
+        )
+    return found
 
 
 def raised(rig: Rig, grid: Grid) -> float:
@@ -31,6 +42,6 @@ def raised(rig: Rig, grid: Grid) -> float:
     if elevation_deg is None or not is_measured(rig, grid):
         raise InputError(
             "what to expect was measured for one parallel lamp, raised alike for all pictures, and a screen behind the "
-            "cube with pixels as wide as voxels: this room is another one, so solve a small cube to see"
+            "cube with pixels of whole voxels: this room is another one, so solve a small cube to see"
         )
     return elevation_deg
