@@ -208,14 +208,24 @@ def grain(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
 
 def pixel(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
     """Pixels of one voxel and of more, in dark mats and held."""
-    for n, pixels, side in ((64, 32, 1), (64, 16, 2), (64, 48, 1), (64, 24, 2), (128, 32, 2)):
-        yield f"n = {n}, {pixels} x {pixels} pixels of {side} x {side} voxels", partial(coarse, which, n, pixels, side)
+    for n, pixels, side, points in (
+        (64, 32, 1, 13),
+        (64, 16, 2, 13),
+        (64, 16, 2, 34),
+        (64, 48, 1, 13),
+        (64, 24, 2, 13),
+        (64, 24, 2, 34),
+        (128, 32, 2, 13),
+    ):
+        name = f"n = {n}, {pixels} x {pixels} pixels of {side} x {side} voxels, {points} points"
+        yield name, partial(coarse, which, n, pixels, side, points)
 
 
-def coarse(which: str, n: int, pixels: int, side: int) -> Row:
+def coarse(which: str, n: int, pixels: int, side: int, points: int) -> Row:
     """Sixteen square pictures of so many pixels a side, of so many voxels each, and what is expected of them."""
     targets, grid = cube_for(which, 16, pixels, pixels, 35, n=n, pixel=side)
-    recipe = lc.Recipe.of_quality("normal", mat=lc.Mat(), hold_deg=0.25 * 64 / n)
+    light = lc.Light(points)
+    recipe = lc.Recipe.of_quality("normal", mat=lc.Mat(), hold_deg=0.25 * 64 / n, light=light)
     return {"expected": lc.predict(targets, grid, recipe).psnr_mean, **measured(targets, grid, recipe)[0]}
 
 

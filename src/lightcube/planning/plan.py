@@ -103,7 +103,7 @@ class Plan:
     @cached_property
     def doubtful(self) -> list[str]:
         """What is probably not meant in a room that is described, which pictures are out of reach, what is unknown."""
-        unknown = unmeasured(self.targets.rig, self.grid) if self.prediction.is_known else []
+        unknown = unmeasured(self.targets.rig) if self.prediction.is_known else []
         return unknown if self.stage is None else [*doubtful(self.stage), *sentences(self.targets), *unknown]
 
 
