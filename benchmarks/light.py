@@ -15,6 +15,7 @@ beyond      how much the rest of the shadow counts, beyond the mat
 points      points of a pixel, lattices and square grids, and the judge against 32 x 32 beams
 grain       how much points weigh beside a pixel's mean: pictures alone, and with mats and held
 scenes      traced scenes: the juggler under a raised lamp, gems under a level one
+pixel       pixels of one voxel and of 2 x 2, alike and as many
 default     sixteen pictures with all defaults, n = 64 and 128
 large       the same, n = 300
 play        how far whole screens, and parts of pixels, are off means of very many beams
@@ -77,7 +78,15 @@ def others(count: int, aspect: float) -> lc.Pictures:
 
 
 def cube_for(
-    which: str, count: int, columns: int, rows: int, elevation_deg: float, *, n: int = 64, power: float = 16.0
+    which: str,
+    count: int,
+    columns: int,
+    rows: int,
+    elevation_deg: float,
+    *,
+    n: int = 64,
+    power: float = 16.0,
+    pixel: int = 1,
 ) -> tuple[lc.Targets, lc.Grid]:
     """Pictures of so many pixels, and the cube for them."""
     grid = lc.Grid((n, n, n), 100 / n)
@@ -86,6 +95,7 @@ def cube_for(
         lc.spread_angles(count, elevation_deg=elevation_deg),
         elevation_deg=elevation_deg,
         picture_shape=(rows, columns),
+        pixel=pixel,
         power_max=power,
     )
     return lc.fit(pictures(which, count, columns / rows), rig), grid
@@ -258,6 +268,29 @@ def grain(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
         yield f"{weight:g}, in a mat and held", partial(solved, asked, 16.0, held)
 
 
+def pixel(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """Pixels of one voxel and of more, in dark mats and held."""
+    for n, pixels, side, points in (
+        (64, 32, 1, 13),
+        (64, 16, 2, 13),
+        (64, 16, 2, 34),
+        (64, 48, 1, 13),
+        (64, 24, 2, 13),
+        (64, 24, 2, 34),
+        (128, 32, 2, 13),
+    ):
+        name = f"n = {n}, {pixels} x {pixels} pixels of {side} x {side} voxels, {points} points"
+        yield name, partial(coarse, which, n, pixels, side, points)
+
+
+def coarse(which: str, n: int, pixels: int, side: int, points: int) -> Row:
+    """Sixteen square pictures of so many pixels a side, of so many voxels each, and what is expected of them."""
+    targets, grid = cube_for(which, 16, pixels, pixels, 35, n=n, pixel=side)
+    light = lc.Light(points)
+    recipe = lc.Recipe.of_quality("normal", mat=lc.Mat(), hold_deg=0.25 * 64 / n, light=light)
+    return {"expected": lc.predict(targets, grid, recipe).psnr_mean, **measured(targets, grid, recipe)[0]}
+
+
 def scenes(_: str) -> Iterator[tuple[str, Callable[[], Row]]]:
     """Pictures that belong together, and pictures that do not."""
     yield "juggler, 32 of 48 x 48, 35", partial(traced, "juggler", 32, (48, 48), 35.0)
@@ -337,6 +370,7 @@ TABLES = {
     "beyond": beyond,
     "points": points,
     "grain": grain,
+    "pixel": pixel,
     "scenes": scenes,
     "default": default,
     "large": large,

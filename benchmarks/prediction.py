@@ -147,9 +147,8 @@ def targets_of_case(problem: Case) -> tuple[Targets, Grid]:
     grid = Grid(problem.shape)
     rows, columns = problem.picture
     angles_deg = spread_angles(problem.views, elevation_deg=problem.elevation_deg)
-    rig = turntable(
-        grid, angles_deg, elevation_deg=problem.elevation_deg, picture_shape=problem.picture, **problem.lamp
-    )
+    lamp: dict[str, Any] = dict(problem.lamp)
+    rig = turntable(grid, angles_deg, elevation_deg=problem.elevation_deg, picture_shape=problem.picture, **lamp)
     if problem.style in SCENES:
         pictures = scene_targets(io.read_scene(problem.style), rig, grid).pictures
     else:

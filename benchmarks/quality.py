@@ -185,7 +185,7 @@ def targets_of_problem(problem: Problem) -> tuple[lc.Targets, lc.Grid]:
     grid = lc.Grid((problem.n,) * 3, voxel_mm=100 / problem.n)
     angles_deg = lc.spread_angles(problem.count, elevation_deg=problem.elevation_deg)
     shape = (problem.rows, problem.columns)
-    lamp = {"power": 1.0} if problem.lamp_max is None else {"power_max": float(problem.lamp_max)}
+    lamp: dict[str, Any] = {"power": 1.0} if problem.lamp_max is None else {"power_max": float(problem.lamp_max)}
     rig = lc.turntable(grid, angles_deg, elevation_deg=problem.elevation_deg, picture_shape=shape, **lamp)
     if problem.pictures == "photographs":
         return fit(samples.photographs(problem.count, problem.columns / problem.rows), rig), grid

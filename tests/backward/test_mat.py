@@ -54,6 +54,17 @@ def test_no_mat_is_wanted_where_no_glass_is() -> None:
     assert np.all(wide.weight[through == 0] == 0)
 
 
+@pytest.mark.parametrize("pixel", [2, 3])
+def test_a_mat_of_larger_pixels_ends_with_the_shadow_too(pixel: int) -> None:
+    grid = Grid((10, 12, 14), 0.7)
+    raster = raster_shape(grid, 35.0, pixel)
+    rows, columns = (4 - count % 2 for count in raster)
+    rig = turntable(grid, [10.0, 80.0, 200.0], elevation_deg=35.0, picture_shape=(rows, columns), pixel=pixel)
+    assert margin(rig, grid, Mat(width=0.25)) == (1, 1)
+    assert widened(rig, grid, Mat(width=9.0)).picture_shape == raster
+    assert rig.whole(grid).picture_shape == raster
+
+
 def test_level_light_has_no_mat_above_pictures_as_high_as_the_cube() -> None:
     targets = some_targets(0.0, (10, 6))
     assert margin(targets.rig, GRID, Mat())[0] == 0

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from lightcube.backward.pieces import Step
+from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
 from lightcube.errors import InputError
 from lightcube.forward import casting
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
-from lightcube.optics.grid import Grid
+from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.material import Material
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import BLACK, decode
@@ -61,6 +62,27 @@ def test_a_cubes_own_shadows_come_back(method: str, elevation_deg: float) -> Non
     assert solution.cube.provenance["method"] == method
     assert score(solution.cube, targets)["thin_psnr_min"] >= 60
     assert solution.cube.extinction.min() >= 0
+
+
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_shadows_in_pixels_of_many_voxels_come_back(elevation_deg: float) -> None:
+    """By areas; there are fewer pixels than voxels, so nothing is in the way of pictures."""
+    grid = Grid((6, 7, 8), 0.5)
+    extinction = np.random.default_rng(0).uniform(0, 0.4, (3, *grid.shape)).astype(np.float32)
+    rig = turntable(grid, [10.0, 80.0, 200.0, 301.0], elevation_deg=elevation_deg, pixel=2, power=1.0)
+    targets = Targets(np.stack(list(casting.cast(Cube(extinction, grid, rig)))), rig)
+    solution = solve(targets, grid, Recipe(passes=150))
+    assert solution.cube.rig.picture_shape == raster_shape(grid, elevation_deg, 2)
+    assert score(solution.cube, targets)["psnr_min"] >= 45
+
+
+def test_pictures_of_large_pixels_that_are_wider_than_the_screen_are_refused() -> None:
+    grid = Grid((6, 7, 8), 0.5)
+    rig = turntable(grid, [10.0, 80.0], pixel=2)
+    rig = rig.with_pixels(1.0, (rig.picture_shape[0], rig.picture_shape[1] + 2))
+    targets = Targets(np.full((2, *rig.picture_shape, 3), 0.5, np.float32), rig)
+    with pytest.raises(InputError, match="larger than"):
+        solve(targets, grid, Recipe())
 
 
 @pytest.mark.parametrize("method", METHODS)

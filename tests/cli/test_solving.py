@@ -75,6 +75,7 @@ def test_paper_is_the_papers_set_up(run, pictures: Path, tmp_path: Path) -> None
         ("--span-deg", "360"),
         ("--angles-deg", "0,1,2,3"),
         ("--picture-width", "0.5"),
+        ("--pixel", "2"),
         ("--powers", "shared"),
         ("--lamp-power", "2"),
         ("--lamp-max", "4"),
@@ -105,6 +106,11 @@ def test_paper_with_what_contradicts_it_is_refused(  # type: ignore[no-untyped-d
         ("--black", "-0.5"),
         ("--picture-width", "0"),
         ("--picture-width", "1.9"),
+        ("--pixel", "0"),
+        ("--pixel", "-2"),
+        ("--pixel", "7"),
+        ("--pixel", "1.5"),
+        ("--pixel", "2", "--picture-width", "2.5"),
         ("--powers", "coarse", "--lamp-power", "3"),
     ],
 )
@@ -174,6 +180,9 @@ def test_options_are_settled_before_anything_is_read() -> None:
         ("--elevation-deg", "-20", "--order", "best", "--shift", "1"),
         ("--lamp-deg", "0.5", "--screen-mm", "0"),
         ("--lamp-deg", "0", "--paper"),
+        ("--pixel", "1", "--paper"),
+        ("--pixel", "3", "--shift", "1", "--order", "best"),
+        ("--pixel", "2", "--elevation-deg", "0", "--powers", "coarse"),
     ],
 )
 def test_odd_but_possible_options_work(run, unlike: Path, tmp_path: Path, options: tuple[str, ...]) -> None:  # type: ignore[no-untyped-def]

@@ -36,7 +36,7 @@ def photograph(view: int) -> NDArray[np.float64]:
 
 def rig_of(view: int, shape: tuple[int, int, int] | None = None) -> Rig:
     angle_deg, elevation_deg, lamp_deg, screen_mm = stored()["views"][view]
-    soft = {"lamp_deg": float(lamp_deg), "screen_mm": float(screen_mm)} if lamp_deg else {}
+    soft: dict[str, Any] = {"lamp_deg": float(lamp_deg), "screen_mm": float(screen_mm)} if lamp_deg else {}
     return turntable(
         grid_of(shape or stored()["extinction"].shape[1:]),
         [angle_deg],

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from lightcube.optics.light import AROUND, AROUND_ROW, Beams, lattice
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import Views
-from tests.helpers.areas import along_row, averaged
+from tests.helpers.areas import JUDGED, along_row, averaged
 
 GRID = Grid((3, 5, 7), 0.5)
 STOPS = [10.0, 100.0, 250.0]
@@ -22,7 +23,7 @@ STOPS = [10.0, 100.0, 250.0]
 BETWEEN = [10.0, 191.0, 60.0]
 
 
-def cube_of(elevation_deg: float = 35.0, picture_shape: tuple[int, int] = (3, 5), **more: float) -> Cube:
+def cube_of(elevation_deg: float = 35.0, picture_shape: tuple[int, int] = (3, 5), **more: Any) -> Cube:
     rig = turntable(GRID, STOPS, elevation_deg=elevation_deg, picture_shape=picture_shape, **more)
     random = np.random.default_rng(2)
     extinction = random.gamma(0.5, 1.5, (3, *GRID.shape)).astype(np.float32)
@@ -60,6 +61,24 @@ def test_the_picture_on_the_whole_screen_is_the_picture_bit_for_bit(
     for screen, picture, (right, down) in zip(whole, alone, offsets, strict=True):
         shape = picture.shape[0], picture.shape[1]
         np.testing.assert_array_equal(in_the_middle(screen, shape, zoom * right, zoom * down), picture)
+
+
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+@pytest.mark.parametrize("pixel", [2, 3])
+def test_pixels_of_many_voxels_are_means_of_thin_beams(elevation_deg: float, pixel: int) -> None:
+    """Those at the judge's points; and nearly the means of pixels as large as voxels in the same places."""
+    raster = raster_shape(GRID, elevation_deg, pixel)
+    rows, columns = (2 - count % 2 for count in raster)
+    cube = cube_of(elevation_deg, (rows, columns), pixel=pixel)
+    shown = play(cube, BETWEEN)
+    assert shown.shape[1:3] == raster
+    alone = play(cube, BETWEEN, picture_only=True)
+    np.testing.assert_allclose(alone, averaged(cube, BETWEEN, JUDGED), rtol=2e-5, atol=1e-6)
+    inside = in_the_middle(shown[0], (rows, columns), 0, 0)
+    np.testing.assert_array_equal(inside, alone[0])
+    fine = replace(cube, rig=cube.rig.with_pixels(1 / pixel, (pixel * rows, pixel * columns)))
+    near = play(fine, BETWEEN, picture_only=True).reshape(3, rows, pixel, columns, pixel, 3).mean(axis=(2, 4))
+    assert np.sqrt(np.mean((alone - near) ** 2)) < 0.03
 
 
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])

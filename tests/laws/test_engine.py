@@ -26,13 +26,14 @@ SHAPES = [(3, 5, 7), (4, 6, 5), (2, 3, 8), (1, 4, 4)]
 DTYPES = [(np.float32, 1e-5), (np.float64, 1e-12)]
 
 
-def table(elevation_deg: float, narrower: int = 0) -> Geometry:
+def table(elevation_deg: float, narrower: int = 0, pixel: int = 1) -> Geometry:
     """A turntable; a window narrower by an odd number puts the beams of 0 and 90 degrees on faces and edges."""
 
     def views(grid: Grid) -> Views:
-        rows, columns = raster_shape(grid, elevation_deg)
+        side = min(pixel, *grid.shape)
+        rows, columns = raster_shape(grid, elevation_deg, side)
         shape = rows, max(columns - narrower, 1)
-        return turntable_views(grid, ANGLES, elevation_deg=elevation_deg, picture_shape=shape)
+        return turntable_views(grid, ANGLES, elevation_deg=elevation_deg, picture_shape=shape, pixel=side)
 
     return views
 
@@ -48,6 +49,7 @@ def room(*lamps: str) -> Geometry:
 
 
 TURNTABLES = {"level": table(0), "raised": table(35), "from below": table(-20), "on faces": table(0, narrower=1)}
+TURNTABLES |= {"pixels of 2 voxels": table(35, pixel=2), "level pixels of 3": table(0, pixel=3)}
 ROOMS = {"points": room("near", "inside", "level with faces"), "any direction": room("aslant", "+x", "steep")}
 #: Every engine, and what stands where it can be asked for.
 ENGINES: dict[type, dict[str, Geometry]] = {StackedBeams: TURNTABLES, Rays: TURNTABLES | ROOMS}

@@ -27,18 +27,18 @@ def test_the_papers_rasters() -> None:
     assert raster_shape(Grid((300, 300, 300))) == (300, 426)
 
 
-@given(st.tuples(*[st.integers(1, 40)] * 3), st.floats(-80, 80))
+@given(st.tuples(*[st.integers(1, 40)] * 3), st.floats(-80, 80), st.integers(1, 5))
 def test_the_raster_holds_the_whole_shadow_and_is_no_larger_than_it_must(
-    shape: tuple[int, int, int], elevation_deg: float
+    shape: tuple[int, int, int], elevation_deg: float, pixel: int
 ) -> None:
     nz, ny, nx = shape
-    rows, columns = raster_shape(Grid(shape), elevation_deg)
+    rows, columns = raster_shape(Grid(shape), elevation_deg, pixel)
     diagonal = math.hypot(nx, ny)
     height = nz + diagonal * abs(math.tan(math.radians(elevation_deg)))
-    assert (columns - ny) % 2 == 0
-    assert (rows - nz) % 2 == 0
-    assert diagonal - 1e-6 <= columns < diagonal + 2
-    assert height - 1e-6 <= rows < height + 2
+    assert (columns - -(-ny // pixel)) % 2 == 0
+    assert (rows - -(-nz // pixel)) % 2 == 0
+    assert diagonal - 1e-6 <= pixel * columns < diagonal + 2 * pixel
+    assert height - 1e-6 <= pixel * rows < height + 2 * pixel
 
 
 def test_light_screen_and_turning_are_as_the_conventions_say() -> None:
@@ -47,6 +47,10 @@ def test_light_screen_and_turning_are_as_the_conventions_say() -> None:
     assert np.allclose(views.lamps[0], [math.cos(math.pi / 6), 0, -0.5, 0])
     assert np.allclose(views.column_steps_mm[0], [0, -2, 0])
     assert np.allclose(views.row_steps_mm[0], [0, 0, -2])
+    wide = turntable_views(grid, [0.0, 90.0], elevation_deg=30.0, pixel=3)
+    assert np.allclose(wide.column_steps_mm, 3 * views.column_steps_mm)
+    assert np.allclose(wide.row_steps_mm, 3 * views.row_steps_mm)
+    assert wide.pixel_in(grid) == pytest.approx((3, 3))
     # turned by +90 degrees, the cube's own +x points along the room's +y: in its frame light goes along -y
     assert np.allclose(views.lamps[1], [0, -math.cos(math.pi / 6), -0.5, 0])
     assert np.allclose(views.column_steps_mm[1], [-2, 0, 0])
@@ -75,22 +79,24 @@ def test_spread_follows_the_elevation() -> None:
     assert spread_angles(4, elevation_deg=35)[-1] > 180
 
 
-@given(st.floats(0.01, 1.4), st.floats(0.2, 5), st.floats(-60, 60), st.tuples(*[st.integers(2, 60)] * 3))
+@given(
+    st.floats(0.01, 1.4), st.floats(0.2, 5), st.floats(-60, 60), st.tuples(*[st.integers(3, 60)] * 3), st.integers(1, 3)
+)
 def test_picture_shapes_have_the_rasters_parity_and_fit(
-    width: float, aspect: float, elevation_deg: float, shape: tuple[int, int, int]
+    width: float, aspect: float, elevation_deg: float, shape: tuple[int, int, int], pixel: int
 ) -> None:
     grid = Grid(shape)
-    raster = raster_shape(grid, elevation_deg)
+    raster = raster_shape(grid, elevation_deg, pixel)
     try:
-        rows, columns = picture_shape(grid, width, aspect, elevation_deg)
+        rows, columns = picture_shape(grid, width, aspect, elevation_deg, pixel)
     except InputError:
-        assert width * shape[1] > raster[1] - 2
+        assert width * shape[1] / pixel > raster[1] - 2
         return
     assert 1 <= rows <= raster[0]
     assert 1 <= columns <= raster[1]
     assert (raster[0] - rows) % 2 == 0
     assert (raster[1] - columns) % 2 == 0
-    assert abs(columns - width * shape[1]) <= 2
+    assert abs(columns - width * shape[1] / pixel) <= 2
 
 
 @pytest.mark.parametrize(
@@ -106,6 +112,10 @@ def test_picture_shapes_have_the_rasters_parity_and_fit(
         lambda: turntable_views(Grid((3, 3, 3)), [0], elevation_deg=-90),
         lambda: turntable_views(Grid((3, 3, 3)), [0], picture_shape=(3, 7)),
         lambda: turntable_views(Grid((3, 3, 3)), [0], picture_shape=(0, 3)),
+        lambda: turntable_views(Grid((3, 4, 5)), [0], pixel=0),
+        lambda: turntable_views(Grid((3, 4, 5)), [0], pixel=4),
+        lambda: turntable_views(Grid((4, 4, 4)), [0], picture_shape=(3, 3), pixel=2),
+        lambda: picture_shape(Grid((3, 4, 5)), 0.5, 1.0, pixel=4),
         lambda: picture_shape(Grid((3, 3, 3)), 0.0, 1.0),
         lambda: picture_shape(Grid((3, 3, 3)), 9.0, 1.0),
         lambda: picture_shape(Grid((3, 3, 3)), 1.0, math.inf),

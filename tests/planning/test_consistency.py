@@ -279,6 +279,11 @@ def test_the_load_counts_widths_or_areas() -> None:
     raised = turntable(grid, ANGLES, elevation_deg=30.0, picture_shape=(4, 3))
     assert load(level.views, grid) == pytest.approx(5 * 3 / 5)
     assert load(raised.views, grid) == pytest.approx(5 * 3 * 4 / (5 * 6))
+    wide = turntable(grid, ANGLES, picture_shape=(3, 3), pixel=2)
+    assert load(wide.views, grid) == pytest.approx(5 * 3 * 3 / (5 * 6))  # pixels a voxel, times the width
+    assert load(turntable(grid, ANGLES, elevation_deg=30.0, picture_shape=(3, 3), pixel=2).views, grid) == (
+        pytest.approx(load(wide.views, grid))
+    )
 
 
 def test_facts_go_through_json_and_say_whether_the_whole_shadow_is_seen() -> None:

@@ -14,7 +14,7 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from lightcube.pictures.turntable import Turntable
 from lightcube.planning import rehearsals
-from lightcube.planning.plan import PLANNED_DB, WIDTHS, plan, plan_stage, proportions
+from lightcube.planning.plan import PLANNED_DB, WIDTHS, narrower, plan, plan_stage, proportions
 from lightcube.planning.prediction import Prediction
 
 
@@ -120,6 +120,23 @@ def test_a_level_cube_is_as_high_as_its_pictures(formula: list[float]) -> None:
     assert max(planned.grid.size_mm) == pytest.approx(100)
 
 
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+@pytest.mark.parametrize("pixel", [2, 3])
+def test_pictures_of_larger_pixels_are_as_wide_of_fewer(formula: list[float], pixel: int, elevation_deg: float) -> None:
+    said = Turntable(elevation_deg=elevation_deg, pixel=pixel)
+    planned = plan(pictures(4, 30, 20), 36, turntable=said, picture_width=0.5)
+    rig, grid = planned.targets.rig, planned.grid
+    assert rig.views.pixel_in(grid) == pytest.approx((pixel, pixel))
+    assert max(grid.shape) == 36
+    usual = plan(pictures(4, 30, 20), 36, turntable=replace(said, pixel=1), picture_width=0.5)
+    assert pixel * rig.picture_shape[1] == pytest.approx(usual.targets.rig.picture_shape[1], abs=pixel)
+    if elevation_deg == 0:
+        assert pixel * rig.picture_shape[0] == grid.shape[0]
+    less = narrower(planned, 0.25).rig
+    assert less.views.pixel_in(grid) == pytest.approx((pixel, pixel))
+    assert less.picture_shape[1] == pytest.approx(0.25 * grid.shape[1] / pixel, abs=1)
+
+
 def test_a_given_shape_stays(formula: list[float]) -> None:
     planned = plan(pictures(), 64, shape=(20, 30, 31), size_mm=62.0)
     assert planned.grid == Grid((20, 30, 31), 2.0)
@@ -160,7 +177,7 @@ def test_a_stage_is_told_what_the_same_turntable_is() -> None:
     assert not unknown.is_known
     assert np.isnan([unknown.psnr_mean, unknown.psnr_min]).all()
 
-    coarse = replace(stage, screens=(replace(wall, pitch_mm=2 * side),))
+    coarse = replace(stage, screens=(replace(wall, pitch_mm=1.5 * side),))
     assert not plan_stage(coarse, planned.pictures).prediction.is_known
 
     inside = replace(stage, screens=(replace(wall, centre_mm=(0.0, 0.0, 0.0)),))

@@ -27,12 +27,12 @@ def problem(
     picture: tuple[int, int] = (6, 4),
     elevation_deg: float = 35.0,
     seed: int = 0,
+    pixel: int = 1,
 ) -> tuple[Targets, Grid]:
     """Random pictures."""
     grid = Grid(shape, 2.5)
-    stops = turntable(
-        grid, spread_angles(rig, elevation_deg=elevation_deg), elevation_deg=elevation_deg, picture_shape=picture
-    )
+    angles_deg = spread_angles(rig, elevation_deg=elevation_deg)
+    stops = turntable(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=picture, pixel=pixel)
     pictures = np.random.default_rng(seed).uniform(0.05, 1, (rig, *picture, 3)).astype(np.float32)
     return Targets(pictures, stops), grid
 
@@ -70,18 +70,19 @@ def test_what_was_doubled_is_reduced_to_what_it_was(elevation_deg: float) -> Non
 
 
 @pytest.mark.parametrize(
-    ("shape", "picture", "elevation_deg"),
+    ("shape", "picture", "elevation_deg", "pixel"),
     [
-        ((30, 50, 70), (18, 26), 30.0),
-        ((75, 48, 51), (75, 22), 0.0),
-        ((20, 64, 64), (10, 80), 20.0),
-        ((64, 64, 64), (96, 32), 45.0),
+        ((30, 50, 70), (18, 26), 30.0, 1),
+        ((75, 48, 51), (75, 22), 0.0, 1),
+        ((20, 64, 64), (10, 80), 20.0, 1),
+        ((64, 64, 64), (96, 32), 45.0, 1),
+        ((60, 80, 90), (24, 30), 35.0, 2),
     ],
 )
 def test_reduced_problems_keep_their_proportions(
-    shape: tuple[int, int, int], picture: tuple[int, int], elevation_deg: float
+    shape: tuple[int, int, int], picture: tuple[int, int], elevation_deg: float, pixel: int
 ) -> None:
-    targets, grid = problem(shape, 2, picture, elevation_deg)
+    targets, grid = problem(shape, 2, picture, elevation_deg, pixel=pixel)
     for width in range(20, 28):
         _check_proportions(targets, grid, *reduced(targets, grid, width), width)
 
@@ -90,15 +91,16 @@ def _check_proportions(targets: Targets, grid: Grid, small: Targets, small_grid:
     shape, picture, elevation_deg = grid.shape, targets.rig.picture_shape, float(targets.rig.views.elevations_deg[0])
     (nz, ny, nx), (rows, columns) = small_grid.shape, small.rig.picture_shape
     assert 0.8 * width - 1 <= max(ny, nx) <= width + 1
-    raster = raster_shape(small_grid, elevation_deg)
+    pixel = round(targets.rig.views.pixel_in(grid)[0])
+    raster = raster_shape(small_grid, elevation_deg, pixel)
     assert (rows - raster[0]) % 2 == (columns - raster[1]) % 2 == 0
     assert max(small_grid.size_mm[1:]) == pytest.approx(max(grid.size_mm[1:]))
     scale = max(ny, nx) / max(shape[1:])
     load = picture[1] / np.sqrt(shape[1] * shape[2]), columns / np.sqrt(ny * nx)
-    assert load[1] / load[0] == pytest.approx(1, abs=0.12)
+    assert load[1] / load[0] == pytest.approx(1, abs=0.12 * pixel)
     assert np.array([nz, rows, columns]) == pytest.approx(scale * np.array([shape[0], *picture]), abs=2.1)
     lengths = np.linalg.norm(small.rig.views.column_steps_mm, axis=1)
-    assert lengths == pytest.approx(small_grid.voxel_mm)
+    assert lengths == pytest.approx(pixel * small_grid.voxel_mm)
 
 
 @pytest.mark.parametrize("elevation_deg", [0.0, 10.0])
@@ -221,6 +223,16 @@ def test_means_and_worst_are_told_up_to_fifty() -> None:
     told = Prediction(np.array([20.0, 95.0, 41.0]), 24)
     assert (told.psnr_mean, told.psnr_min) == (50.0, 20.0)
     assert Prediction(np.array([20.0, 30.0, 40.0]), 24).psnr_mean == pytest.approx(30.0)
+
+
+def test_pixels_of_many_voxels_are_rehearsed_as_such() -> None:
+    """So many as voxels are too many for the cube; pixels that are no whole voxels were not measured."""
+    few = predict(*problem((12, 12, 12), picture=(4, 4), pixel=2), Recipe())
+    many = predict(*problem((12, 12, 12), picture=(8, 8)), Recipe())
+    assert few.psnr_mean > many.psnr_mean
+    targets, grid = problem()
+    with pytest.raises(InputError, match="whole voxels"):
+        predict(replace(targets, rig=targets.rig.with_pixels(1.5, targets.rig.picture_shape)), grid)
 
 
 def test_what_solve_refuses_is_refused() -> None:

@@ -20,6 +20,7 @@ from lightcube.projection.projector import Projector, dot_test
 from tests.projection.test_rays import lamps_for, lit, screens_for
 
 KINDS = ["level", "raised", "point", "any direction", "some pixels", "level windows", "raised windows"]
+KINDS += ["level by 2", "raised by 3 windows"]
 
 
 def windows(shape: tuple[int, ...]) -> NDArray[np.bool_]:
@@ -45,7 +46,8 @@ def operator(kind: str, shape: tuple[int, int, int] = (3, 5, 7)) -> Projector:
     """One of each kind of matrix, on four views of unequal sizes."""
     grid = Grid(shape, 0.7)
     if kind.startswith(("level", "raised")):
-        views = turntable_views(grid, [0.0, 13.0, 90.0, 200.0], elevation_deg=35.0 * kind.startswith("raised"))
+        raised, pixel = 35.0 * kind.startswith("raised"), next((n for n in (2, 3) if f"by {n}" in kind), 1)
+        views = turntable_views(grid, [0.0, 13.0, 90.0, 200.0], elevation_deg=raised, pixel=min(pixel, *shape))
         return Projector(grid, views, windows((4, *views.picture_shape)) if kind.endswith("windows") else None)
     lamps = ["near", "inside"] if kind == "point" else ["aslant", "+x"]
     screens = [screens_for(shape)[name] for name in ("slanted", "on faces of x")]
@@ -74,7 +76,7 @@ def test_inner_products_are_the_same_on_either_side(
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @pytest.mark.parametrize("shape", [(3, 5, 7), (4, 6, 5), (2, 17, 40)])
-@pytest.mark.parametrize("kind", ["level", "raised"])
+@pytest.mark.parametrize("kind", ["level", "raised", "level by 2", "raised by 2"])
 def test_stacked_beams_are_those_of_each_views_window(
     kind: str, shape: tuple[int, int, int], dtype: type[np.floating]
 ) -> None:

@@ -160,18 +160,19 @@ def test_any_rays_agree_with_plain_boxes(case: tuple[Grid, Views]) -> None:
 
 @pytest.mark.parametrize(("dtype", "bound"), [(np.float64, 1e-12), (np.float32, 1e-5)])
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0, -35.0])
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(
+    ("shape", "pixel"), [*((shape, 1) for shape in SHAPES), ((5, 6, 7), 2), ((5, 6, 7), 3), ((11, 18, 33), 2)]
+)
 def test_on_a_turntable_both_engines_are_one_matrix(
-    shape: tuple[int, int, int], elevation_deg: float, dtype: type[np.floating], bound: float
+    shape: tuple[int, int, int], pixel: int, elevation_deg: float, dtype: type[np.floating], bound: float
 ) -> None:
     """Windows one narrower or lower put the beams of 0 and 90 degrees on faces and edges."""
     grid = Grid(shape, 0.7)
-    rows, columns = raster_shape(grid, elevation_deg)
+    rows, columns = raster_shape(grid, elevation_deg, pixel)
     random = np.random.default_rng(2)
+    angles_deg = [0.0, 13.0, 90.0, 133.7, 180.0]
     for picture_shape in {(rows, columns), (rows, columns - 1), (max(rows - 1, 1), columns - 2)}:
-        views = turntable_views(
-            grid, [0.0, 13.0, 90.0, 133.7, 180.0], elevation_deg=elevation_deg, picture_shape=picture_shape
-        )
+        views = turntable_views(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=picture_shape, pixel=pixel)
         any_rays, stacked = Rays(grid, views), StackedBeams(grid, views)
         x = random.random((any_rays.shape[1], 3)).astype(dtype)
         b = random.random((any_rays.shape[0], 3)).astype(dtype)
@@ -195,6 +196,8 @@ def test_the_engine_follows_from_where_lamps_and_screens_stand() -> None:
     stacked = {
         "a turntable": table,
         "one whose lamp is level": turntable_views(grid, [0.0, 30.0]),
+        "rows and columns two voxels apart": turntable_views(grid, [0.0, 30.0], elevation_deg=20.0, pixel=2),
+        "columns of any width": changed(column_steps_mm=1.3 * table.column_steps_mm),
         "another window": changed(origins_mm=table.origins_mm + 0.3),
         "light aslant on the screen": changed(column_steps_mm=table.column_steps_mm + np.array([0.3, -0.2, 0])),
         "another length of the direction": changed(lamps=3 * lamps),
@@ -202,6 +205,8 @@ def test_the_engine_follows_from_where_lamps_and_screens_stand() -> None:
     others = {
         "a point among parallel lamps": changed(lamps=point),
         "rows not a voxel apart": changed(row_steps_mm=1.01 * table.row_steps_mm),
+        "rows one and two voxels apart": changed(row_steps_mm=table.row_steps_mm * np.array([[1], [2], [1]])),
+        "rows half a voxel apart": changed(row_steps_mm=0.5 * table.row_steps_mm),
         "a picture upside down": changed(row_steps_mm=-table.row_steps_mm),
         "columns that rise": changed(column_steps_mm=table.column_steps_mm + 0.1 * up),
         "a screen that leans": changed(row_steps_mm=table.row_steps_mm + np.array([0.1, 0, 0])),

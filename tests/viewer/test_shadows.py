@@ -94,19 +94,21 @@ def glass(shape: tuple[int, int, int], channels: int = 3, seed: int = 0) -> NDAr
     return random.gamma(0.3, 5 / (0.3 * max(shape)), (channels, *shape)).astype(np.float32)
 
 
-TURNTABLES: dict[str, tuple[tuple[int, int, int], float, tuple[int, int], int, Transfer]] = {
-    "level": ((3, 5, 7), 0.0, (3, 5), 3, "srgb"),
-    "raised": ((12, 12, 12), 35.0, (10, 12), 3, "srgb"),
-    "one colour, linear": ((5, 4, 6), 12.0, (5, 4), 1, "linear"),
+TURNTABLES: dict[str, tuple[tuple[int, int, int], float, tuple[int, int], int, Transfer, int]] = {
+    "level": ((3, 5, 7), 0.0, (3, 5), 3, "srgb", 1),
+    "raised": ((12, 12, 12), 35.0, (10, 12), 3, "srgb", 1),
+    "one colour, linear": ((5, 4, 6), 12.0, (5, 4), 1, "linear", 1),
+    "pixels of 2 voxels": ((8, 7, 9), 35.0, (4, 3), 3, "srgb", 2),
+    "level pixels of 2": ((6, 7, 5), 0.0, (3, 3), 3, "srgb", 2),
 }
 ANGLES = [0.0, 20.0, 33.3, 45.0, 89.9999, 90.0, 90.00001, 123.456, 180.0, 270.0, 359.99, 1e-4]
 
 
 def on_turntable(name: str, **more: Any) -> Cube:
     """A random cube with three stops and powers of their own."""
-    shape, elevation_deg, window, channels, transfer = TURNTABLES[name]
+    shape, elevation_deg, window, channels, transfer, pixel = TURNTABLES[name]
     grid = Grid(shape, 0.8)
-    rig = turntable(grid, [20.0, 90.0, 130.0], elevation_deg=elevation_deg, picture_shape=window)
+    rig = turntable(grid, [20.0, 90.0, 130.0], elevation_deg=elevation_deg, picture_shape=window, pixel=pixel)
     powers = np.random.default_rng(1).uniform(0.5, 3, (3, channels))
     return Cube(glass(shape, channels), grid, rig, powers, transfer=transfer, hold_deg=1.0, **more)
 

@@ -69,7 +69,8 @@ def margin(rig: Rig, grid: Grid, mat: Mat | None) -> tuple[int, int]:
         return 0, 0
     steepest = float(np.max(np.abs(rig.views.elevations_deg)))
     wanted = round(mat.width * max(rig.picture_shape))
-    most = [whole - own for whole, own in zip(raster_shape(grid, steepest), rig.picture_shape, strict=True)]
+    raster = raster_shape(grid, steepest, rig.views.pixel_in(grid))
+    most = [whole - own for whole, own in zip(raster, rig.picture_shape, strict=True)]
     rows, columns = (max(0, min(wanted, each // 2)) for each in most)
     return rows, columns
 

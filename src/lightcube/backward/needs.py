@@ -44,6 +44,7 @@ def memory_needed(
     per_stop: int = 1,
     sums: int | None = None,
     levels: int = 0,
+    apart: int = 1,
     units: int = 1,
     channels: int = 3,
     dtype: str = "float32",
@@ -64,6 +65,8 @@ def memory_needed(
         To how many sums these add up; None = each beam is for itself.
     levels
         How often the cube is halved for its start.
+    apart
+        How many slices the rows of pictures are apart; products take a copy of the unknowns where it is more than one.
     """
     rows, columns = picture_shape
     size = np.dtype(dtype).itemsize
@@ -73,10 +76,10 @@ def memory_needed(
     parts = split(grid.shape, channels, units, level=raised is None)
     share = max(part.columns for part in parts) / sum(part.columns for part in parts)
     beams = (views * per_stop, None if sums is None else views * sums)
-    needed = _solver(method, grid.shape, picture_shape, beams, channels * size * share, raised)
+    needed = _solver(method, grid.shape, picture_shape, beams, channels * size * share, raised, apart)
     if levels:
         half, small = coarse_shape(grid.shape, 1), (-(-rows // 2), -(-columns // 2))
-        level = pictures / 4 + _solver(method, half, small, beams, channels * size, raised)
+        level = pictures / 4 + _solver(method, half, small, beams, channels * size, raised, apart)
         needed = max(needed + size * channels * (math.prod(half) + math.prod(grid.shape) * share), level)
     merging = cube * (1 + max(0.25, size / 2 * share)) + pictures / 4
     return int(PROGRAM + pictures + max(needed, merging))
@@ -89,6 +92,7 @@ def _solver(
     views: tuple[int, int | None],
     depth: float,
     elevation_deg: float | None,
+    apart: int,
 ) -> float:
     """Bytes that a solver holds, `depth` of them for each voxel and each pixel; elevation None = slice by slice.
 
@@ -104,6 +108,7 @@ def _solver(
     equations = (count if sums is None else sums) * columns * (1 if elevation_deg is None else rows)
     if elevation_deg is None and not method.holds_matrix and is_worth_lines(nz * depth):
         beams += 1  # a product's copy with whole lines
+    unknowns += apart > 1 and not method.holds_matrix
     pixels = (beams * count + per_picture) * rows * columns
     arrays = depth * (unknowns * nz * ny * nx + pixels) + _EQUATION * equations
     if not method.holds_matrix:
@@ -134,6 +139,7 @@ def job_memory(job: Job) -> int:
             per_stop=per_stop,
             sums=None if len(every) == len(every.views) else -(-len(every) // len(rig)),
             levels=job.levels,
+            apart=views.slices_a_row(job.grid),
             units=job.units,
             channels=job.channels,
             dtype=job.recipe.dtype,

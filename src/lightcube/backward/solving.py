@@ -142,7 +142,8 @@ def check_targets(targets: Targets, grid: Grid) -> None:
     if not np.all(rig.screens.endless) or not is_stacked(grid, rig.views):
         return
     rows, columns = rig.picture_shape
-    most = [raster_shape(grid, elevation_deg) for elevation_deg in set(rig.views.elevations_deg.tolist())]
+    pixel, elevations_deg = rig.views.pixel_in(grid), set(rig.views.elevations_deg.tolist())
+    most = [raster_shape(grid, elevation_deg, pixel) for elevation_deg in elevations_deg]
     most_rows, most_columns = min(most)
     if rows > most_rows or columns > most_columns:
         raise InputError(

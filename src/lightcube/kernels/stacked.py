@@ -5,6 +5,11 @@ starts at ``beams[view, 0] + column * beams[view, 1]`` and runs along ``beams[vi
 the lowest picture row; row ``j`` is the same beam ``j`` voxels higher. So a piece in slice ``level`` joins column
 ``i`` of ``b`` to column ``i + level * channels`` of ``x``. Where beams are level, rows of the source may be longer.
 
+Where rows are `apart` slices apart, more than one, row ``j`` of a picture touches slice ``level + apart * j``: every
+such row meets slices of one class, ``level`` mod `apart`, and those one after the other. So the slices of each voxel
+stand sorted by class (`by_class`), classes all equally long, and each is a voxel of its own: ``x`` is
+``(ny * nx * apart, ceil(nz / apart) * channels)``, and its columns lie as close as where rows are one slice apart.
+
 Of view v only beams ``windows[v, 0]`` to before ``windows[v, 1]`` count, and of them the columns ``windows[v, 2]`` to
 before ``windows[v, 3]`` of ``b``: the others of a product are 0, and what stands there is not read.
 
@@ -129,6 +134,7 @@ def forward(
     x: Array,
     b: Array,
     channels: int,
+    apart: int,
     tasks: int,
 ) -> None:
     """``b = A x``; every number of `b` is written. At least `tasks` parts are worked on side by side, if possible."""
@@ -137,9 +143,8 @@ def forward(
     groups = (len(beams) + group - 1) // group
     parts = min((tasks + groups - 1) // groups, width)  # where there are few views, strips of beams
     work = _work(windows, nx, ny)
-    run(
-        _forward, groups * parts, work, beams, windows, width, nx, ny, scale, x, b, channels, group, parts, rays, pieces
-    )
+    grid = beams, windows, width, nx, ny, scale
+    run(_forward, groups * parts, work, *grid, x, b, channels, apart, group, parts, rays, pieces)
 
 
 def _work(windows: Array, nx: int, ny: int) -> int:
@@ -161,6 +166,7 @@ def _forward(
     x: Array,
     b: Array,
     channels: int,
+    apart: int,
     group: int,
     parts: int,
     most_rays: int,
@@ -178,7 +184,7 @@ def _forward(
         rays, ends = np.empty(group * most_rays, np.int64), np.empty(group * most_rays + 1, np.int64)
         room = group * most_rays * most_pieces
         places, shifts, weights = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
-        strides = (slices, nx * slices, channels)
+        strides = (apart * slices, nx * apart * slices, channels if apart == 1 else 1)
         for tile_y in range(0, ny, TILE):
             for tile_x in range(0, nx, TILE):
                 size_x, size_y = min(TILE, nx - tile_x), min(TILE, ny - tile_y)
@@ -202,7 +208,9 @@ def _forward(
                     shifts,
                     weights,
                 )
-                base = (tile_y * nx + tile_x) * slices
+                if apart > 1:
+                    _into_classes(ends[met], apart, slices, channels, places, shifts)
+                base = (tile_y * nx + tile_x) * apart * slices
                 for column in range(0, columns, COLUMNS):
                     end = min(column + COLUMNS, columns)
                     for i in range(met):
@@ -237,15 +245,15 @@ def adjoint(
     b: Array,
     x: Array,
     channels: int,
+    apart: int,
     tasks: int,
 ) -> None:
     """``x = A.T b``; every number of `x` is written. At least `tasks` parts are worked on side by side, if possible."""
     tiles = ((nx + TILE - 1) // TILE) * ((ny + TILE - 1) // TILE)
     parts = max(1, min((tasks + tiles - 1) // tiles, x.shape[1] // (4 * LANES)))
     work = _work(windows, nx, ny)
-    run(
-        _adjoint, tiles * parts, work, beams, windows, width, nx, ny, scale, b, x, channels, parts, *_room(beams, width)
-    )
+    grid = beams, windows, width, nx, ny, scale
+    run(_adjoint, tiles * parts, work, *grid, b, x, channels, apart, parts, *_room(beams, width))
 
 
 @compiled
@@ -261,6 +269,7 @@ def _adjoint(
     b: Array,
     x: Array,
     channels: int,
+    apart: int,
     parts: int,
     most_rays: int,
     most_pieces: int,
@@ -277,14 +286,14 @@ def _adjoint(
         start = (task % parts) * part
         stop = min(start + part, columns)
         for y in range(size_y):
-            row = (tile_y + y) * nx + tile_x
-            x[row : row + size_x, start:stop] = 0
+            row = ((tile_y + y) * nx + tile_x) * apart
+            x[row : row + size_x * apart, start:stop] = 0
         rays, ends = np.empty(group * most_rays, np.int64), np.empty(group * most_rays + 1, np.int64)
         room = group * most_rays * most_pieces
         voxels, levels, lengths = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
         places, shifts, weights = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
-        voxel_ends = np.empty(TILE * TILE + 1, np.int64)
-        strides = (1, size_x, -channels)
+        voxel_ends = np.empty(TILE * TILE * apart + 1, np.int64)
+        strides = (apart, size_x * apart, -channels if apart == 1 else 1)
         after = 0
         while after < len(beams):
             view, after = after, _after(windows, after, group)
@@ -309,12 +318,15 @@ def _adjoint(
                 levels,
                 lengths,
             )
+            if apart > 1:
+                _into_classes(ends[met], apart, 1, -channels, voxels, levels)
             _by_voxel(rays, ends, met, rows, low, voxels, levels, lengths, voxel_ends, places, shifts, weights)
             for column in range(start, stop, COLUMNS):
                 end = min(column + COLUMNS, stop)
-                for voxel in range(size_x * size_y):
+                wide = size_x * apart
+                for voxel in range(wide * size_y):
                     if voxel_ends[voxel + 1] > voxel_ends[voxel]:
-                        at = ((tile_y + voxel // size_x) * nx + tile_x + voxel % size_x) * columns
+                        at = (((tile_y + voxel // wide) * nx + tile_x) * apart + voxel % wide) * columns
                         add_rows(
                             target,
                             at,
@@ -329,6 +341,52 @@ def _adjoint(
                             column,
                             end,
                         )
+
+
+@compiled
+def _into_classes(count: int, apart: int, length: int, step: int, places: Array, levels: Array) -> None:
+    """Say where pieces are in classes of slices: so far, `length` a class, from `places`, and `step` a slice of it.
+
+    What comes as ``level`` of each of the first `count` pieces leaves as ``step * floor(level / apart)``.
+    """
+    for k in range(count):
+        lifted = levels[k] // apart
+        places[k] += (levels[k] - lifted * apart) * length
+        levels[k] = lifted * step
+
+
+def by_class(source: Array, target: Array, slices: int, apart: int) -> None:
+    """Sort slices by class, as the products want them: `source` is ``(voxels, slices * channels)``, 0 follows each."""
+    run(_by_class, len(source), source.size // 2, source, target, slices, apart)
+
+
+@compiled
+def _by_class(first: int, last: int, source: Array, target: Array, slices: int, apart: int) -> None:
+    channels, length = source.shape[1] // slices, target.shape[1]
+    for voxel in range(first, last):
+        for kind in range(apart):
+            row = target[voxel * apart + kind]
+            after = 0
+            for z in range(kind, slices, apart):
+                for channel in range(channels):
+                    row[after + channel] = source[voxel, z * channels + channel]
+                after += channels
+            row[after:length] = 0
+
+
+def from_classes(source: Array, target: Array, slices: int, apart: int) -> None:
+    """Inverse of `by_class`: `target` is ``(voxels, slices * channels)``."""
+    run(_from_classes, len(target), target.size // 2, source, target, slices, apart)
+
+
+@compiled
+def _from_classes(first: int, last: int, source: Array, target: Array, slices: int, apart: int) -> None:
+    channels = target.shape[1] // slices
+    for voxel in range(first, last):
+        for z in range(slices):
+            row, at = source[voxel * apart + z % apart], z // apart * channels
+            for channel in range(channels):
+                target[voxel, z * channels + channel] = row[at + channel]
 
 
 @compiled

@@ -57,24 +57,34 @@ class Grid:
 
 def _round_up(value: float, parity: int) -> int:
     """Smallest whole number of at least `value` that is even or odd like `parity` (to 1e-9)."""
-    whole = math.ceil(value - 1e-9)
+    whole = _pixels(value)
     return whole + (whole - parity) % 2
 
 
-def raster_shape(grid: Grid, elevation_deg: float = 0.0) -> tuple[int, int]:
-    """``(rows, columns)`` of a screen at voxel pitch that holds the cube's whole shadow at every turntable angle.
+def raster_shape(grid: Grid, elevation_deg: float = 0.0, pixel: float | tuple[float, float] = 1) -> tuple[int, int]:
+    """``(rows, columns)`` of the pixels of a screen that holds the cube's whole shadow at every turntable angle.
 
-    ``columns`` is the smallest integer of at least ``hypot(nx, ny)`` with ny's parity, ``rows`` that of
-    ``nz + hypot(nx, ny) * |tan(elevation)|`` with nz's: then no beam of 0 degrees runs along voxel faces.
+    A pixel is `pixel` voxels wide and high, or so high and so wide. ``columns * pixel`` is at least ``hypot(nx, ny)``,
+    ``rows * pixel`` at least ``nz + hypot(nx, ny) * |tan(elevation)|``; both counts are the smallest such ones that
+    are even or odd like those of the pixels that ``ny`` and ``nz`` voxels take. Of pixels as large as voxels no beam
+    of 0 degrees then runs along voxel faces.
     """
     nz, ny, nx = grid.shape
+    high, wide = pixel if isinstance(pixel, tuple) else (pixel, pixel)
     diagonal = math.hypot(nx, ny)
     height = nz + diagonal * abs(math.tan(math.radians(check_elevation(elevation_deg))))
-    return _round_up(height, nz), _round_up(diagonal, ny)
+    return _round_up(height / high, _pixels(nz / high)), _round_up(diagonal / wide, _pixels(ny / wide))
+
+
+def _pixels(value: float) -> int:
+    """Smallest whole number of at least `value` (to 1e-9)."""
+    return math.ceil(value - 1e-9)
 
 
 @checked
-def picture_shape(grid: Grid, picture_width: float, aspect: float, elevation_deg: float = 0.0) -> tuple[int, int]:
+def picture_shape(
+    grid: Grid, picture_width: float, aspect: float, elevation_deg: float = 0.0, pixel: int = 1
+) -> tuple[int, int]:
     """``(rows, columns)`` of pictures on the screen raster.
 
     Parameters
@@ -85,6 +95,8 @@ def picture_shape(grid: Grid, picture_width: float, aspect: float, elevation_deg
         Width of the picture divided by its height.
     elevation_deg
         Of the lamp, in degrees.
+    pixel
+        Width and height of a pixel in voxels, whole, from 1 to the cube's shortest side.
 
     Returns
     -------
@@ -94,18 +106,19 @@ def picture_shape(grid: Grid, picture_width: float, aspect: float, elevation_deg
     Raises
     ------
     InputError
-        Where the picture would be wider than the cube's screen, or a size is not positive.
+        Where the picture would be wider than the cube's screen, a pixel larger than the cube, or a size not positive.
     """
     if not (math.isfinite(picture_width) and picture_width > 0):
         raise InputError(f"a picture width must be a positive fraction of the cube's width, not {picture_width}")
     if not (math.isfinite(aspect) and aspect > 0):
         raise InputError(f"an aspect (width / height) must be a positive number, not {aspect}")
-    most_rows, most_columns = raster_shape(grid, elevation_deg)
-    columns = nearest(min(picture_width * grid.shape[1], most_columns + 2), most_columns)
+    most_rows, most_columns = raster_shape(grid, elevation_deg, check_pixel(pixel, grid))
+    across = grid.shape[1] / pixel
+    columns = nearest(min(picture_width * across, most_columns + 2), most_columns)
     if columns > most_columns:
         raise InputError(
             f"a picture width of {picture_width:g} of the cube's is wider than its screen of {most_columns} pixels: "
-            f"use at most {most_columns / grid.shape[1]:.3f}"
+            f"use at most {most_columns / across:.3f}"
         )
     rows = min(nearest(min(columns / aspect, most_rows + 2), most_rows), most_rows)
     return rows, columns
@@ -122,6 +135,17 @@ def check_elevation(elevation_deg: float) -> float:
     if not (math.isfinite(elevation_deg) and abs(elevation_deg) < 89.999):
         raise InputError(f"an elevation must lie between -90 and 90 degrees, both excluded, not {elevation_deg:g}")
     return float(elevation_deg)
+
+
+def check_pixel(pixel: int, grid: Grid) -> int:
+    """Return how many voxels a pixel is wide, or raise `InputError` unless it is 1 to the cube's shortest side."""
+    if not 1 <= pixel <= min(grid.shape):
+        nz, ny, nx = grid.shape
+        raise InputError(
+            f"a pixel is a whole number of voxels wide, from 1 to the shortest side of the cube of {nx} x {ny} x {nz}, "
+            f"not {pixel}"
+        )
+    return pixel
 
 
 def dense_step_deg(grid: Grid) -> float:

@@ -389,20 +389,16 @@ class Rig:
     def _whole_shape(self, grid: Grid) -> tuple[int, int]:
         """Rows and columns of pixels of the cube's whole shadow, and of its blur where a lamp has a disc."""
         raised, wide = np.radians(np.abs(self.views.elevations_deg)), np.radians(self.sums.disc_deg / 2)
-        behind = self.behind_mm / grid.voxel_mm
+        behind, (high, across) = self.behind_mm / grid.voxel_mm, self.views.pixel_in(grid)
         higher = behind * (np.tan(raised + wide) - np.tan(raised))
         aside = np.sin(wide) / np.cos(
             raised + wide
         )  # of the disc's points, for each mm that light goes behind the cube
         wider = behind * aside + np.hypot(*grid.shape[1:]) / 2 * (np.hypot(1, aside) - 1)
-        rows, columns = raster_shape(grid, float(np.max(np.degrees(raised + wide))))
-        more_rows, more_columns = (2 * math.ceil(float(np.max(more)) - _NONE) for more in (higher, wider))
-        high, across = (
-            grid.voxel_mm / float(np.min(np.linalg.norm(steps, axis=1)))
-            for steps in (self.views.row_steps_mm, self.views.column_steps_mm)
-        )
-        pixels = ((rows + more_rows) * high, (columns + more_columns) * across)
-        return math.ceil(pixels[0] - _SAME_PIXEL), math.ceil(pixels[1] - _SAME_PIXEL)
+        rows, columns = raster_shape(grid, float(np.max(np.degrees(raised + wide))), (high, across))
+        beyond = (np.max(higher) / high, np.max(wider) / across)
+        more_rows, more_columns = (2 * math.ceil(float(each) - _NONE) for each in beyond)
+        return rows + more_rows, columns + more_columns
 
     @property
     def behind_mm(self) -> Reals:
@@ -432,13 +428,14 @@ def turntable(
     *,
     elevation_deg: float = 0.0,
     picture_shape: tuple[int, int] | None = None,
+    pixel: int = 1,
     power: float | None = None,
     power_max: float = POWER_MAX,
     black: float = BLACK,
     lamp_deg: float = 0.0,
     screen_mm: float | None = None,
 ) -> Rig:
-    """A cube on a turntable in parallel light, before a vertical screen with rows and columns one voxel apart.
+    """A cube on a turntable in parallel light, before a vertical screen with rows and columns whole voxels apart.
 
     Parameters
     ----------
@@ -448,6 +445,8 @@ def turntable(
         Of the lamp, in degrees: light travels along ``(cos e, 0, -sin e)`` in the room.
     picture_shape
         ``(rows, columns)`` of a window in the middle of the screen; default the whole `raster_shape`.
+    pixel
+        Width and height of a pixel in voxels, whole, from 1 to the cube's shortest side.
     power, power_max, black
         Of the lamp and the screen, as `Rig.of` takes them.
     lamp_deg, screen_mm
@@ -465,9 +464,16 @@ def turntable(
     >>> rig.views.column_steps_mm.round(3) + 0.0
     array([[ 0., -1.,  0.],
            [-1.,  0.,  0.]])
+
+    The same window in pixels of 2 x 2 voxels, and all of the shadow in such pixels:
+
+    >>> lc.turntable(lc.Grid((4, 6, 6)), [0, 90], picture_shape=(2, 1), pixel=2)
+    <rig of 2 pictures of 2 x 1 pixels, 2 views>
+    >>> lc.turntable(lc.Grid((4, 6, 6)), [0, 90], pixel=2).picture_shape
+    (2, 5)
     """
     check_lamp(lamp_deg, screen_mm)
-    views = turntable_views(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=picture_shape)
+    views = turntable_views(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=picture_shape, pixel=pixel)
     sharp = Rig.of(views, power=power, power_max=power_max, black=black)
     return soft(sharp, grid, lamp_deg, screen_mm) if lamp_deg else sharp
 

@@ -14,7 +14,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Indices, Numbers, Reals, as_indices, as_numbers, keep
 from lightcube.optics.checks import check_fields, checked
-from lightcube.optics.grid import Grid, check_elevation, raster_shape
+from lightcube.optics.grid import Grid, check_elevation, check_pixel, raster_shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +98,18 @@ class Views:
         """Elevation of each view's parallel lamp above the horizon, degrees in (-90, 90), to 1e-9."""
         level = np.hypot(self.lamps[:, 0], self.lamps[:, 1])
         return np.asarray(np.round(np.degrees(np.arctan2(-self.lamps[:, 2], level)), 9), dtype=np.float64)
+
+    def pixel_in(self, grid: Grid) -> tuple[float, float]:
+        """Height and width of the smallest pixel, in voxels' sides."""
+        steps = self.row_steps_mm, self.column_steps_mm
+        high, wide = (float(np.min(np.linalg.norm(each, axis=1))) / grid.voxel_mm for each in steps)
+        return high, wide
+
+    def slices_a_row(self, grid: Grid) -> int:
+        """How many slices the rows of all screens are apart, one right above the other; 0 where that is not whole."""
+        side = grid.voxel_mm
+        apart = max(1, round(-float(self.row_steps_mm[0, 2]) / side))
+        return apart if np.allclose(self.row_steps_mm, (0, 0, -apart * side), rtol=0, atol=1e-9 * side) else 0
 
     def take(self, indices: Indices) -> Views:
         """Return some of the views, in the order of `indices`."""
@@ -238,7 +250,12 @@ def rotations(axis: Numbers, degrees: Reals) -> Reals:
 
 
 def turntable_views(
-    grid: Grid, angles_deg: Numbers, *, elevation_deg: float = 0.0, picture_shape: tuple[int, int] | None = None
+    grid: Grid,
+    angles_deg: Numbers,
+    *,
+    elevation_deg: float = 0.0,
+    picture_shape: tuple[int, int] | None = None,
+    pixel: int = 1,
 ) -> Views:
     """The beams of `lightcube.turntable`, which takes and raises the same.
 
@@ -252,7 +269,8 @@ def turntable_views(
     """
     turned = check_angles(angles_deg)
     elevation_deg = check_elevation(elevation_deg)
-    raster = raster_shape(grid, elevation_deg)
+    side_mm = check_pixel(pixel, grid) * grid.voxel_mm
+    raster = raster_shape(grid, elevation_deg, pixel)
     shape = picture_shape or raster
     if shape[0] > raster[0] or shape[1] > raster[1]:
         raise InputError(
@@ -264,8 +282,8 @@ def turntable_views(
     return Views(
         lamps=np.concatenate([light, np.zeros((len(turned), 1))], axis=1),
         origins_mm=np.zeros((len(turned), 3)),
-        column_steps_mm=_turned(turned, (0.0, -grid.voxel_mm, 0.0)),
-        row_steps_mm=_turned(turned, (0.0, 0.0, -grid.voxel_mm)),
+        column_steps_mm=_turned(turned, (0.0, -side_mm, 0.0)),
+        row_steps_mm=_turned(turned, (0.0, 0.0, -side_mm)),
         picture_shape=shape,
     )
 

@@ -1,5 +1,7 @@
 """Where on the screen each picture stands."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,8 +26,10 @@ def spread_over_screen(targets: Targets, grid: Grid, pixels: int | None = None) 
     far = min(rows, columns) // 2 if pixels is None else pixels
     if far < 0:
         raise InputError(f"pictures cannot be moved by {far} pixels: give a whole number of at least 0")
-    screen = min(raster_shape(grid, elevation_deg)[0] for elevation_deg in targets.rig.views.elevations_deg)
-    aside = min(far, max(0, (min(grid.shape[1:]) - columns) // 4))
+    views = targets.rig.views
+    high, wide = views.pixel_in(grid)
+    screen = min(raster_shape(grid, elevation_deg, high)[0] for elevation_deg in views.elevations_deg)
+    aside = min(far, max(0, (math.floor(min(grid.shape[1:]) / wide + 1e-9) - columns) // 4))
     up = min(far, (screen - rows) // 2)
     rank = np.argsort(np.argsort(targets.angles_deg, kind="stable"), kind="stable")
     return np.stack([np.array([aside, -aside])[rank % 2], np.array([up, 0, -up])[rank % 3]], axis=1).astype(np.intp)

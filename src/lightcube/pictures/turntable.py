@@ -39,6 +39,9 @@ class Turntable:
         Display value, from half a level of 255 to below 1, that the screen cannot be darker than.
     lamp_deg
         Angular diameter of the lamp's disc, degrees from 0 to below 90; 0 = it has none.
+    pixel
+        Width and height of a picture's pixel in voxels, whole, from 1 to the cube's shortest side: a cube may be finer
+        than what it shows.
     screen_mm
         How far behind the circle that the turning cube's corners sweep the screen stands, mm, where the lamp has a
         disc; default the cube's width. Without a disc it does not matter.
@@ -59,6 +62,7 @@ class Turntable:
     black: float = BLACK
     lamp_deg: float = 0.0
     screen_mm: float | None = None
+    pixel: int = 1
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -66,6 +70,8 @@ class Turntable:
             keep(self, angles_deg=np.float64)
         if self.angles_deg is not None and self.span_deg is not None:
             raise InputError("angles and a span of angles are both given: use one of the two")
+        if self.pixel < 1:
+            raise InputError(f"a pixel is a whole number of voxels wide, of at least 1, not {self.pixel}")
         check_lamp(self.lamp_deg, self.screen_mm)
 
     def elevation_of(self, pictures: Pictures) -> float:
@@ -87,7 +93,7 @@ class Turntable:
         ------
         InputError
             Where there are fewer than two pictures, the angles do not fit, or they would be wider than the cube's
-            screen.
+            screen, or a pixel larger than the cube.
         """
         if len(pictures) < 2:
             raise InputError(
@@ -99,7 +105,8 @@ class Turntable:
             grid,
             self._angles(pictures, elevation_deg),
             elevation_deg=elevation_deg,
-            picture_shape=picture_shape(grid, picture_width, columns / rows, elevation_deg),
+            picture_shape=picture_shape(grid, picture_width, columns / rows, elevation_deg, self.pixel),
+            pixel=self.pixel,
             power=self.power,
             power_max=self.power_max,
             black=self.black,

@@ -14,7 +14,7 @@ from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK, decode, encode
 from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
-from lightcube.planning.measured import raised
+from lightcube.planning.measured import raised, voxels_a_pixel
 
 Floats = NDArray[np.float64]
 
@@ -77,12 +77,13 @@ def check(targets: Targets, grid: Grid) -> dict[str, Any]:
 def load(views: Views, grid: Grid) -> float:
     """How full the pictures make the cube: pixels per voxel, times the cube's width in voxels.
 
-    Level lamps: ``views * columns / ny``, how many widths of the cube the pictures are. Raised lamps, where rows share
-    slices: ``views * columns * rows / (ny * nz)``.
+    Level lamps: ``views * columns / ny`` over the slices that a pixel is high, how many widths of the cube the pictures
+    are where that is one. Raised lamps, where rows share slices: ``views * columns * rows / (ny * nz)``.
     """
     rows, columns = views.picture_shape
     nz, ny, _ = grid.shape
-    return len(views) * columns / ny * (1.0 if _is_level(views) else rows / nz)
+    high, _ = views.pixel_in(grid)
+    return len(views) * columns / ny * (1 / high if _is_level(views) else rows / nz)
 
 
 def mirror_conflicts(targets: Targets) -> list[tuple[int, int]]:
@@ -167,9 +168,10 @@ def row_conflicts(targets: Targets, grid: Grid, lamp_max: float = POWER_MAX) -> 
     -----
     A beam of `dark` that runs through the cube within the strip that the other picture shows has all its absorbance
     seen there. So totals bound each other, up to the factor ``1 / (2 - sqrt(2))`` by which sums over beams a voxel
-    apart can differ for one and the same voxel: what is listed is certain, and less goes unnoticed.
+    apart can differ for one and the same voxel: what is listed is certain, and less goes unnoticed. Of beams that are
+    further apart nothing is certain, and nothing is listed.
     """
-    if not _is_level(targets.rig.views):
+    if not _is_level(targets.rig.views) or voxels_a_pixel(targets.rig, grid) > 1:
         return []
     light = _log_light(targets)
     matters = targets.weight[..., None] > 0
@@ -375,13 +377,13 @@ def _absorbance(targets: Targets) -> Floats:
 
 def _holds_shadow(views: Views, grid: Grid) -> NDArray[np.bool_]:
     """For each view, whether no beam outside the picture touches the cube, or with a level lamp the slices shown."""
-    rows, columns = views.picture_shape
+    (rows, columns), (tall, wide) = views.picture_shape, views.pixel_in(grid)
     nz, ny, nx = grid.shape
     theta = np.radians(views.angles_deg)
     cos, sin = np.abs(np.cos(theta)), np.abs(np.sin(theta))
     high = nz + (nx * cos + ny * sin) * np.abs(np.tan(np.radians(views.elevations_deg)))
-    wide_enough = columns + 1 > nx * sin + ny * cos + 1e-6
-    return np.asarray(wide_enough & ((views.elevations_deg == 0) | (rows + 1 > high + 1e-6)))
+    wide_enough = (columns + 1) * wide > nx * sin + ny * cos + 1e-6
+    return np.asarray(wide_enough & ((views.elevations_deg == 0) | ((rows + 1) * tall > high + 1e-6)))
 
 
 def _inside(views: Views, grid: Grid, view: int) -> NDArray[np.bool_]:

@@ -122,7 +122,7 @@ def _draft(targets: Targets, grid: Grid) -> tuple[Targets, Grid]:
     nz, ny, nx = (max(1, round(side / scale)) for side in grid.shape)
     small = Grid((nz, ny, nx), grid.voxel_mm * scale)
     rig = targets.rig
-    most = raster_shape(small, float(np.min(np.abs(rig.views.elevations_deg))))
+    most = raster_shape(small, float(np.min(np.abs(rig.views.elevations_deg))), rig.views.pixel_in(grid))
     rows, columns = (min(max(1, round(side / scale)), end) for side, end in zip(rig.picture_shape, most, strict=True))
     draft = rig.with_pixels(scale, (rows, columns))
     pictures, weights = _tiled(targets.pictures, targets.weight, (rows, columns))

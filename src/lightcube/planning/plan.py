@@ -24,7 +24,7 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from lightcube.pictures.turntable import Turntable
 from lightcube.planning.feasibility import doubtful, impossible
-from lightcube.planning.measured import is_measured, unmeasured
+from lightcube.planning.measured import is_measured, unmeasured, voxels_a_pixel
 from lightcube.planning.prediction import Prediction
 from lightcube.planning.reachable import sentences
 from lightcube.planning.rehearsals import Rehearsals
@@ -248,8 +248,10 @@ def _cube_for(
     while True:
         grid = Grid(voxels, size_mm / max(voxels))
         rig = turntable.rig(pictures, grid, picture_width=width)
-        high = rig.picture_shape[0]
-        if not isinstance(size, int) or not level or high == voxels[0] or max(voxels[1:]) < size:
+        if not isinstance(size, int) or not level or max(voxels[1:]) < size:
+            return grid, rig
+        high = min(turntable.pixel * rig.picture_shape[0], size)
+        if high == voxels[0]:
             return grid, rig
         voxels = (high, *voxels[1:])  # no slices above and below the pictures
 
@@ -328,6 +330,7 @@ def narrower(planned: Plan, width: float) -> Targets:
     said = Turntable(
         angles_deg=rig.stops.angle_deg,
         elevation_deg=rig.elevation_deg,
+        pixel=voxels_a_pixel(rig, planned.grid),
         lamp_deg=disc_deg,
         screen_mm=max(0.0, float(rig.behind_mm[0]) - swept_mm(planned.grid)) if disc_deg else None,
     )

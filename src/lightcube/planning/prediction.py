@@ -42,6 +42,7 @@ from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, nearest, raster_shape
 from lightcube.optics.light import Light, is_in_slices
 from lightcube.optics.material import Material
+from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import encode
 from lightcube.pictures.resampling import shares
 from lightcube.pictures.targets import Targets
@@ -178,9 +179,7 @@ def reduced(targets: Targets, grid: Grid, width: int) -> tuple[Targets, Grid]:
     if max(grid.shape[1:]) <= width:
         return targets, grid
     elevation_deg = float(np.max(np.abs(targets.rig.views.elevations_deg)))
-    shape, picture_shape = _proportioned(
-        grid, targets.rig.picture_shape, elevation_deg, width, level=elevation_deg == 0
-    )
+    shape, picture_shape = _proportioned(grid, targets.rig, elevation_deg, width)
     ratio = max(grid.shape[1:]) / max(shape[1:])
     pairs = [_shrunk(*each, picture_shape) for each in zip(targets.pictures, targets.weight, strict=True)]
     pictures, weights = (np.stack(arrays).astype(np.float32) for arrays in zip(*pairs, strict=True))
@@ -209,24 +208,24 @@ def _small_hold(targets: Targets, grid: Grid, hold_deg: float, width: int) -> fl
 
 
 def _proportioned(
-    grid: Grid, picture_shape: tuple[int, int], elevation_deg: float, width: int, *, level: bool
+    grid: Grid, rig: Rig, elevation_deg: float, width: int
 ) -> tuple[tuple[int, int, int], tuple[int, int]]:
     """Shapes of a cube not wider than `width` and of its pictures, all with parities as `raster_shape` has them.
 
     Of all widths down to four fifths of it, the one that keeps the proportions best: above all that of the pictures'
-    area to the cube's, or of their widths where slices are independent.
+    area to the cube's, or of their widths where light is level.
     """
     nz, ny, nx = grid.shape
-    rows, columns = picture_shape
-    best = (math.inf, grid.shape, picture_shape)
+    (rows, columns), pixel, level = rig.picture_shape, rig.views.pixel_in(grid), elevation_deg == 0
+    best = (math.inf, grid.shape, rig.picture_shape)
     for across in range(math.ceil(0.8 * width), width + 1):
         scale = across / max(nx, ny)
         small_y, small_x = nearest(ny * scale, across), nearest(nx * scale, across + nx - ny)
         for small_z in range(max(1, round(nz * scale) - 1), round(nz * scale) + 2):
             shape = (small_z, small_y, small_x)
-            most_rows, most_columns = raster_shape(Grid(shape), elevation_deg)
-            small_rows = min(nearest(rows * scale, small_z), most_rows)
-            small_columns = min(nearest(columns * scale, small_y), most_columns)
+            most_rows, most_columns = raster_shape(Grid(shape), elevation_deg, pixel)
+            small_rows = min(nearest(rows * scale, most_rows), most_rows)
+            small_columns = min(nearest(columns * scale, most_columns), most_columns)
             high, tall = math.log(small_rows / rows / scale), math.log(small_z / nz / scale)
             wide = math.log(small_columns / columns / scale) - math.log(small_y * small_x / (ny * nx) / scale**2) / 2
             high -= tall

@@ -98,7 +98,8 @@ class Rehearsals:
     def _say(self, targets: Targets, grid: Grid, recipe: Recipe) -> None:
         if self._tell is None:
             return
-        figures = {"width": targets.rig.picture_shape[1] / grid.shape[1], "hold": recipe.hold_deg}
+        wide = targets.rig.picture_shape[1] * targets.rig.views.pixel_in(grid)[1]
+        figures = {"width": wide / grid.shape[1], "hold": recipe.hold_deg}
         if self._tell(Progress(self._asked, max(_EXPECTED, self._asked + 1), figures)):
             raise Interrupted
         self._asked += 1

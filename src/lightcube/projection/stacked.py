@@ -1,4 +1,4 @@
-"""The matrix of parallel light on vertical screens whose rows are one voxel apart: a turntable's.
+"""The matrix of parallel light on vertical screens whose rows are one voxel apart, or whole ones: a turntable's.
 
 All beams of a picture column are the same beam, moved up by whole voxels: one traversal serves them all.
 """
@@ -24,12 +24,11 @@ Floats = NDArray[np.floating[Any]]
 
 
 def is_stacked(grid: Grid, views: Views) -> bool:
-    """Whether light is parallel and not vertical, and each screen vertical with rows one voxel apart."""
-    tolerance = 1e-9 * grid.voxel_mm
+    """Whether light is parallel and not vertical, and each screen vertical with rows whole voxels apart."""
     return bool(
         np.all(views.lamps[:, 3] == 0)
-        and np.allclose(views.row_steps_mm, (0, 0, -grid.voxel_mm), rtol=0, atol=tolerance)
-        and np.all(np.abs(views.column_steps_mm[:, 2]) <= tolerance)
+        and views.slices_a_row(grid)
+        and np.all(np.abs(views.column_steps_mm[:, 2]) <= 1e-9 * grid.voxel_mm)
         and np.all(np.abs(views.elevations_deg) <= 89.999)
     )
 
@@ -38,7 +37,9 @@ class StackedBeams:
     """Lengths (mm) of beams in voxels; see `lightcube.projection.projector.Projector`, whose engine this is.
 
     Where beams are level, and each slice has a row of pixels of its own, `level` is True and the matrix is that of
-    one slice. Nothing is stored but a few numbers per view: lengths are traced anew in every product.
+    one slice. Where rows are several slices apart products take and make a copy of the unknowns, sorted by
+    `lightcube.kernels.stacked.by_class`. Nothing is stored but a few numbers per view: lengths are traced anew in
+    every product.
     """
 
     grid: Grid
@@ -60,7 +61,9 @@ class StackedBeams:
         self.beams = np.stack([corner, views.column_steps_mm / side, light], axis=1)
         slope = np.max(np.abs(light[:, 2]) / np.hypot(light[:, 0], light[:, 1]))
         self.rise = math.ceil(slope * math.hypot(nx, ny)) + 2
-        self.level = bool(slope < PARALLEL and rows == nz and np.allclose(corner[:, 2], 0.5, rtol=0, atol=1e-9))
+        self._apart = views.slices_a_row(grid)
+        own_rows = self._apart == 1 and rows == nz
+        self.level = bool(slope < PARALLEL and own_rows and np.allclose(corner[:, 2], 0.5, rtol=0, atol=1e-9))
         self._stacked = 1 if self.level else rows
         self._windows = _windows(np.ones((len(views), rows, self._width), bool) if heard is None else heard)
         self.shape = (len(views) * self._width * self._stacked, ny * nx * (1 if self.level else nz))
@@ -70,9 +73,13 @@ class StackedBeams:
         channels = x.shape[1]
         b = empty((self.shape[0] // self._stacked, self._stacked * channels), x.dtype)
         rows = x.reshape(self._voxels, -1)
-        if len(b) >= len(rows):  # else it does not pay
+        if self._apart > 1:
+            rows = self._classes(channels, x.dtype)
+            stacked.by_class(x.reshape(self._voxels, -1), rows, self.grid.shape[0], self._apart)
+        elif len(b) >= len(rows):  # else it does not pay
             rows = self._in_lines(rows)
-        stacked.forward(self.beams, self._heard(channels), self._width, *self._plane(), rows, b, channels, _tasks())
+        how = channels, self._apart, _tasks()
+        stacked.forward(self.beams, self._heard(channels), self._width, *self._plane(), rows, b, *how)
         return b.reshape(self.shape[0], channels)
 
     def adjoint(self, b: Floats) -> Floats:
@@ -80,7 +87,11 @@ class StackedBeams:
         channels = b.shape[1]
         x = empty((self._voxels, self.shape[1] // self._voxels * channels), b.dtype)
         rows = self._in_lines(b.reshape(-1, self._stacked * channels))
-        stacked.adjoint(self.beams, self._heard(channels), self._width, *self._plane(), rows, x, channels, _tasks())
+        target = x if self._apart == 1 else self._classes(channels, b.dtype)
+        how = channels, self._apart, _tasks()
+        stacked.adjoint(self.beams, self._heard(channels), self._width, *self._plane(), rows, target, *how)
+        if self._apart > 1:
+            stacked.from_classes(target, x, self.grid.shape[0], self._apart)
         return x.reshape(self.shape[1], channels)
 
     def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -93,7 +104,7 @@ class StackedBeams:
         most = max_pieces(nx, ny, self.rise) + 1
         voxels, levels, lengths = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most)
         count = stacked.trace_column(self.beams, self._width, ray, nx, ny, scale, voxels, levels, lengths)
-        unknowns, inside = self._unknowns(voxels[:count], levels[:count] + lift)
+        unknowns, inside = self._unknowns(voxels[:count], levels[:count] + lift * self._apart)
         return unknowns[inside], lengths[:count][inside]
 
     def to_sparse(self) -> "csr_array":
@@ -109,7 +120,7 @@ class StackedBeams:
         stacked.trace_all(self.beams, self._width, *self._plane(), self.rise, offsets, voxels, levels, lengths)
         ray = np.repeat(np.arange(rays), np.diff(offsets))
         lift = np.arange(self._stacked)[:, None]
-        unknowns, inside = self._unknowns(voxels, levels + lift)
+        unknowns, inside = self._unknowns(voxels, levels + lift * self._apart)
         first, after, low, high = self._heard(1)[ray // self._width].T
         inside &= (first <= ray % self._width) & (ray % self._width < after) & (low <= lift) & (lift < high)
         equations = ray * self._stacked + lift
@@ -131,6 +142,10 @@ class StackedBeams:
     @property
     def _voxels(self) -> int:
         return self.grid.shape[1] * self.grid.shape[2]
+
+    def _classes(self, channels: int, dtype: "np.dtype[Any]") -> Floats:
+        """Room for the unknowns, their slices sorted by class."""
+        return empty((self._voxels * self._apart, -(-self.grid.shape[0] // self._apart) * channels), dtype)
 
     def _in_lines(self, rows: Floats) -> Floats:
         """Rows that each begin at a whole cache line, longer ones if need be: they are quicker to add up.

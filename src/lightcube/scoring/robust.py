@@ -23,10 +23,13 @@ def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float
     if disturbance.disc_deg:
         rig = soft(rig, cube.grid, disturbance.disc_deg)
     views = rig.views
-    # In the cube's own axes it is the screen that moves, the other way; its columns and rows are one voxel apart.
-    shift = disturbance.up_voxels * views.row_steps_mm - disturbance.right_voxels * views.column_steps_mm
-    shift = shift + disturbance.further * cube.grid.size_mm[1] * _ways(views)
-    rig = replace(rig, views=replace(views, origins_mm=views.origins_mm + shift))
+    # In the cube's own axes it is the screen that moves, the other way.
+    right, down = (
+        steps / np.linalg.norm(steps, axis=1, keepdims=True) for steps in (views.column_steps_mm, views.row_steps_mm)
+    )
+    shift_mm = cube.grid.voxel_mm * (disturbance.up_voxels * down - disturbance.right_voxels * right)
+    shift_mm = shift_mm + disturbance.further * cube.grid.size_mm[1] * _ways(views)
+    rig = replace(rig, views=replace(views, origins_mm=views.origins_mm + shift_mm))
     if disturbance.levels:
         cube = replace(cube, extinction=_rounded(cube.extinction, disturbance.levels))
     for picture in cast(cube, rig, cube.powers * (1 + disturbance.lamp)):

@@ -41,6 +41,7 @@ class Options:
     picture_width: Annotated[
         float | None, Option("Width of the pictures as a part of the cube's; default as wide as 39 dB are expected.")
     ] = None
+    pixel: Annotated[int, Option("Voxels along a side of each pixel of the pictures.", 1)] = 1
     fit: Annotated[
         Fit, Option("Pictures of another aspect than the first: cut their edges, leave the rest free, or distort.")
     ] = "crop"
@@ -135,13 +136,14 @@ class Options:
         power = self.lamp_power if chooses or self.lamp_power is not None else 1.0
         said = {"angles_deg": self.angles_deg, "power": power, "power_max": self.lamp_max, "black": self.black}
         said |= {"span_deg": self.span_deg, "elevation_deg": self.elevation_deg}
-        said |= {"lamp_deg": self.lamp_deg, "screen_mm": self.screen_mm}
+        said |= {"lamp_deg": self.lamp_deg, "screen_mm": self.screen_mm, "pixel": self.pixel}
         return Turntable(**{name: value for name, value in said.items() if value is not None})  # type: ignore[arg-type]
 
     def as_in_the_paper(self) -> "Options":
         """The paper's own set-up; `InputError` where options contradict it."""
         said = {
             "--picture-width": self.picture_width,
+            "--pixel": None if self.pixel == 1 else self.pixel,
             "--angles-deg": self.angles_deg,
             "--span-deg": self.span_deg,
             "--elevation-deg": self.elevation_deg,
@@ -161,7 +163,7 @@ class Options:
         if contradiction:
             raise InputError(
                 f"--paper says what {contradiction[0]} says too (lamp level and of power 1, half a turn, pictures as "
-                "wide as the cube, no hold, thin beams): leave out one of the two"
+                "wide as the cube and as fine, no hold, thin beams): leave out one of the two"
             )
         level = replace(self, elevation_deg=0.0, span_deg=180.0, hold_deg=0.0, lamp_power=1.0, picture_width=1.0)
         level = replace(level, light="thin")

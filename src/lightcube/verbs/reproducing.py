@@ -69,14 +69,16 @@ def _is_planned(cube: Cube) -> bool:
 
 def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
     """Cube, pictures, angles and lamp's elevation of a turntable."""
-    views, provenance = cube.rig.views, cube.provenance
+    views, provenance, pixel = cube.rig.views, cube.provenance, _pixel(cube)
     yield from ("--shape", ",".join(map(str, cube.grid.shape)))
     size = _size(cube.grid.voxel_mm, max(cube.grid.shape))
     if size is None:
         command.doubts.append(f"No size in mm gives voxels of exactly {cube.grid.voxel_mm!r} mm.")
     elif size != _SIZE_MM:
         yield from ("--size-mm", _number(size))
-    yield from ("--picture-width", _width(views.picture_shape[1], cube.grid.shape[1]))
+    yield from ("--picture-width", _width(views.picture_shape[1], cube.grid.shape[1] / pixel))
+    if pixel != 1:
+        yield from ("--pixel", str(pixel))
     yield from ("--elevation-deg", _number(float(views.elevations_deg[0])))
     said, angles_deg = _angles(cube)
     yield from said
@@ -252,7 +254,15 @@ def _made(cube: Cube, angles_deg: NDArray[np.float64], **disc: float) -> Rig:
     """A turntable of the cube's elevation and pictures at these angles."""
     views = cube.rig.views
     elevation_deg = float(views.elevations_deg[0])
-    return turntable(cube.grid, angles_deg, elevation_deg=elevation_deg, picture_shape=views.picture_shape, **disc)
+    shape = views.picture_shape
+    return turntable(
+        cube.grid, angles_deg, elevation_deg=elevation_deg, picture_shape=shape, pixel=_pixel(cube), **disc
+    )
+
+
+def _pixel(cube: Cube) -> int:
+    """How many voxels the cube's pixels are wide, as near as an option can say it."""
+    return min(max(1, round(cube.rig.views.pixel_in(cube.grid)[1])), *cube.grid.shape)
 
 
 def _same(cube: Cube, made: Rig) -> bool:
@@ -288,11 +298,11 @@ def _rounded(length: float) -> Iterator[float]:
             yield beside
 
 
-def _width(columns: int, voxels: int) -> str:
-    """The shortest part of the cube's width that a picture of so many columns is rounded to."""
-    part = columns / voxels
+def _width(columns: int, across: float) -> str:
+    """The shortest part of the cube's width, of so many pixels, that a picture of so many columns is rounded to."""
+    part = columns / across
     tried = (f"{part:.{digits}g}" for digits in range(1, 18))
-    return next(text for text in tried if abs(float(text) * voxels - columns) < 0.9)
+    return next(text for text in tried if abs(float(text) * across - columns) < 0.9)
 
 
 def _number(value: float) -> str:

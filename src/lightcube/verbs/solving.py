@@ -36,7 +36,19 @@ _QUICK = 40
 
 #: Options that a stage file leaves no room for.
 _SAID_BY_STAGE = (
-    *("n", "shape", "size_mm", "picture_width", "fit", "angles_deg", "span_deg", "elevation_deg", "paper", "order"),
+    *(
+        "n",
+        "shape",
+        "size_mm",
+        "picture_width",
+        "pixel",
+        "fit",
+        "angles_deg",
+        "span_deg",
+        "elevation_deg",
+        "paper",
+        "order",
+    ),
     *("shift", "lamp_power", "lamp_max", "black", "lamp_deg", "screen_mm"),
 )
 

@@ -71,7 +71,7 @@ def facts(planned: Plan, order: "Order | None") -> dict[str, Any]:
         "names": list(targets.names),
         "angles_deg": [float(angle_deg) for angle_deg in targets.angles_deg],
         "voxels": list(planned.grid.shape),
-        "picture_width": targets.rig.picture_shape[1] / planned.grid.shape[1],
+        "picture_width": _picture_width(planned),
         "hold_deg": planned.recipe.hold_deg,
         "predicted": as_json(planned.prediction),
         "shift": planned.shift,
@@ -163,7 +163,7 @@ def _remedies(planned: Plan, small: Rehearsals) -> list[str]:
     """What three changes would bring, predicted."""
     rig, lamps = planned.targets.rig, planned.targets.rig.lamps
     power = float(lamps.most.max())
-    now = planned.targets.rig.picture_shape[1] / planned.grid.shape[1]
+    now = _picture_width(planned)
     tried: list[str] = []
 
     def tell(change: str, targets: Targets) -> None:
@@ -178,6 +178,12 @@ def _remedies(planned: Plan, small: Rehearsals) -> list[str]:
         stronger = replace(rig, lamps=replace(lamps, most=np.full(len(lamps.names), most)))
         tell(f"--lamp-max {most:g}", replace(planned.targets, rig=stronger))
     return [f"Hardly recognisable pictures are expected; what would come of {'; of '.join(tried)}."] if tried else []
+
+
+def _picture_width(planned: Plan) -> float:
+    """Width of a plan's pictures as a part of the cube's."""
+    rig, grid = planned.targets.rig, planned.grid
+    return rig.picture_shape[1] * rig.views.pixel_in(grid)[1] / grid.shape[1]
 
 
 def needed(needs: dict[str, Any]) -> str:
