@@ -72,6 +72,7 @@ def _traversal(first_line, last_line, lamps, screens, shape, heard, grid, found)
                 (nx, ny, nz),
                 (nz, nx * nz, 1),
                 1.0,
+                1.0,
                 places,
                 weights,
             )

@@ -8,7 +8,7 @@ import pytest
 
 from lightcube.backward.pieces import Step
 from lightcube.backward.recipe import Recipe
-from lightcube.backward.solving import solve
+from lightcube.backward.solving import make_job, solve, solve_job
 from lightcube.errors import InputError
 from lightcube.forward import casting
 from lightcube.forward.turning import moment
@@ -73,6 +73,20 @@ def test_shadows_in_pixels_of_many_voxels_come_back(elevation_deg: float) -> Non
     targets = Targets(np.stack(list(casting.cast(Cube(extinction, grid, rig)))), rig)
     solution = solve(targets, grid, Recipe(passes=150))
     assert solution.cube.rig.picture_shape == raster_shape(grid, elevation_deg, 2)
+    assert score(solution.cube, targets)["psnr_min"] >= 45
+
+
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_shadows_of_tall_slices_come_back(elevation_deg: float) -> None:
+    """Level light solves them slice by slice, where each has a row of pixels of its own."""
+    grid = Grid((3, 7, 8), 0.5, 2.0)
+    extinction = np.random.default_rng(0).uniform(0, 0.4, (3, *grid.shape)).astype(np.float32)
+    rig = turntable(grid, [10.0, 80.0, 200.0, 301.0], elevation_deg=elevation_deg, pixel=2, power=1.0)
+    targets = Targets(np.stack(list(casting.cast(Cube(extinction, grid, rig)))), rig)
+    job = make_job(targets, grid, Recipe(passes=150), units=3)
+    assert job.level is (elevation_deg == 0)
+    solution = solve_job(job)
+    assert solution.cube.grid == grid
     assert score(solution.cube, targets)["psnr_min"] >= 45
 
 

@@ -156,6 +156,7 @@ def test_points_are_of_the_solver_and_a_cube_keeps_its_own_room(run, stage: Path
         (["--elevation-deg", "0"], "--elevation-deg is not for a stage"),
         (["--lamp-max", "4"], "--lamp-max is not for a stage"),
         (["--lamp-power", "1"], "--lamp-power is not for a stage"),
+        (["--slices-tall", "2"], "--slices-tall is not for a stage"),
         (["--pixel", "2"], "--pixel is not for a stage"),
         (["--lamp-deg", "0.5"], "--lamp-deg is not for a stage"),
         (["--screen-mm", "50"], "--screen-mm is not for a stage"),

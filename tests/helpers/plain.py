@@ -40,17 +40,19 @@ def lengths_of_beam(
     The beam is ``point + t direction`` with ``first <= t <= last``. One along a face (within 1e-9 voxel) is replaced by
     beams half a voxel to either side, of half weight.
     """
-    side = grid.voxel_mm
-    corner = -0.5 * side * np.array(grid.shape[::-1])
+    sides = [grid.voxel_mm, grid.voxel_mm, grid.voxel_mm * grid.tall]
+    corner = -0.5 * np.array(sides) * np.array(grid.shape[::-1])
     choices: list[list[float]] = []
     for axis in range(3):
-        place = (point[axis] - corner[axis]) / side
+        place = (point[axis] - corner[axis]) / sides[axis]
         along = abs(direction[axis]) < 1e-12 and abs(place - round(place)) <= 1e-9
         choices.append([round(place) - 0.5, round(place) + 0.5] if along else [place])
     lengths = np.zeros(grid.shape)
     beams = list(itertools.product(*choices))
     for place in beams:
-        lengths += _clipped(grid, corner + side * np.array(place), direction, corner, first, last) / len(beams)
+        lengths += _clipped(grid, corner + np.array(sides) * np.array(place), direction, corner, first, last) / len(
+            beams
+        )
     return lengths
 
 
@@ -60,8 +62,9 @@ def _clipped(grid: Grid, point: Array, direction: Array, corner: Array, first: f
     for axis in range(3):
         counts = [1, 1, 1]
         counts[2 - axis] = grid.shape[2 - axis]
-        low = (corner[axis] + grid.voxel_mm * np.arange(grid.shape[2 - axis])).reshape(counts)
-        high = low + grid.voxel_mm
+        side = -2 * corner[axis] / grid.shape[2 - axis]
+        low = (corner[axis] + side * np.arange(grid.shape[2 - axis])).reshape(counts)
+        high = low + side
         if abs(direction[axis]) < 1e-12:
             outside = ~((low < point[axis]) & (point[axis] < high))
             enter = np.where(outside, np.inf, enter)

@@ -67,6 +67,18 @@ def assert_same(one: Any, other: Any) -> None:
         assert one == other
 
 
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_slices_that_are_taller_than_wide_come_back(tmp_path: Path, suffix: str) -> None:
+    cube = make()
+    cube = replace(cube, grid=Grid(cube.grid.shape, 0.3, 1 / 3))
+    save(cube, tmp_path / f"a{suffix}")
+    assert_same(load(tmp_path / f"a{suffix}"), cube)
+    if suffix == ".zarr":
+        ome = json.loads((tmp_path / "a.zarr" / "zarr.json").read_text())["attributes"]["ome"]
+        (made,) = ome["multiscales"][0]["datasets"][0]["coordinateTransformations"]
+        assert made["scale"] == pytest.approx([1.0, 0.1, 0.3, 0.3])
+
+
 def partial_path(out: Path) -> Path:
     """As `lightcube.jobs.partial.partial_path`, of a path."""
     return Path(partial.partial_path(out))

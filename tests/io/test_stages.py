@@ -50,6 +50,16 @@ def stage_file(folder: Path, tables: dict[str, Any]) -> Path:
     return file
 
 
+def test_slices_may_be_taller_than_voxels_are_wide(tmp_path: Path) -> None:
+    picture(tmp_path / "one.png", 5, 7)
+    cube = {"shape": [4, 5, 6], "size_mm": 24, "slices_tall": 3}
+    grid = read_stage(stage_file(tmp_path, MINIMAL | {"cube": cube}))[0].grid
+    assert (grid.shape, grid.tall, grid.voxel_mm) == ((4, 5, 6), 3.0, 2.0)
+    assert max(grid.size_mm) == 24
+    with pytest.raises(InputError, match="slices_tall"):
+        read_stage(stage_file(tmp_path, MINIMAL | {"cube": cube | {"slices_tall": 0}}))
+
+
 def levels_of(rows: int, columns: int) -> NDArray[np.uint8]:
     return np.random.default_rng([rows, columns]).integers(0, 256, (rows, columns, 3), dtype=np.uint8)
 

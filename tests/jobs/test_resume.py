@@ -239,6 +239,15 @@ def test_a_job_comes_back_from_the_disk(options: dict[str, Any], tmp_path: Path)
     assert_same(merged(load_job(partial), store).cube, solved(made).cube)
 
 
+def test_a_job_of_tall_slices_comes_back_and_is_no_other(tmp_path: Path) -> None:
+    usual = job(**RAISED)
+    tall = replace(usual, grid=replace(usual.grid, tall=0.5))
+    begun(tmp_path / "a.zarr", tall)
+    assert load_job(partial_path(tmp_path / "a.zarr")).grid == tall.grid
+    with pytest.raises(InputError, match="voxel side"):
+        open_partial(tmp_path / "a.zarr", usual)
+
+
 def test_publishing_what_is_there(tmp_path: Path) -> None:
     made = job(**LEVEL)
     out = tmp_path / "a.zarr"

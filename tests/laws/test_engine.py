@@ -30,7 +30,7 @@ def table(elevation_deg: float, narrower: int = 0, pixel: int = 1) -> Geometry:
     """A turntable; a window narrower by an odd number puts the beams of 0 and 90 degrees on faces and edges."""
 
     def views(grid: Grid) -> Views:
-        side = min(pixel, *grid.shape)
+        side = min(pixel, grid.largest_pixel)
         rows, columns = raster_shape(grid, elevation_deg, side)
         shape = rows, max(columns - narrower, 1)
         return turntable_views(grid, ANGLES, elevation_deg=elevation_deg, picture_shape=shape, pixel=side)
@@ -74,10 +74,12 @@ def thrown_back(matrix: Any, grid: Grid, pictures: np.ndarray) -> np.ndarray:
     return volume_from_columns(columns.reshape(ny * nx, -1), grid.shape, pictures.shape[-1])
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(("shape", "tall"), [*((shape, 1.0) for shape in SHAPES), ((5, 6, 7), 0.5)])
 @pytest.mark.parametrize(("engine", "geometry"), CASES)
-def test_both_products_are_those_of_plain_boxes(engine: type, geometry: Geometry, shape: tuple[int, int, int]) -> None:
-    grid = Grid(shape, 0.7)
+def test_both_products_are_those_of_plain_boxes(
+    engine: type, geometry: Geometry, shape: tuple[int, int, int], tall: float
+) -> None:
+    grid = Grid(shape, 0.7, tall)
     views, random = geometry(grid), np.random.default_rng(1)
     matrix = engine(grid, views)
     for channels in (1, 2, 3, 5):
@@ -103,10 +105,11 @@ def test_the_adjoint_is_the_transpose(
         assert dot_test(engine(grid, geometry(grid)), columns, dtype) < bound
 
 
+@pytest.mark.parametrize("tall", [1.0, 0.5])
 @pytest.mark.parametrize(("engine", "geometry"), CASES)
-def test_chords_of_a_box_are_analytic(engine: type, geometry: Geometry) -> None:
+def test_chords_of_a_box_are_analytic(engine: type, geometry: Geometry, tall: float) -> None:
     """A grid of ones is a box: each beam's absorbance is its chord by the slab method, half of it on a face."""
-    grid = Grid((3, 5, 7), 2.0)
+    grid = Grid((3, 5, 7), 2.0, tall)
     views, half = geometry(grid), np.array(grid.size_mm[::-1]) / 2
     chords = cast(engine(grid, views), views, np.ones((1, *grid.shape)))[..., 0]
     for view, row, column in np.ndindex(*chords.shape):
@@ -147,9 +150,10 @@ def test_the_tie_rule_starts_at_a_billionth_of_a_voxel(engine: type) -> None:
         assert plain.absorbance_pictures(grid, moved, volume)[0, 0, 0, 0] == pytest.approx(expected, abs=1e-6)
 
 
+@pytest.mark.parametrize("tall", [1.0, 0.5])
 @pytest.mark.parametrize(("engine", "geometry"), CASES)
-def test_rows_and_the_sparse_matrix_are_what_is_multiplied_by(engine: type, geometry: Geometry) -> None:
-    grid = Grid((2, 4, 3), 0.5)
+def test_rows_and_the_sparse_matrix_are_what_is_multiplied_by(engine: type, geometry: Geometry, tall: float) -> None:
+    grid = Grid((2, 4, 3), 0.5, tall)
     matrix = engine(grid, geometry(grid))
     dense = matrix.forward(np.eye(matrix.shape[1]))
     np.testing.assert_allclose(matrix.adjoint(np.eye(matrix.shape[0])), dense.T, rtol=0, atol=1e-12)
@@ -158,6 +162,20 @@ def test_rows_and_the_sparse_matrix_are_what_is_multiplied_by(engine: type, geom
         row = np.zeros(matrix.shape[1])
         np.add.at(row, *matrix.row(index))
         np.testing.assert_allclose(row, dense[index], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("geometry", (TURNTABLES | ROOMS).values(), ids=TURNTABLES | ROOMS)
+@pytest.mark.parametrize("times", [2, 3])
+def test_tall_slices_cast_what_as_many_thin_ones_of_the_same_glass_do(geometry: Geometry, times: int) -> None:
+    """A voxel `times` as tall as wide, or as many cubes upon each other; half a view's mass, too, stays where it is."""
+    tall, thin = Grid((3, 5, 6), 0.7, times), Grid((3 * times, 5, 6), 0.7)
+    views, volume = geometry(tall), np.random.default_rng(4).random((2, *tall.shape))
+    pictures = np.random.default_rng(5).random((len(views), *views.picture_shape, 2))
+    A, B = Projector(tall, views), Projector(thin, views)
+    np.testing.assert_allclose(A(volume), B(volume.repeat(times, axis=1)), rtol=1e-9, atol=1e-9)
+    thrown_back = B.T(pictures).reshape(2, 3, times, 5, 6).sum(axis=2)
+    np.testing.assert_allclose(A.T(pictures), thrown_back, rtol=1e-9, atol=1e-9)
+    assert dot_test(A) < 1e-12
 
 
 @pytest.mark.parametrize(("engine", "geometry"), CASES)

@@ -27,18 +27,27 @@ def test_the_papers_rasters() -> None:
     assert raster_shape(Grid((300, 300, 300))) == (300, 426)
 
 
-@given(st.tuples(*[st.integers(1, 40)] * 3), st.floats(-80, 80), st.integers(1, 5))
+@given(st.tuples(*[st.integers(1, 40)] * 3), st.floats(-80, 80), st.integers(1, 5), st.integers(1, 3))
 def test_the_raster_holds_the_whole_shadow_and_is_no_larger_than_it_must(
-    shape: tuple[int, int, int], elevation_deg: float, pixel: int
+    shape: tuple[int, int, int], elevation_deg: float, pixel: int, tall: int
 ) -> None:
-    nz, ny, nx = shape
-    rows, columns = raster_shape(Grid(shape), elevation_deg, pixel)
+    nz, ny, nx = tall * shape[0], *shape[1:]
+    rows, columns = raster_shape(Grid(shape, tall=tall), elevation_deg, pixel)
     diagonal = math.hypot(nx, ny)
     height = nz + diagonal * abs(math.tan(math.radians(elevation_deg)))
     assert (columns - -(-ny // pixel)) % 2 == 0
     assert (rows - -(-nz // pixel)) % 2 == 0
     assert diagonal - 1e-6 <= pixel * columns < diagonal + 2 * pixel
     assert height - 1e-6 <= pixel * rows < height + 2 * pixel
+
+
+def test_a_grid_of_tall_slices_measures_what_it_counts() -> None:
+    grid = Grid((3, 5, 7), 0.5, 2.5)
+    assert grid.size_mm == (3.75, 2.5, 3.5)
+    assert (grid.slice_mm, grid.longest) == (1.25, 7.5)
+    assert grid.coarser((2, 3, 4), 2) == Grid((2, 3, 4), 1.0, 2.5)
+    assert repr(grid) == "Grid(shape=(3, 5, 7), voxel_mm=0.5, tall=2.5)"
+    assert Grid((3, 5, 7), 0.5) == Grid((3, 5, 7), 0.5, 1)
 
 
 def test_light_screen_and_turning_are_as_the_conventions_say() -> None:
@@ -106,6 +115,8 @@ def test_picture_shapes_have_the_rasters_parity_and_fit(
         lambda: Grid((3, 3)),  # type: ignore[arg-type]
         lambda: Grid((3, 3, 3), -1.0),
         lambda: Grid((3, 3, 3), math.nan),
+        lambda: Grid((3, 3, 3), tall=0.0),
+        lambda: Grid((3, 3, 3), tall=math.inf),
         lambda: turntable_views(Grid((3, 3, 3)), []),
         lambda: turntable_views(Grid((3, 3, 3)), [math.nan]),
         lambda: turntable_views(Grid((3, 3, 3)), [0], elevation_deg=90),

@@ -137,6 +137,19 @@ def test_pictures_of_larger_pixels_are_as_wide_of_fewer(formula: list[float], pi
     assert less.picture_shape[1] == pytest.approx(0.25 * grid.shape[1] / pixel, abs=1)
 
 
+@pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
+def test_a_cube_of_tall_slices_is_as_large_of_fewer(formula: list[float], elevation_deg: float) -> None:
+    said = Turntable(elevation_deg=elevation_deg, pixel=2)
+    planned = plan(pictures(4, 30, 20), 36, tall=2.0, turntable=said, picture_width=0.5)
+    usual = plan(pictures(4, 30, 20), 36, turntable=said, picture_width=0.5)
+    assert planned.grid.tall == 2
+    assert 2 * planned.grid.shape[0] == pytest.approx(usual.grid.shape[0], abs=2)
+    assert planned.grid.shape[1:] == usual.grid.shape[1:]
+    assert planned.targets.rig.picture_shape == usual.targets.rig.picture_shape
+    assert max(planned.grid.size_mm) == pytest.approx(100)
+    assert elevation_deg != 0 or planned.targets.rig.picture_shape[0] == planned.grid.shape[0]
+
+
 def test_a_given_shape_stays(formula: list[float]) -> None:
     planned = plan(pictures(), 64, shape=(20, 30, 31), size_mm=62.0)
     assert planned.grid == Grid((20, 30, 31), 2.0)

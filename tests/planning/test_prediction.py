@@ -225,6 +225,14 @@ def test_means_and_worst_are_told_up_to_fifty() -> None:
     assert Prediction(np.array([20.0, 30.0, 40.0]), 24).psnr_mean == pytest.approx(30.0)
 
 
+def test_tall_slices_stay_as_tall_in_a_rehearsal() -> None:
+    targets, grid = problem((15, 60, 60), 2, (20, 20), 35.0)
+    small, small_grid = reduced(targets, replace(grid, tall=2.0), 24)
+    assert small_grid.tall == 2
+    assert small_grid.size_mm == pytest.approx(replace(grid, tall=2.0).size_mm, rel=0.1)
+    assert small.rig.picture_shape[0] == pytest.approx(20 * 24 / 60, abs=2)
+
+
 def test_pixels_of_many_voxels_are_rehearsed_as_such() -> None:
     """So many as voxels are too many for the cube; pixels that are no whole voxels were not measured."""
     few = predict(*problem((12, 12, 12), picture=(4, 4), pixel=2), Recipe())

@@ -161,13 +161,23 @@ def test_any_rays_agree_with_plain_boxes(case: tuple[Grid, Views]) -> None:
 @pytest.mark.parametrize(("dtype", "bound"), [(np.float64, 1e-12), (np.float32, 1e-5)])
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0, -35.0])
 @pytest.mark.parametrize(
-    ("shape", "pixel"), [*((shape, 1) for shape in SHAPES), ((5, 6, 7), 2), ((5, 6, 7), 3), ((11, 18, 33), 2)]
+    ("shape", "pixel", "tall"),
+    [
+        *((shape, 1, 1.0) for shape in SHAPES),
+        *(((5, 6, 7), 2, 1.0), ((5, 6, 7), 3, 1.0), ((11, 18, 33), 2, 1.0)),
+        *(((5, 6, 7), 2, 2.0), ((5, 6, 7), 3, 1.5), ((5, 6, 7), 1, 0.5), ((11, 18, 33), 4, 2.0)),
+    ],
 )
 def test_on_a_turntable_both_engines_are_one_matrix(
-    shape: tuple[int, int, int], pixel: int, elevation_deg: float, dtype: type[np.floating], bound: float
+    shape: tuple[int, int, int],
+    pixel: int,
+    tall: float,
+    elevation_deg: float,
+    dtype: type[np.floating],
+    bound: float,
 ) -> None:
     """Windows one narrower or lower put the beams of 0 and 90 degrees on faces and edges."""
-    grid = Grid(shape, 0.7)
+    grid = Grid(shape, 0.7, tall)
     rows, columns = raster_shape(grid, elevation_deg, pixel)
     random = np.random.default_rng(2)
     angles_deg = [0.0, 13.0, 90.0, 133.7, 180.0]
@@ -214,6 +224,10 @@ def test_the_engine_follows_from_where_lamps_and_screens_stand() -> None:
     }
     for name, views in stacked.items():
         assert type(Projector(grid, views)._engine) is StackedBeams, name
+    slices = {1.0: (StackedBeams, False), 2.0: (StackedBeams, True), 4.0: (Rays, False), 1.5: (Rays, False)}
+    for tall, (engine, level) in slices.items():
+        high = Projector(Grid((3, 5, 7), tall=tall), turntable_views(Grid((3, 5, 7), tall=tall), [0.0], pixel=2))
+        assert (type(high._engine), high.level) == (engine, level), tall
     for name, views in others.items():
         assert type(Projector(grid, views)._engine) is Rays, name
         assert not Projector(grid, views).level

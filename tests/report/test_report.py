@@ -177,6 +177,7 @@ SOLVES = {
     "--transfer linear --max-extinction 0.5 --iterations 2",
     "order": "--n 6 --picture-width 0.5 --hold-deg 0 --order best --shift 1 --powers coarse --iterations 2",
     "pixel": "--shape 5,7,6 --pixel 2 --picture-width 0.8 --iterations 3 --hold-deg 0 --shift 1",
+    "tall": "--shape 3,7,6 --size-mm 33.3 --slices-tall 2 --pixel 2 --picture-width 0.8 --iterations 3 --hold-deg 0",
     "paper": "--n 6 --paper --iterations 3",
     "gauss-seidel": "--n 5 --paper --method gauss-seidel",
     "sirt": "--n 5 --picture-width 0.8 --method sirt --lamp-power 2.5 --iterations 4",

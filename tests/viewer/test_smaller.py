@@ -11,6 +11,7 @@ import pytest
 from lightcube import io
 from lightcube.backward import solving
 from lightcube.backward.recipe import Recipe
+from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
@@ -22,7 +23,8 @@ from lightcube.scoring.metrics import mean_psnr
 from lightcube.viewer import smaller as page_cube
 from lightcube.viewer.description import describe
 from lightcube.viewer.packing import lost, pack
-from lightcube.viewer.smaller import shown_coarsely, smaller
+from lightcube.viewer.page import contents
+from lightcube.viewer.smaller import in_cubes, shown_coarsely, smaller
 from tests.backward.test_stages import known, stage
 from tests.cli.test_cli import run
 from tests.helpers.recipes import asked
@@ -40,6 +42,18 @@ def solved() -> Cube:
     waves = [0.5 + 0.4 * np.sin(3 * down + 4 * across + phase) for phase in range(6)]
     pictures = np.stack([np.stack(waves[:3], -1), np.stack(waves[3:], -1)]).astype(np.float32)
     return solving.solve(Targets(pictures, rig), grid, Recipe(passes=60)).cube
+
+
+def test_a_page_has_tall_slices_as_so_many_cubes(solved: Cube) -> None:
+    tall = replace(solved, grid=Grid((10, 12, 12), 2.0, 3.0))
+    cubes = in_cubes(tall)
+    assert cubes.grid == Grid((30, 12, 12), 2.0)
+    assert in_cubes(solved) is solved
+    np.testing.assert_allclose(play(cubes), play(tall), rtol=2e-5)
+    description, _ = contents(tall, "tall")
+    assert description["voxels"]["shape"] == description["kept"]["full"] == (30, 12, 12)
+    with pytest.raises(InputError, match="whole voxels"):
+        contents(replace(solved, grid=Grid((10, 12, 12), 2.0, 1.5)), "odd")
 
 
 def test_a_cube_that_fits_is_kept(solved: Cube) -> None:

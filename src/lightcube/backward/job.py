@@ -180,8 +180,8 @@ def phase_work(job: Job, phase: Phase, passes: float | None = None) -> float:
 
 def fingerprint(job: Job) -> Fingerprint:
     """What a job is known by: two jobs with the same one come to the same cube, bit for bit."""
-    targets = job.targets
-    nz, ny, nx = job.grid.shape
+    targets, grid = job.targets, job.grid
+    nz, ny, nx = grid.shape
     return {
         "lightcube": version("lightcube"),
         "pictures": _checksum(targets.pictures),
@@ -191,7 +191,7 @@ def fingerprint(job: Job) -> Fingerprint:
         "largest lamp power": float(targets.rig.lamps.most.max()),
         "black": float(targets.rig.screens.black.max()),
         "voxels": f"{nz} x {ny} x {nx}",
-        "voxel side": job.grid.voxel_mm,
+        "voxel side": grid.voxel_mm if grid.tall == 1 else f"{grid.voxel_mm!r} wide and {grid.slice_mm!r} tall",
         "transfer": targets.transfer,
         **{_WORDS.get(name, name): value for name, value in job.recipe.plain().items()},
         "units": job.units,

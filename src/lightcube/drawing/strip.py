@@ -60,7 +60,7 @@ def _facts(cube: Cube) -> str:
     rows, columns = cube.rig.picture_shape
     count = len(cube.names)
     many = f"{count} pictures of at most" if np.ptp(cube.rig.stops.window, axis=0).any() else f"{count} pictures of"
-    facts = [f"{nx} x {ny} x {nz} voxels of {cube.grid.voxel_mm:.3g} mm", f"{many} {columns} x {rows}"]
+    facts = [f"{nx} x {ny} x {nz} voxels of {cube.grid.sides_in_words}", f"{many} {columns} x {rows}"]
     if "psnr_mean" in cube.scores:
         facts.append(f"PSNR {cube.scores['psnr_mean']:.1f} dB")
     if cube.status != "complete":

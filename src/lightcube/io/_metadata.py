@@ -33,6 +33,7 @@ class _CubeJson(BaseModel):
     written_by: str
     extinction_unit: Literal["1/mm"]
     voxel_mm: Annotated[_Number, Field(gt=0)]
+    tall: Annotated[_Number, Field(gt=0)] = 1.0
     rig: RigJson
     lamp_powers: list[list[Annotated[_Number, Field(gt=0)]]]
     names: list[str]
@@ -50,6 +51,7 @@ def to_json(cube: Cube) -> dict[str, Any]:
         "written_by": f"lightcube {version('lightcube')}",
         "extinction_unit": "1/mm",
         "voxel_mm": cube.grid.voxel_mm,
+        **({} if cube.grid.tall == 1 else {"tall": cube.grid.tall}),
         "rig": rig_to_json(cube.rig),
         "lamp_powers": cube.powers.tolist(),
         "names": list(cube.names),
@@ -89,7 +91,7 @@ def from_json(path: Path, document: object, extinction: NDArray[np.float32], tar
         _, nz, ny, nx = extinction.shape
         return Cube(
             extinction,
-            Grid((nz, ny, nx), said.voxel_mm),
+            Grid((nz, ny, nx), said.voxel_mm, said.tall),
             said.rig.rig(),
             np.array(said.lamp_powers, dtype=np.float64),
             targets,

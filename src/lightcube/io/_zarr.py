@@ -94,7 +94,7 @@ async def _write(folder: Path, cube: Cube) -> None:
 
 def _ome(cube: Cube) -> dict[str, Any]:
     """OME-Zarr 0.5 metadata of the image: axes, voxel size, and colours of the channels."""
-    side = cube.grid.voxel_mm
+    x_mm, y_mm, z_mm = cube.grid.sides_mm.tolist()
     channels = len(cube.extinction)
     colours = _COLOURS if channels == len(_COLOURS) else [(str(index + 1), "FFFFFF") for index in range(channels)]
     most = float(cube.extinction.max()) or 1.0
@@ -108,7 +108,7 @@ def _ome(cube: Cube) -> dict[str, Any]:
                 "datasets": [
                     {
                         "path": _IMAGE,
-                        "coordinateTransformations": [{"type": "scale", "scale": [1.0, side, side, side]}],
+                        "coordinateTransformations": [{"type": "scale", "scale": [1.0, z_mm, y_mm, x_mm]}],
                     }
                 ],
             }

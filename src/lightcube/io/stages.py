@@ -51,10 +51,11 @@ class _Table(BaseModel):
 
 
 class CubeTable(_Table):
-    """The cube: `shape` in voxels ``(z, y, x)``, `size_mm` along its longest side."""
+    """The cube: `shape` in voxels ``(z, y, x)``, `size_mm` along its longest side, how tall its slices are."""
 
     shape: tuple[Count, Count, Count]
     size_mm: Positive = 100.0
+    slices_tall: Count = 1
     turns: Flag = True
 
 
@@ -256,7 +257,8 @@ def _sentence(problem: ErrorDetails) -> str:
 def _stage(said: StageFile) -> Stage:
     """The stage, with one shot for each table of pictures: whatever can be wrong before they are read."""
     with _about("cube"):
-        grid = Grid(said.cube.shape, said.cube.size_mm / max(said.cube.shape))
+        one_mm = Grid(said.cube.shape, tall=said.cube.slices_tall)
+        grid = replace(one_mm, voxel_mm=said.cube.size_mm / one_mm.longest)
     lamps = tuple(Lamp(**table.said()) for table in said.lamp)
     names = tuple(lamp.name for lamp in lamps)
     stage = Stage(

@@ -69,6 +69,7 @@ class _JobJson(BaseModel):
     fingerprint: dict[str, str | int | float | None]
     shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=3, max_length=3)]
     voxel_mm: Annotated[float, Field(gt=0, allow_inf_nan=False)]
+    tall: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 1.0
     names: list[str]
     transfer: Transfer
     rig: RigJson
@@ -265,7 +266,7 @@ def load_job(partial: str | Path) -> Job:
         start = locked(arrays["start"]) if "start" in arrays else None
         job = Job(
             targets=Targets(pictures, said.rig.rig(), weights, tuple(said.names), said.transfer),
-            grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm),
+            grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm, said.tall),
             recipe=from_plain(said.recipe),
             units=said.units,
             start=start,
@@ -289,6 +290,7 @@ def _write_job(folder: Place, job: Job) -> None:
         "fingerprint": dict(fingerprint(job)),
         "shape": list(grid.shape),
         "voxel_mm": grid.voxel_mm,
+        "tall": grid.tall,
         "names": list(targets.names),
         "transfer": targets.transfer,
         "rig": rig_to_json(targets.rig),

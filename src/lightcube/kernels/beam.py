@@ -1,7 +1,7 @@
 """One beam through a block of voxels: which voxels, and for how long.
 
-Lengths are in voxel sides. The block fills ``[0, nx] x [0, ny]`` and is endless along z, because beams of
-one picture column are copies of each other moved up by whole voxels: whoever uses the pieces clips z.
+Lengths are in voxels' widths, places in voxels. The block fills ``[0, nx] x [0, ny]`` and is endless along z, because
+beams of one picture column are copies of each other moved up by whole voxels: whoever uses the pieces clips z.
 
 References
 ----------
@@ -132,7 +132,9 @@ def trace_beam(
     weights: NDArray[Any],
     count: int,
 ) -> int:
-    """Append the pieces of the beam ``p + t d`` (`d` of length 1) after the first `count`; return how many there are.
+    """Append the pieces of the beam ``p + t d`` after the first `count`; return how many there are.
+
+    `d` is what one width of the way is in voxels: of length 1 where they are cubes.
 
     Piece ``k``, in voxel ``(x, y)`` of slice ``z`` (any whole number), has ``places[k] = x * strides[0] +
     y * strides[1]``, ``shifts[k] = z * strides[2]``, and is ``weights[k]`` long, in voxel sides times `scale`. A beam

@@ -1,8 +1,9 @@
 """Rays of any direction through a block of voxels: which voxels, and for how long.
 
-Lengths are in voxel sides, and the block fills ``[0, nx] x [0, ny] x [0, nz]``, its `shape` being ``(nx, ny, nz)``. A
-ray is ``(px, py, pz, dx, dy, dz, first, last)``: the points ``p + t d``, ``first <= t <= last``, `d` of length 1. The
-traversal is that of `lightcube.kernels.beam`, with an end in every direction.
+Lengths are in voxels' widths, places in voxels, and the block fills ``[0, nx] x [0, ny] x [0, nz]``, its `shape` being
+``(nx, ny, nz)``. A ray is ``(px, py, pz, dx, dy, dz, first, last)``: the points ``p + t d``, ``first <= t <= last``,
+`d` being what one width of the way is in voxels: of length 1 where they are cubes. The traversal is that of
+`lightcube.kernels.beam`, with an end in every direction.
 
 A step waits for the one before it (which face comes next?), so two rays are walked at a time: while one waits the other
 goes on, and both together take little longer than one.

@@ -20,6 +20,7 @@ def trace_all(
     heard: Array,
     grid: Triple,
     scale: float,
+    tall: float,
     offsets: Array,
     places: Array,
     weights: Array,
@@ -35,7 +36,7 @@ def trace_all(
     for index in range(len(offsets) - 1):
         count = 0
         if heard[index // shape[1], index % shape[1]]:
-            count = trace(lamps, screens, shape, index, grid, scale, p, w)
+            count = trace(lamps, screens, shape, index, grid, scale, tall, p, w)
         if len(places) == 0:
             offsets[index + 1] = offsets[index] + count
         else:

@@ -1,9 +1,10 @@
 """Absorbance of rays in any direction from all voxels, and its transpose, for a few columns.
 
 ``x`` is ``(ny * nx * nz, columns)`` and ``b`` is ``(views * width * height, columns)``: picture columns from the left,
-rows bottom-up in each. In voxel sides, pixel ``(column, row)`` of a view lies at ``corner + column * right + row * up``
+rows bottom-up in each. In voxels, pixel ``(column, row)`` of a view lies at ``corner + column * right + row * up``
 with ``corner, right, up = screens[view]``. Where ``lamps[view, 3]`` is 0 its ray is the whole line along
-``lamps[view, :3]`` (of length 1), else the stretch from the lamp there to the pixel. ``heard`` says which pixels count:
+``lamps[view, :3]``, else the stretch from the lamp there to the pixel. A voxel is `scale` wide and `tall` times as
+high; directions are of length 1 in voxels' widths, their part along z in slices. ``heard`` says which pixels count:
 the equations of the others are empty.
 
 Forward, each ray gathers what it meets. Backward, each task owns a brick of voxels and walks the rays that meet it,
@@ -29,7 +30,7 @@ NO_RAY = (0.0, 0.0, 0.0, 0.6, 0.6, 0.5, 0.0, 0.0)
 
 
 @compiled(inline="always")
-def _ray(lamp: Array, screen: Array, column: int, row: int, low: Triple) -> Ray:
+def _ray(lamp: Array, screen: Array, column: int, row: int, low: Triple, tall: float) -> Ray:
     """The ray of a pixel, seen from the corner `low` of a brick, and from the pixel: lamps may be far away."""
     qx = screen[0, 0] + column * screen[1, 0] + row * screen[2, 0]
     qy = screen[0, 1] + column * screen[1, 1] + row * screen[2, 1]
@@ -38,7 +39,8 @@ def _ray(lamp: Array, screen: Array, column: int, row: int, low: Triple) -> Ray:
     if lamp[3] == 0:
         return px, py, pz, lamp[0], lamp[1], lamp[2], -np.inf, np.inf
     dx, dy, dz = qx - lamp[0], qy - lamp[1], qz - lamp[2]
-    length = math.sqrt(dx * dx + dy * dy + dz * dz)
+    high = dz * tall
+    length = math.sqrt(dx * dx + dy * dy + high * high)
     if length == 0.0:  # the lamp stands on the pixel: there is no way between them
         return NO_RAY
     return px, py, pz, dx / length, dy / length, dz / length, -length, 0.0
@@ -52,6 +54,7 @@ def trace(
     index: int,
     grid: Triple,
     scale: float,
+    tall: float,
     places: Array,
     weights: Array,
 ) -> int:
@@ -59,7 +62,7 @@ def trace(
     width, height = shape
     nz, ny, nx = grid
     view, pixel = index // (width * height), index % (width * height)
-    ray = _ray(lamps[view], screens[view], pixel // height, pixel % height, (0, 0, 0))
+    ray = _ray(lamps[view], screens[view], pixel // height, pixel % height, (0, 0, 0), tall)
     return trace_ray(ray, (nx, ny, nz), (nz, nx * nz, 1), scale, places, weights)
 
 
@@ -75,6 +78,7 @@ def _trace_rows(
     size: Triple,
     strides: Triple,
     scale: float,
+    tall: float,
     places: Array,
     weights: Array,
 ) -> tuple[int, int]:
@@ -82,8 +86,8 @@ def _trace_rows(
 
     Returns how many pieces each has, in the two rows of `places` and `weights`.
     """
-    ray = _ray(lamp, screen, column, row, low) if heard[row] else NO_RAY
-    other = _ray(lamp, screen, column, row + 1, low) if row + 1 < top and heard[row + 1] else NO_RAY
+    ray = _ray(lamp, screen, column, row, low, tall) if heard[row] else NO_RAY
+    other = _ray(lamp, screen, column, row + 1, low, tall) if row + 1 < top and heard[row + 1] else NO_RAY
     return trace_two(ray, other, size, strides, scale, places, weights)
 
 
@@ -128,12 +132,13 @@ def forward(
     heard: Array,
     grid: Triple,
     scale: float,
+    tall: float,
     x: Array,
     b: Array,
 ) -> None:
     """``b = A x``; every number of `b` is written. `heard`, ``(views * width, height)``, is 0 where none counts."""
     work = _work(heard, grid)
-    tasks.run(_forward, len(lamps) * shape[0], work, lamps, screens, shape, heard, grid, scale, x, b)
+    tasks.run(_forward, len(lamps) * shape[0], work, lamps, screens, shape, heard, grid, scale, tall, x, b)
 
 
 def _work(heard: Array, grid: Triple) -> int:
@@ -151,6 +156,7 @@ def _forward(
     heard: Array,
     grid: Triple,
     scale: float,
+    tall: float,
     x: Array,
     b: Array,
 ) -> None:
@@ -173,6 +179,7 @@ def _forward(
                 (nx, ny, nz),
                 (nz, nx * nz, 1),
                 scale,
+                tall,
                 places,
                 weights,
             )
@@ -189,6 +196,7 @@ def adjoint(
     heard: Array,
     grid: Triple,
     scale: float,
+    tall: float,
     b: Array,
     x: Array,
 ) -> None:
@@ -198,7 +206,7 @@ def adjoint(
     times a number, which is above 0 where the point lies between lamp and screen or beyond the screen.
     """
     bricks = math.prod((side + BRICK - 1) // BRICK for side in grid)
-    tasks.run(_adjoint, bricks, _work(heard, grid), lamps, screens, shadows, shape, heard, grid, scale, b, x)
+    tasks.run(_adjoint, bricks, _work(heard, grid), lamps, screens, shadows, shape, heard, grid, scale, tall, b, x)
 
 
 @compiled
@@ -212,6 +220,7 @@ def _adjoint(
     heard: Array,
     grid: Triple,
     scale: float,
+    tall: float,
     b: Array,
     x: Array,
 ) -> None:
@@ -247,6 +256,7 @@ def _adjoint(
                         size,
                         (nz, nx * nz, 1),
                         scale,
+                        tall,
                         places,
                         weights,
                     )

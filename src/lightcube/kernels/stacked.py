@@ -1,7 +1,7 @@
 """Absorbance of all beams from all voxels, and its transpose, over blocks of columns.
 
 ``x`` is ``(ny * nx, slices * channels)`` and ``b`` is ``(beams, rows * channels)``. Beam ``view * width + column``
-starts at ``beams[view, 0] + column * beams[view, 1]`` and runs along ``beams[view, 2]`` (x, y, z in voxel sides) for
+starts at ``beams[view, 0] + column * beams[view, 1]`` and runs along ``beams[view, 2]`` (x, y, z in voxels) for
 the lowest picture row; row ``j`` is the same beam ``j`` voxels higher. So a piece in slice ``level`` joins column
 ``i`` of ``b`` to column ``i + level * channels`` of ``x``. Where beams are level, rows of the source may be longer.
 

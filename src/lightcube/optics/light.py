@@ -181,7 +181,7 @@ def _judge(row: bool) -> Reals:
 
 def is_in_slices(rig: Rig, grid: Grid) -> bool:
     """Whether all light is parallel, level, without a disc, and each pixel as high as the slice that it is before."""
-    views, side = rig.views, grid.voxel_mm
+    views, side = rig.views, grid.slice_mm
     rows, _ = views.picture_shape
     level = np.abs(views.lamps[:, 2]) < PARALLEL * np.linalg.norm(views.lamps[:, :3], axis=1)
     upright = np.all(np.abs(views.row_steps_mm - np.array([0.0, 0.0, -side])) < 1e-9 * side, axis=1)

@@ -100,14 +100,14 @@ class Views:
         return np.asarray(np.round(np.degrees(np.arctan2(-self.lamps[:, 2], level)), 9), dtype=np.float64)
 
     def pixel_in(self, grid: Grid) -> tuple[float, float]:
-        """Height and width of the smallest pixel, in voxels' sides."""
+        """Height and width of the smallest pixel, in voxels' widths."""
         steps = self.row_steps_mm, self.column_steps_mm
         high, wide = (float(np.min(np.linalg.norm(each, axis=1))) / grid.voxel_mm for each in steps)
         return high, wide
 
     def slices_a_row(self, grid: Grid) -> int:
         """How many slices the rows of all screens are apart, one right above the other; 0 where that is not whole."""
-        side = grid.voxel_mm
+        side = grid.slice_mm
         apart = max(1, round(-float(self.row_steps_mm[0, 2]) / side))
         return apart if np.allclose(self.row_steps_mm, (0, 0, -apart * side), rtol=0, atol=1e-9 * side) else 0
 

@@ -25,7 +25,7 @@ def coarser(targets: Targets, grid: Grid, ratio: float) -> tuple[Targets, Grid]:
     Pixels are means in linear light, their weights the mean weight; both cubes and all pictures share their centres.
     """
     nz, ny, nx = (_parts(count, ratio) for count in grid.shape)
-    small = Grid((nz, ny, nx), ratio * grid.voxel_mm)
+    small = grid.coarser((nz, ny, nx), ratio)
     rows, columns = targets.rig.picture_shape
     down, across = _covered(rows, ratio), _covered(columns, ratio)
     shape = (len(down), len(across))

@@ -82,8 +82,8 @@ def load(views: Views, grid: Grid) -> float:
     """
     rows, columns = views.picture_shape
     nz, ny, _ = grid.shape
-    high, _ = views.pixel_in(grid)
-    return len(views) * columns / ny * (1 / high if _is_level(views) else rows / nz)
+    slices = views.pixel_in(grid)[0] / grid.tall
+    return len(views) * columns / ny * (1 / slices if _is_level(views) else rows / nz)
 
 
 def mirror_conflicts(targets: Targets) -> list[tuple[int, int]]:
@@ -378,10 +378,10 @@ def _absorbance(targets: Targets) -> Floats:
 def _holds_shadow(views: Views, grid: Grid) -> NDArray[np.bool_]:
     """For each view, whether no beam outside the picture touches the cube, or with a level lamp the slices shown."""
     (rows, columns), (tall, wide) = views.picture_shape, views.pixel_in(grid)
-    nz, ny, nx = grid.shape
+    _, ny, nx = grid.shape
     theta = np.radians(views.angles_deg)
     cos, sin = np.abs(np.cos(theta)), np.abs(np.sin(theta))
-    high = nz + (nx * cos + ny * sin) * np.abs(np.tan(np.radians(views.elevations_deg)))
+    high = grid.tall * grid.shape[0] + (nx * cos + ny * sin) * np.abs(np.tan(np.radians(views.elevations_deg)))
     wide_enough = (columns + 1) * wide > nx * sin + ny * cos + 1e-6
     return np.asarray(wide_enough & ((views.elevations_deg == 0) | ((rows + 1) * tall > high + 1e-6)))
 

@@ -120,7 +120,7 @@ def _draft(targets: Targets, grid: Grid) -> tuple[Targets, Grid]:
     """Return the targets and the grid at a size that solves in a moment: as they are, or 16 voxels long."""
     scale = max(1.0, max(grid.shape) / _DRAFT)
     nz, ny, nx = (max(1, round(side / scale)) for side in grid.shape)
-    small = Grid((nz, ny, nx), grid.voxel_mm * scale)
+    small = grid.coarser((nz, ny, nx), scale)
     rig = targets.rig
     most = raster_shape(small, float(np.min(np.abs(rig.views.elevations_deg))), rig.views.pixel_in(grid))
     rows, columns = (min(max(1, round(side / scale)), end) for side, end in zip(rig.picture_shape, most, strict=True))

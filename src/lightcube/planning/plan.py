@@ -115,6 +115,7 @@ def plan(
     *,
     size_mm: float = 100.0,
     shape: tuple[int, int, int] | None = None,
+    tall: float = 1.0,
     picture_width: float | None = None,
     turntable: Turntable | None = None,
     fit: Fit = "crop",
@@ -138,6 +139,8 @@ def plan(
     shape
         ``(nz, ny, nx)`` instead; default the proportions of the first picture under a raised lamp, and as high as the
         pictures under a level one.
+    tall
+        Height of a slice in the width of a voxel; `n` counts widths.
     picture_width
         Width of the pictures as a fraction of the cube's; default the largest in `WIDTHS` with a predicted mean PSNR
         of at least 39 dB, or the smallest; but half of it where 36 dB are predicted for that.
@@ -177,7 +180,7 @@ def plan(
     small, chooses = rehearsals or Rehearsals(), picture_width is None or longest_hold or smooth
 
     def as_wide(width: float) -> Plan:
-        grid, rig = _cube_for(pictures, shape or n, size_mm, table, width)
+        grid, rig = _cube_for(pictures, shape or n, (size_mm, tall), table, width)
         targets = fitted(pictures, rig, fit)
         recipe = replace(asked, hold_deg=least_hold_deg(rig, grid, asked)) if longest_hold else asked
         return Plan(pictures, targets, grid, recipe, fit, Prediction.unknown(len(targets)))
@@ -239,21 +242,35 @@ def _smoothed(planned: Plan) -> Plan:
 
 
 def _cube_for(
-    pictures: Pictures, size: int | tuple[int, int, int], size_mm: float, turntable: Turntable, width: float
+    pictures: Pictures,
+    size: int | tuple[int, int, int],
+    sides: tuple[float, float],
+    turntable: Turntable,
+    width: float,
 ) -> tuple[Grid, Rig]:
-    """A cube of a shape, or of so many voxels, for pictures of a width, and the rig that shows them."""
+    """A cube of a shape, or of so many voxels, for pictures of a width, and the rig that shows them.
+
+    `sides` are the cube's longest in mm, and how tall slices are.
+    """
+    size_mm, tall = sides
     rows, columns = pictures.images[0].shape[:2]
     level = turntable.elevation_of(pictures) == 0
-    voxels = proportions(size, columns / rows, width, level=level) if isinstance(size, int) else size
+    if isinstance(size, int):
+        high, *across = proportions(size, columns / rows, width, level=level)
+        voxels = max(1, round(high / tall)), across[0], across[1]
+    else:
+        voxels = size
     while True:
-        grid = Grid(voxels, size_mm / max(voxels))
+        grid = Grid(voxels, tall=tall)
+        grid = replace(grid, voxel_mm=size_mm / grid.longest)
         rig = turntable.rig(pictures, grid, picture_width=width)
         if not isinstance(size, int) or not level or max(voxels[1:]) < size:
             return grid, rig
         high = min(turntable.pixel * rig.picture_shape[0], size)
-        if high == voxels[0]:
+        slices = max(1, round(high / tall))
+        if slices == voxels[0]:
             return grid, rig
-        voxels = (high, *voxels[1:])  # no slices above and below the pictures
+        voxels = (slices, *voxels[1:])  # no slices above and below the pictures
 
 
 def spread(planned: Plan, targets: Targets, shift: int) -> Targets:

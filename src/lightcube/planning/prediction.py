@@ -190,7 +190,7 @@ def reduced(targets: Targets, grid: Grid, width: int) -> tuple[Targets, Grid]:
         targets.names,
         targets.transfer,
     )
-    return small, Grid(shape, grid.voxel_mm * ratio)
+    return small, grid.coarser(shape, ratio)
 
 
 def _width(targets: Targets, grid: Grid, recipe: Recipe) -> int:
@@ -223,7 +223,7 @@ def _proportioned(
         small_y, small_x = nearest(ny * scale, across), nearest(nx * scale, across + nx - ny)
         for small_z in range(max(1, round(nz * scale) - 1), round(nz * scale) + 2):
             shape = (small_z, small_y, small_x)
-            most_rows, most_columns = raster_shape(Grid(shape), elevation_deg, pixel)
+            most_rows, most_columns = raster_shape(grid.coarser(shape, 1), elevation_deg, pixel)
             small_rows = min(nearest(rows * scale, most_rows), most_rows)
             small_columns = min(nearest(columns * scale, most_columns), most_columns)
             high, tall = math.log(small_rows / rows / scale), math.log(small_z / nz / scale)

@@ -34,17 +34,19 @@ class Rays:
 
     def __init__(self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None) -> None:
         rows, columns = views.picture_shape
-        side = grid.voxel_mm
+        sides_mm = grid.sides_mm
         middle = np.array(grid.shape[::-1]) / 2
         lowest_left = views.origins_mm - (columns - 1) / 2 * views.column_steps_mm + (rows - 1) / 2 * views.row_steps_mm
         self.grid = grid
         self._screens = np.stack(
-            [lowest_left / side + middle, views.column_steps_mm / side, -views.row_steps_mm / side], 1
+            [lowest_left / sides_mm + middle, views.column_steps_mm / sides_mm, -views.row_steps_mm / sides_mm], 1
         )
         self._lamps = views.lamps.copy()
         points = views.lamps[:, 3] != 0
-        self._lamps[points, :3] = views.lamps[points, :3] / side + middle
+        self._lamps[points, :3] = views.lamps[points, :3] / sides_mm + middle
         self._lamps[~points, :3] /= np.linalg.norm(views.lamps[~points, :3], axis=1, keepdims=True)
+        self._lamps[~points, :3] *= grid.voxel_mm / sides_mm  # in voxels a voxel's width of the way
+        self._sides = grid.voxel_mm, grid.tall
         self._picture = columns, rows
         listening = np.ones((len(views), rows, columns), bool) if heard is None else heard
         lines = listening[:, ::-1].transpose(0, 2, 1).reshape(len(views) * columns, rows)
@@ -54,14 +56,14 @@ class Rays:
     def forward(self, x: Floats) -> Floats:
         """``A @ x`` of a contiguous block of columns."""
         b = empty((self.shape[0], x.shape[1]), x.dtype)
-        rays.forward(self._lamps, self._screens, self._picture, self._heard, self.grid.shape, self.grid.voxel_mm, x, b)
+        rays.forward(self._lamps, self._screens, self._picture, self._heard, self.grid.shape, *self._sides, x, b)
         return b
 
     def adjoint(self, b: Floats) -> Floats:
         """``A.T @ b`` of a contiguous block of columns."""
         x = empty((self.shape[1], b.shape[1]), b.dtype)
         data = self._lamps, self._screens, shadow_matrices(self._lamps, self._screens), self._picture, self._heard
-        rays.adjoint(*data, self.grid.shape, self.grid.voxel_mm, b, x)
+        rays.adjoint(*data, self.grid.shape, *self._sides, b, x)
         return x
 
     def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -71,7 +73,7 @@ class Rays:
         unknowns, lengths = np.empty(most, np.int64), np.empty(most)
         if not self._heard.reshape(-1)[index]:
             return unknowns[:0], lengths[:0]
-        data = self._lamps, self._screens, self._picture, index, self.grid.shape, self.grid.voxel_mm
+        data = self._lamps, self._screens, self._picture, index, self.grid.shape, *self._sides
         count = rays.trace(*data, unknowns, lengths)
         return unknowns[:count], lengths[:count]
 
@@ -79,7 +81,7 @@ class Rays:
         """Return the same matrix, float64."""
         from scipy.sparse import csr_array  # here: it takes longer to load than a small cube to play
 
-        data = self._lamps, self._screens, self._picture, self._heard, self.grid.shape, self.grid.voxel_mm
+        data = self._lamps, self._screens, self._picture, self._heard, self.grid.shape, *self._sides
         offsets = np.zeros(self.shape[0] + 1, np.int64)
         trace_all(*data, offsets, np.empty(0, np.int64), np.empty(0))
         unknowns, lengths = np.empty(offsets[-1], np.int64), np.empty(offsets[-1])

@@ -1,6 +1,6 @@
-"""The matrix of parallel light on vertical screens whose rows are one voxel apart, or whole ones: a turntable's.
+"""The matrix of parallel light on vertical screens whose rows are one slice apart, or whole ones: a turntable's.
 
-All beams of a picture column are the same beam, moved up by whole voxels: one traversal serves them all.
+All beams of a picture column are the same beam, moved up by whole slices: one traversal serves them all.
 """
 
 import math
@@ -24,7 +24,7 @@ Floats = NDArray[np.floating[Any]]
 
 
 def is_stacked(grid: Grid, views: Views) -> bool:
-    """Whether light is parallel and not vertical, and each screen vertical with rows whole voxels apart."""
+    """Whether light is parallel and not vertical, and each screen vertical with rows whole slices apart."""
     return bool(
         np.all(views.lamps[:, 3] == 0)
         and views.slices_a_row(grid)
@@ -52,13 +52,14 @@ class StackedBeams:
         self.grid = grid
         rows, self._width = views.picture_shape
         nz, ny, nx = grid.shape
-        side = grid.voxel_mm
+        sides_mm = grid.sides_mm
         lowest_left = (
             views.origins_mm - (self._width - 1) / 2 * views.column_steps_mm + (rows - 1) / 2 * views.row_steps_mm
         )
         light = views.lamps[:, :3] / np.linalg.norm(views.lamps[:, :3], axis=1, keepdims=True)
-        corner = lowest_left / side + (nx / 2, ny / 2, nz / 2)
-        self.beams = np.stack([corner, views.column_steps_mm / side, light], axis=1)
+        light = light * (grid.voxel_mm / sides_mm)  # in voxels a voxel's width of the way
+        corner = lowest_left / sides_mm + (nx / 2, ny / 2, nz / 2)
+        self.beams = np.stack([corner, views.column_steps_mm / sides_mm, light], axis=1)
         slope = np.max(np.abs(light[:, 2]) / np.hypot(light[:, 0], light[:, 1]))
         self.rise = math.ceil(slope * math.hypot(nx, ny)) + 2
         self._apart = views.slices_a_row(grid)
@@ -161,7 +162,7 @@ class StackedBeams:
         return longer
 
     def _plane(self) -> tuple[int, int, float]:
-        """What the kernels want to know of the grid: nx, ny, voxel side."""
+        """What the kernels want to know of the grid: nx, ny, and a voxel's width."""
         return self.grid.shape[2], self.grid.shape[1], self.grid.voxel_mm
 
     def _unknowns(

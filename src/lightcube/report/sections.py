@@ -107,7 +107,7 @@ def settings(found: Findings) -> str:
     nz, ny, nx = cube.grid.shape
     return pairs(
         {
-            "Voxels": f"{nx} × {ny} × {nz} of {cube.grid.voxel_mm:.6g} mm",
+            "Voxels": f"{nx} × {ny} × {nz} of {cube.grid.sides_in_words.replace('x', '×')}",
             **_placed(cube),
             "Lamp power": f"{_range(cube.powers, '.4g')} ({kind}{most})",
             "Hold": f"{cube.hold_deg:g}° on either side of a stop" if cube.hold_deg else "none",

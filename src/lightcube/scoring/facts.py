@@ -14,6 +14,7 @@ def facts(cube: Cube) -> dict[str, Any]:
         "voxels": f"{nz} x {ny} x {nx} (z, y, x)",
         "size_mm": " x ".join(f"{length:g}" for length in cube.grid.size_mm),
         "voxel_mm": cube.grid.voxel_mm,
+        **({} if cube.grid.tall == 1 else {"slice_mm": cube.grid.slice_mm}),
         "views": len(cube.rig.views),
         "pictures": len(cube.names),
         "picture": f"{columns} x {rows} pixels",

@@ -27,8 +27,9 @@ def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float
     right, down = (
         steps / np.linalg.norm(steps, axis=1, keepdims=True) for steps in (views.column_steps_mm, views.row_steps_mm)
     )
-    shift_mm = cube.grid.voxel_mm * (disturbance.up_voxels * down - disturbance.right_voxels * right)
-    shift_mm = shift_mm + disturbance.further * cube.grid.size_mm[1] * _ways(views)
+    shift_mm = disturbance.up_voxels * cube.grid.slice_mm * down
+    shift_mm -= disturbance.right_voxels * cube.grid.voxel_mm * right
+    shift_mm += disturbance.further * cube.grid.size_mm[1] * _ways(views)
     rig = replace(rig, views=replace(views, origins_mm=views.origins_mm + shift_mm))
     if disturbance.levels:
         cube = replace(cube, extinction=_rounded(cube.extinction, disturbance.levels))

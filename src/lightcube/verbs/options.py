@@ -41,6 +41,7 @@ class Options:
     picture_width: Annotated[
         float | None, Option("Width of the pictures as a part of the cube's; default as wide as 39 dB are expected.")
     ] = None
+    slices_tall: Annotated[int, Option("Height of a slice of the cube in widths of a voxel; --n counts widths.", 1)] = 1
     pixel: Annotated[int, Option("Voxels along a side of each pixel of the pictures.", 1)] = 1
     fit: Annotated[
         Fit, Option("Pictures of another aspect than the first: cut their edges, leave the rest free, or distort.")
@@ -143,6 +144,7 @@ class Options:
         """The paper's own set-up; `InputError` where options contradict it."""
         said = {
             "--picture-width": self.picture_width,
+            "--slices-tall": None if self.slices_tall == 1 else self.slices_tall,
             "--pixel": None if self.pixel == 1 else self.pixel,
             "--angles-deg": self.angles_deg,
             "--span-deg": self.span_deg,

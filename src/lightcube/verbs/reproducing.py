@@ -71,7 +71,12 @@ def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
     """Cube, pictures, angles and lamp's elevation of a turntable."""
     views, provenance, pixel = cube.rig.views, cube.provenance, _pixel(cube)
     yield from ("--shape", ",".join(map(str, cube.grid.shape)))
-    size = _size(cube.grid.voxel_mm, max(cube.grid.shape))
+    tall = cube.grid.tall
+    if tall != 1 and tall == round(tall):
+        yield from ("--slices-tall", str(round(tall)))
+    elif tall != 1:
+        command.doubts.append(f"No option says slices {tall:g} times as tall as voxels are wide.")
+    size = _size(cube.grid.voxel_mm, cube.grid.longest)
     if size is None:
         command.doubts.append(f"No size in mm gives voxels of exactly {cube.grid.voxel_mm!r} mm.")
     elif size != _SIZE_MM:
@@ -262,7 +267,7 @@ def _made(cube: Cube, angles_deg: NDArray[np.float64], **disc: float) -> Rig:
 
 def _pixel(cube: Cube) -> int:
     """How many voxels the cube's pixels are wide, as near as an option can say it."""
-    return min(max(1, round(cube.rig.views.pixel_in(cube.grid)[1])), *cube.grid.shape)
+    return min(max(1, round(cube.rig.views.pixel_in(cube.grid)[1])), cube.grid.largest_pixel)
 
 
 def _same(cube: Cube, made: Rig) -> bool:
@@ -283,7 +288,7 @@ def _listed(angles_deg: NDArray[np.float64]) -> str:
     return ",".join(_number(float(angle_deg)) for angle_deg in angles_deg)
 
 
-def _size(voxel_mm: float, voxels: int) -> float | None:
+def _size(voxel_mm: float, voxels: float) -> float | None:
     """The shortest length of so many voxels that gives exactly their side, or None."""
     return next((each for each in _rounded(voxel_mm * voxels) if each / voxels == voxel_mm), None)
 

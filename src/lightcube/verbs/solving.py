@@ -36,20 +36,8 @@ _QUICK = 40
 
 #: Options that a stage file leaves no room for.
 _SAID_BY_STAGE = (
-    *(
-        "n",
-        "shape",
-        "size_mm",
-        "picture_width",
-        "pixel",
-        "fit",
-        "angles_deg",
-        "span_deg",
-        "elevation_deg",
-        "paper",
-        "order",
-    ),
-    *("shift", "lamp_power", "lamp_max", "black", "lamp_deg", "screen_mm"),
+    *("n", "shape", "size_mm", "slices_tall", "picture_width", "pixel", "fit", "angles_deg", "span_deg"),
+    *("elevation_deg", "paper", "order", "shift", "lamp_power", "lamp_max", "black", "lamp_deg", "screen_mm"),
 )
 
 
@@ -105,6 +93,7 @@ def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
         recipe,
         size_mm=options.size_mm,
         shape=options.shape,
+        tall=float(options.slices_tall),
         picture_width=options.picture_width,
         turntable=turntable,
         fit=options.fit,

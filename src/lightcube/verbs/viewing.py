@@ -30,7 +30,7 @@ class Page:
 
 def is_solved_anew(cube: Cube, *, full: bool) -> bool:
     """Whether a page holds a smaller cube, which is solved for it; not where all voxels are asked for."""
-    return not full and max(cube.grid.shape) > smaller.MOST_SIDE
+    return not full and cube.grid.longest > smaller.MOST_SIDE
 
 
 def page(cube: Cube, title: str, tell: Tell, *, full: bool = False) -> Page:

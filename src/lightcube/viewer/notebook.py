@@ -50,7 +50,7 @@ def displayed(cube: Cube) -> dict[str, Any]:
     if _is_terminal():
         return {"text/plain": repr(cube)}
     try:
-        quick = max(cube.grid.shape) <= MOST_SIDE
+        quick = cube.grid.longest <= MOST_SIDE
         shown = show(cube)._repr_mimebundle_() if quick and _has_widgets() else None
     except InputError:  # there is no anywidget, or the cube is none for a page
         shown = None

@@ -13,7 +13,7 @@ from lightcube.optics.cube import Cube
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.modules import joined, source
 from lightcube.viewer.packing import pack
-from lightcube.viewer.smaller import smaller
+from lightcube.viewer.smaller import in_cubes, smaller
 
 
 @checked
@@ -32,7 +32,8 @@ def page(cube: Cube, title: str, *, full: bool = False, callback: Watching | Non
     Raises
     ------
     InputError
-        Where the cube has other than 1 or 3 colours, more voxels than a browser takes, or lamps at several elevations.
+        Where the cube has other than 1 or 3 colours, more voxels than a browser takes, slices that are no whole voxels
+        tall, or lamps at several elevations.
     """
     return page_of(*contents(cube, title, full=full, callback=callback))
 
@@ -53,5 +54,6 @@ def contents(
     cube: Cube, title: str, *, full: bool = False, callback: Watching | None = None
 ) -> tuple[dict[str, Any], bytes]:
     """Description and voxels, as the page's modules read them; takes and raises what `page` does."""
-    packed = pack(cube if full else smaller(cube, callback))
-    return describe(cube, packed, title), packed.data()
+    cubic = in_cubes(cube)
+    packed = pack(cubic if full else smaller(cubic, callback))
+    return describe(cubic, packed, title), packed.data()

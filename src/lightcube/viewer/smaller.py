@@ -8,8 +8,11 @@ from numpy.typing import NDArray
 from lightcube.backward.pieces import Watching
 from lightcube.backward.recipe import recipe_of
 from lightcube.backward.solving import solve
+from lightcube.errors import InputError
 from lightcube.forward.casting import cast
+from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
 from lightcube.pictures.fitting import targets_of
 from lightcube.pictures.resampling import coarser
@@ -44,6 +47,27 @@ def smaller(cube: Cube, callback: Watching | None = None) -> Cube:
     bound = Material(recipe.bounded_by.most(cube.grid))
     solution = solve(targets, grid, replace(recipe.by_display(_PASSES), material=bound), callback=callback)
     return replace(solution.cube, scores=metrics.score(solution.cube, targets), status=cube.status)
+
+
+def in_cubes(cube: Cube) -> Cube:
+    """The same glass in voxels that are cubes, as a page has them: each slice as several, which cast the same.
+
+    Raises
+    ------
+    InputError
+        Where slices are not a whole number of voxels tall.
+    """
+    grid, times = cube.grid, round(cube.grid.tall)
+    if grid.tall == 1:
+        return cube
+    if times != grid.tall:
+        raise InputError(
+            f"a page shows cubes whose slices are as tall as whole voxels are wide, and these are {grid.tall:g} times "
+            "as tall: play it instead"
+        )
+    nz, ny, nx = grid.shape
+    extinction = locked(np.repeat(cube.extinction, times, axis=1))
+    return replace(cube, extinction=extinction, grid=Grid((times * nz, ny, nx), grid.voxel_mm))
 
 
 def shown_coarsely(cube: Cube, small: Cube) -> NDArray[np.float32]:
