@@ -210,13 +210,22 @@ def test_wider_pictures_are_told_to_be_worse() -> None:
 def test_the_law_leaves_alone_what_was_not_reduced_and_keeps_order() -> None:
     reached = np.linspace(5, 90, 50)
     for by in (prediction.AREA, prediction.THIN):
-        for held in (False, True):
-            np.testing.assert_array_equal(law(reached, 1.0, by, held=held), reached)
+        for level in (False, True):
+            np.testing.assert_array_equal(law(reached, 1.0, by, level=level), reached)
         for ratio in (1.5, 4.0, 12.0):
-            for held in (False, True):
-                told = law(reached, ratio, by, held=held)
+            for level in (False, True):
+                told = law(reached, ratio, by, level=level)
                 assert np.all(np.diff(told) >= 0)
                 assert np.all((told >= 0) & (told <= 100))
+
+
+def test_pictures_that_would_be_better_than_enough_are_lowered_together() -> None:
+    """Until all their pixels are a decibel better than what is enough; others stay."""
+    reached = np.array([41.0, 50.0, 47.0])
+    told = law(reached, 1.0, prediction.AREA, enough_db=42.0)
+    np.testing.assert_allclose(np.diff(told), np.diff(reached))
+    assert -10 * np.log10(np.mean(10 ** (-told / 10))) == pytest.approx(43.0)
+    np.testing.assert_array_equal(law(reached - 9, 1.0, prediction.AREA, enough_db=42.0), reached - 9)
 
 
 def test_means_and_worst_are_told_up_to_fifty() -> None:
