@@ -101,7 +101,7 @@ def test_it_tells_what_it_tries_and_stops_where_it_is_told_to(asked: list[Recipe
         small.predict(TARGETS, GRID, Recipe(hold_deg=hold_deg))
     steps = [step for step in told if isinstance(step, Progress)]
     assert [step.figures["width"] for step in steps] == pytest.approx([1.0, 1.0])
-        assert [step.figures["hold"] for step in steps] == [0.0, 0.5]
+    assert [step.figures["hold"] for step in steps] == [0.0, 0.5]
     assert all(0 <= step.done < step.of for step in steps)
     with pytest.raises(Interrupted):
         Rehearsals(tell=lambda _: True).predict(TARGETS, GRID, Recipe())
