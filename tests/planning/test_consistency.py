@@ -77,6 +77,24 @@ def test_no_cube_s_own_pictures_conflict(shape: tuple[int, int, int], filled: fl
         assert row_conflicts(targets, grid, lamp_max=1.0) == []
 
 
+def test_of_beams_two_voxels_apart_no_row_is_said_to_conflict() -> None:
+    """One voxel may stand in the way of none of them in one view, and of one in another."""
+    grid, angles_deg = Grid((3, 5, 7)), [0.0, 20.0, 45.0, 90.0]
+    for y, x in np.ndindex(5, 7):
+        cube = np.zeros((3, 3, 5, 7))
+        cube[..., y, x] = 5.0
+        targets = pictures_of_rays(cube, grid, turntable(grid, angles_deg, pixel=2))
+        assert row_conflicts(targets, grid, lamp_max=1.0) == []
+    assert check(targets, grid)["whole_shadow"]
+    narrow = turntable(grid, angles_deg, picture_shape=(2, targets.rig.picture_shape[1] - 2), pixel=2)
+    assert not check(pictures_of_rays(cube, grid, narrow), grid)["whole_shadow"]
+
+
+def pictures_of_rays(cube: NDArray[Any], grid: Grid, rig: Any) -> Targets:
+    """What a cube ``(channel, z, y, x)`` casts, by pixels of any size."""
+    return Targets(np.exp(-Projector(grid, rig)(cube)).astype(np.float32), rig)
+
+
 def test_one_voxel_s_totals_differ_by_the_factor_that_is_allowed() -> None:
     # Turned by 45 degrees a voxel is a rhomb, seen by one beam through its tip or by two beside it.
     grid = Grid((1, 8, 8))

@@ -212,6 +212,14 @@ def test_a_tour_of_points_on_a_circle_goes_round_it() -> None:
     assert set(steps) in ({1}, {8})
 
 
+def test_moved_pictures_of_larger_pixels_stay_on_the_screen_too() -> None:
+    grid, angles_deg = Grid((15, 36, 42)), spread_angles(6, elevation_deg=35.0)
+    rig = turntable(grid, angles_deg, elevation_deg=35.0, picture_shape=(3, 4), pixel=3)
+    offsets = spread_over_screen(Targets(np.ones((6, 3, 4, 3), np.float32), rig), grid, 99)
+    across, up = np.max(np.abs(offsets), axis=0)
+    assert (across, up) == (2, (raster_shape(grid, 35.0, 3)[0] - 3) // 2)
+
+
 @pytest.mark.parametrize(("elevation_deg", "rows"), [(0.0, 3), (35.0, 3), (20.0, 5)])
 def test_moved_pictures_stand_on_the_screen_and_neighbours_apart(elevation_deg: float, rows: int) -> None:
     grid = Grid((5, 12, 14))

@@ -178,6 +178,19 @@ def test_any_stops_make_a_curve_of_one_period(hundredths: list[int], elevation_d
     assert found.lobes_deg.sum() <= found.period_deg + 1e-9
 
 
+@pytest.mark.parametrize("tall", [1.0, 2.0])
+def test_a_cube_that_is_off_by_voxels_is_so_by_fewer_pixels(tall: float) -> None:
+    """Two voxels aside are a pixel of 2 x 2; up, so are two slices, or one that is twice as tall."""
+    cube = make_cube([20.0, 75.0, 250.0], 35.0)
+    grid = Grid(cube.grid.shape, cube.grid.voxel_mm, tall)
+    cube = replace(cube, grid=grid, rig=turntable(grid, cube.angles_deg, elevation_deg=35.0, pixel=2))
+    shown = play(cube)
+    right = np.stack(list(disturbed(cube, Disturbance(right_voxels=2.0))))
+    up = np.stack(list(disturbed(cube, Disturbance(up_voxels=2 / tall))))
+    assert np.allclose(right[:, :, 1:], shown[:, :, :-1], rtol=1e-4)
+    assert np.allclose(up[:, :-1], shown[:, 1:], rtol=1e-4)
+
+
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 def test_each_disturbance_is_what_it_says(elevation_deg: float) -> None:
     cube = make_cube([20.0, 75.0, 250.0], elevation_deg)

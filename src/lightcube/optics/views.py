@@ -100,9 +100,9 @@ class Views:
         return np.asarray(np.round(np.degrees(np.arctan2(-self.lamps[:, 2], level)), 9), dtype=np.float64)
 
     def pixel_in(self, grid: Grid) -> tuple[float, float]:
-        """Height and width of the smallest pixel, in voxels' widths."""
+        """Height and width of the smallest pixel, in voxels' widths, to 1e-9."""
         steps = self.row_steps_mm, self.column_steps_mm
-        high, wide = (float(np.min(np.linalg.norm(each, axis=1))) / grid.voxel_mm for each in steps)
+        high, wide = (round(float(np.min(np.linalg.norm(each, axis=1))) / grid.voxel_mm, 9) for each in steps)
         return high, wide
 
     def slices_a_row(self, grid: Grid) -> int:
