@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.backward import solving
-from lightcube.backward.mat import Mat
 from lightcube.backward.recipe import Recipe
 from lightcube.cli.console import compiling, out, progress
 from lightcube.cli.options import threaded
@@ -56,7 +55,7 @@ def run(folder: Path) -> None:
     planned = plan(photographs(), _SIDE, longest_hold=True, smooth=True)
     rows = [
         _one("photographs", planned.targets, grid, folder, planned.recipe),
-        _one("juggler", _juggler(grid), grid, folder, Recipe.of_quality("normal", mat=Mat())),
+        _one("juggler", _juggler(grid), grid, folder, replace(planned.recipe, light=None)),
     ]
     io.save({row["name"]: row for row in rows}, folder / "metrics.json", overwrite=True)
     out.print()
@@ -75,7 +74,7 @@ def run(folder: Path) -> None:
 
 def _juggler(grid: Grid) -> Targets:
     """A traced scene, one picture for every step of a whole turn of the cube under a raised lamp."""
-    rig = turntable(grid, spread_angles(32, elevation_deg=35.0), elevation_deg=35.0, picture_shape=(48, 48))
+    rig = turntable(grid, spread_angles(24, elevation_deg=35.0), elevation_deg=35.0, picture_shape=(32, 32))
     with progress("tracing", as_json=False) as advance:
         return scene_targets(io.read_scene("juggler"), rig, grid, callback=advance)
 
