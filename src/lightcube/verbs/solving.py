@@ -19,7 +19,6 @@ from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.events import Tell
 from lightcube.jobs.partial import begun_units
-from lightcube.kernels.tasks import threads
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.planning.plan import Plan, plan, plan_stage
@@ -173,6 +172,8 @@ def needs(made: Job) -> dict[str, Any]:
 
 def _speed(made: Job) -> Speed:
     """How fast jobs like this one are on this machine, with so many threads, as they were when it was last measured."""
+    from lightcube.kernels.tasks import threads  # here: the compiler comes with it
+
     kind = made.recipe.method if isinstance(made.recipe.method, str) else ""
     asked = [version("lightcube"), platform.node(), threads(), kind, made.recipe.dtype, made.level, made.channels]
     known, name = io.Remembered(), sha256(json.dumps(["speed", *asked]).encode()).hexdigest()
