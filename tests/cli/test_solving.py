@@ -160,7 +160,7 @@ def test_poor_pictures_come_with_what_would_help(run, unlike: Path) -> None:  # 
 @pytest.mark.parametrize("quality", ["draft", "normal", "best"])
 def test_a_quality_is_a_number_of_passes(run, unlike: Path, tmp_path: Path, quality: str) -> None:  # type: ignore[no-untyped-def]
     options = ["--n", 8, "--picture-width", 1, "--lamp-max", 1, "--quality", quality, "--json", "--hold-deg", 0]
-    done = run("solve", unlike, "-o", tmp_path / "a.npz", *options)
+    done = run("solve", unlike, "-o", tmp_path / "a.npz", *options, "--points", 2, "--grain", 0, "--mat", "none")
     result = json.loads(done.out.strip().splitlines()[-1])
     assert 0 < result["iterations"] <= QUALITIES[quality].passes  # type: ignore[index]
 

@@ -242,6 +242,7 @@ def test_tall_slices_stay_as_tall_in_a_rehearsal() -> None:
     assert small.rig.picture_shape[0] == pytest.approx(20 * 24 / 60, abs=2)
 
 
+@pytest.mark.skipif(INTERPRETED, reason="two passes of a rehearsal tell nothing apart")
 def test_pixels_of_many_voxels_are_rehearsed_as_such() -> None:
     """So many as voxels are too many for the cube; pixels that are no whole voxels were not measured."""
     few = predict(*problem((12, 12, 12), picture=(4, 4), pixel=2), Recipe())
