@@ -34,7 +34,7 @@ def formula(monkeypatch: pytest.MonkeyPatch) -> list[float]:
         rows, columns = targets.rig.picture_shape
         calls.append(hold_deg)
         part = rows * columns / (grid.shape[0] * grid.shape[1])
-        return Prediction(np.full(len(targets), 60 - 100 * part - 0.8 * hold_deg), 20)
+        return Prediction(np.full(len(targets), 61 - 100 * part - 0.8 * hold_deg), 20)
 
     monkeypatch.setattr(rehearsals, "predict", predict)
     return calls
@@ -54,7 +54,7 @@ def test_half_as_wide_as_the_cube_they_may_be_a_little_worse(monkeypatch: pytest
 
         def told(targets: Targets, _grid: Grid, _recipe: Recipe, half_db: float = half_db) -> Prediction:
             wide = targets.rig.picture_shape[1]
-            return Prediction(np.full(len(targets), 39.0 if wide < 26 else half_db if wide <= 32 else 20.0), 20)
+            return Prediction(np.full(len(targets), PLANNED_DB if wide < 26 else half_db if wide <= 32 else 20.0), 20)
 
         monkeypatch.setattr(rehearsals, "predict", told)
         assert plan(pictures(), 64).targets.rig.picture_shape[1] == columns

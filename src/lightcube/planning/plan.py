@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from lightcube.planning.order import Order
 
 #: Pictures are made as wide as so much is expected of them, dB; half as wide as the cube where this is.
-PLANNED_DB, LEAST_DB, HALF = 39.0, 36.0, 0.5
+PLANNED_DB, LEAST_DB, HALF = 40.0, 36.0, 0.5
 #: Where so much is expected of pictures, dB, points weigh so much beside means: it costs 2 dB at most, where there is
 #: a mat or a hold nothing, and the grain becomes a third less (measured).
 SMOOTH_DB, GRAIN = 38.0, 0.01
@@ -143,7 +143,7 @@ def plan(
         Height of a slice in the width of a voxel; `n` counts widths.
     picture_width
         Width of the pictures as a fraction of the cube's; default the largest in `WIDTHS` with a predicted mean PSNR
-        of at least 39 dB, or the smallest; but half of it where 36 dB are predicted for that.
+        of at least 40 dB, or the smallest; but half of it where 36 dB are predicted for that.
     turntable
         Angles, lamp and screen, as far as they are said; None = ``Turntable()``.
     fit

@@ -39,7 +39,7 @@ class Options:
     shape: Annotated[tuple[int, int, int] | None, Option("Voxels along each axis, NZ,NY,NX, instead of --n.")] = None
     size_mm: Annotated[float, Option("Longest side of the cube in mm.")] = 100.0
     picture_width: Annotated[
-        float | None, Option("Width of the pictures as a part of the cube's; default as wide as 39 dB are expected.")
+        float | None, Option("Width of the pictures as a part of the cube's; default as wide as 40 dB are expected.")
     ] = None
     slices_tall: Annotated[int, Option("Height of a slice of the cube in widths of a voxel; --n counts widths.", 1)] = 1
     pixel: Annotated[int, Option("Voxels along a side of each pixel of the pictures.", 1)] = 1
