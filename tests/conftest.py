@@ -36,7 +36,7 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Interpreted kernels take few points, short rehearsals and drafts; compiled ones have it all."""
     room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
-    if INTERPRETED and room not in ("optics", "forward", "viewer") and file != "test_docstrings":
+    if INTERPRETED and room not in ("optics", "forward", "viewer") and file not in ("test_docstrings", "test_older"):
         for name, few in (("JUDGE", 5), ("_JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
             monkeypatch.setattr(light, name, few)
         monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2, 0.0))

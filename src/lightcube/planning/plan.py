@@ -296,7 +296,7 @@ def _widest(predicted: Callable[[float], Plan]) -> Plan:
             fell = tried[good].prediction.psnr_mean - tried[poor].prediction.psnr_mean
             fall = min(max(fell / math.log(WIDTHS[poor] / WIDTHS[good]), _FALLS[0]), _FALLS[1])
         goal = WIDTHS[at] * math.exp(spare / fall)
-        at = min(max(bisect_right(WIDTHS, goal) - 1, 0), poor - 1)
+        at = min(max(bisect_right(WIDTHS, goal) - 1, good + 1), poor - 1)
     return tried[max(good, 0)]
 
 
