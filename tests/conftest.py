@@ -32,11 +32,19 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def forget_points() -> None:
+    """Points of pixels are chosen unlike the judge's: with another judge they are others."""
+    light.lattice.cache_clear()
+    light.soft_lattice.cache_clear()
+
+
 @pytest.fixture(autouse=True)
 def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Interpreted kernels take few points, short rehearsals and drafts; compiled ones have it all."""
     room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
     if INTERPRETED and room not in ("optics", "forward", "viewer") and file not in ("test_docstrings", "test_older"):
+        forget_points()
+        request.addfinalizer(forget_points)
         for name, few in (("JUDGE", 5), ("_JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
             monkeypatch.setattr(light, name, few)
         monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2, 0.0))
