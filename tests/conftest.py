@@ -5,6 +5,7 @@ import os
 import shutil
 import signal
 import tempfile
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
@@ -39,12 +40,11 @@ def forget_points() -> None:
 
 
 @pytest.fixture(autouse=True)
-def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Interpreted kernels take few points, short rehearsals and drafts; compiled ones have it all."""
     room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
     if INTERPRETED and room not in ("optics", "forward", "viewer") and file not in ("test_docstrings", "test_older"):
         forget_points()
-        request.addfinalizer(forget_points)
         for name, few in (("JUDGE", 5), ("_JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
             monkeypatch.setattr(light, name, few)
         monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2, 0.0))
@@ -59,3 +59,6 @@ def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.
         monkeypatch.setattr("lightcube.planning.order._WALKS", 1)
         monkeypatch.setattr("lightcube.planning.order._SWAPS", 1)
         monkeypatch.setattr("lightcube.planning.plan.WIDTHS", (0.5, 1.0))
+    yield
+    if INTERPRETED:
+        forget_points()

@@ -19,6 +19,7 @@ from lightcube.optics.light import (
     JUDGE_DISC,
     JUDGE_ROW,
     Light,
+    finer,
     is_in_slices,
     judge_points,
     judged,
@@ -96,6 +97,39 @@ def test_points_lie_in_a_row_exactly_where_a_pixel_is_one_slice_high(rig: Rig, i
     assert not is_in_slices(half_up, GRID)
     soft = replace(rig, sums=replace(rig.sums, disc_deg=np.array([0.0, 1.0])))
     assert not is_in_slices(soft, GRID)
+
+
+@pytest.mark.parametrize(
+    ("pixel", "elevation_deg", "tall", "points", "row"),
+    [
+        (1, 35.0, 1, 5, 4),
+        (2, 35.0, 1, 20, 8),
+        (2, 35.0, 2, 10, 8),
+        (2, 0.0, 1, 20, 8),
+        (3, 35.0, 1, 34, 12),
+        (4, 0.0, 4, 20, 15),
+    ],
+)
+def test_pixels_of_several_voxels_have_as_many_times_as_many_points(
+    pixel: int, elevation_deg: float, tall: int, points: int, row: int
+) -> None:
+    grid = Grid((12, 16, 20), 0.7, tall=tall)
+    rig = turntable(grid, [17.0], elevation_deg=elevation_deg, picture_shape=(2, 3), pixel=pixel)
+    assert finer(Light(5, 4, 0.1), rig, grid) == Light(points, row, 0.1)
+    assert finer(Light(100, 50), rig, grid) == Light(100, 50)
+    assert finer(Light.thin(), rig, grid).is_thin
+    counted = len(asked(rig, grid, Recipe(light=Light(5, 4))).rig.views)
+    assert counted == (row if is_in_slices(rig, grid) else points)
+
+
+def test_a_pixel_is_as_large_as_its_light_is_in_the_cubes_middle() -> None:
+    """A screen of pixels thrice as wide as voxels, as far behind the cube as the lamp is before it."""
+    rig = turntable(GRID, [30.0], picture_shape=(1, 2), pixel=3)
+    along = rig.views.lamps[:, :3]
+    for distance_mm, sides in ((20.0, 1), (40.0, 2), (1e9, 3)):
+        lamps = np.append(-distance_mm * along, [[1.0]], axis=1)
+        near = replace(rig, views=replace(rig.views, lamps=lamps, origins_mm=20 * along))
+        assert finer(Light(2, 2), near, GRID) == Light(2 * sides**2, 2 * sides)
 
 
 def test_where_points_lie_in_a_row_more_along_z_change_nothing_and_elsewhere_they_do() -> None:

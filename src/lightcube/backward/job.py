@@ -17,7 +17,7 @@ from lightcube.backward.units import Part, halvings, split
 from lightcube.backward.wishes import asked
 from lightcube.optics.arrays import Images
 from lightcube.optics.grid import Grid
-from lightcube.optics.light import Light
+from lightcube.optics.light import Light, finer
 from lightcube.optics.rig import Rig
 from lightcube.pictures.targets import Targets
 
@@ -175,7 +175,8 @@ def _work(job: Job, name: str) -> float:
 def phase_work(job: Job, phase: Phase, passes: float | None = None) -> float:
     """Work of a phase, or of so many of its passes, in passes of the piece as the job's recipe has it."""
     count = (phase.passes or 1) if passes is None else passes
-    return count * phase.recipe.beams.points / job.recipe.beams.points
+    few, all_of_them = (finer(each.beams, job.targets.rig, job.grid).points for each in (phase.recipe, job.recipe))
+    return count * few / all_of_them
 
 
 def fingerprint(job: Job) -> Fingerprint:

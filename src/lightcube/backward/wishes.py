@@ -16,7 +16,7 @@ from lightcube.backward.mat import places_beyond, widened
 from lightcube.backward.recipe import Recipe
 from lightcube.optics.arrays import Counts, Reals
 from lightcube.optics.grid import Grid, dense_step_deg
-from lightcube.optics.light import Light, bundle, is_in_slices
+from lightcube.optics.light import Light, bundle, finer, is_in_slices
 from lightcube.optics.rig import Rig
 
 #: How finely light is averaged over the pixels of a mat, where that is coarser than over those of the pictures.
@@ -101,7 +101,7 @@ def held(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
 
 def _wishes(rig: Rig, grid: Grid, recipe: Recipe) -> list[Wish]:
     """What a recipe asks for, the picture itself first; `rig` has the pictures with their mats."""
-    light, in_slices = recipe.beams, is_in_slices(rig, grid)
+    light, in_slices = finer(recipe.beams, rig, grid), is_in_slices(rig, grid)
     own, coarse, single = (bundle(each, in_slices=in_slices) for each in (light, MAT, SMOOTH))
     apart = recipe.mat is not None and len(own[0]) > len(coarse[0])
     found = [Wish(*own, picture=1.0, mat=0.0 if apart else 1.0)]

@@ -42,7 +42,7 @@ from lightcube.forward.casting import cast
 from lightcube.optics.arrays import Images, Reals, keep, locked
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, nearest, raster_shape
-from lightcube.optics.light import Light, is_in_slices
+from lightcube.optics.light import Light, finer, is_in_slices
 from lightcube.optics.material import Material
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import encode
@@ -204,7 +204,8 @@ def _width(targets: Targets, grid: Grid, recipe: Recipe) -> int:
     """Width of the small cube: what takes the work of a rehearsal, at two angles where pictures are held."""
     across = max(grid.shape[1:])
     pixels = math.prod(widened(targets.rig, grid, recipe.mat).picture_shape)
-    points = 1 if recipe.beams.is_thin else POINTS.row_points if is_in_slices(targets.rig, grid) else POINTS.points
+    fine = finer(recipe.beams if recipe.beams.is_thin else POINTS, targets.rig, grid)
+    points = fine.row_points if is_in_slices(targets.rig, grid) else fine.points
     work = len(targets) * points * (2 if recipe.hold_deg else 1) * pixels * across
     return min(across, max(_LEAST, round(across * (rehearsal_of(recipe).work / work) ** (1 / 3))))
 

@@ -93,7 +93,8 @@ class Options:
     points: Annotated[
         int | None,
         Option(
-            "Average over so many points of each pixel, with --lamp-deg thrice.  [default: 13, level 7; best: 34, 15]",
+            "Average over so many points of each pixel, with --lamp-deg thrice; of larger ones over up to 34.  "
+            "[default: 13, level 7; best: 34, 15]",
             1,
         ),
     ] = None
