@@ -12,7 +12,8 @@ mat         pictures in a dark mat, and held
 tilts       lamps of one, two and three elevations in turn, and screens square to the light; n = 32
 starts      from smaller cubes, a clear one, and random ones; n = 32
 beyond      how much the rest of the shadow counts, beyond the mat
-points      points of a pixel, lattices and square grids, and the judge against 32 x 32 beams
+points      points of a pixel, and the judge against 32 x 32 beams
+means       means of light at few points, and of absorbance with its curvature; in how many pieces a pixel's light is
 grain       how much points weigh beside a pixel's mean: pictures alone, and with mats and held
 scenes      traced scenes: the juggler under a raised lamp, gems under a level one
 pixel       pixels of one voxel and of 2 x 2, alike and as many
@@ -39,7 +40,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import lightcube as lc
-from lightcube.optics.light import JUDGE, judge_points
+from lightcube.optics.light import JUDGE, judge_points, lattice
 from lightcube.optics.transfer import decode, encode
 from lightcube.pictures import samples
 from lightcube.pictures.arranging import spread_over_screen
@@ -258,6 +259,61 @@ def judge(which: str) -> Row:
     return {"psnr_mean": float(found[0].mean()), "psnr_min": float(found[0].min()), "off_db": float(off.max())}
 
 
+def means(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
+    """Ways to take the mean over a pixel."""
+    yield "16 of 32 x 32, 35", partial(averaged, which)
+    for elevation_deg in (0.0, 35.0):
+        yield f"pieces, n = 64, {elevation_deg:g}", partial(pieces, 64, elevation_deg)
+
+
+def averaged(which: str) -> Row:
+    """Means of light at few points, and of absorbance with and without half its variance, beside those of 610 points.
+
+    Of displayed values, root of the mean square.
+    """
+    targets, grid = cube_for(which, 16, 32, 32, 35)
+    recipe = lc.Recipe.of_quality("normal", mat=lc.Mat(), hold_deg=0.25, light=lc.Light(grain=0.01))
+    cube = lc.solve(targets, grid, recipe).cube
+    powers = cube.powers[:, None, None]
+
+    def through(count: int) -> NDArray[np.float64]:
+        """The part of the light that comes through at each of some points of all pixels."""
+        each = lattice(count)
+        moved = [cube.rig.split([np.append(point, [0, 0])[None]] * len(cube.rig.views)) for point in each]
+        return np.stack([np.stack(list(lc.cast(cube, rig, light="thin"))) / powers for rig in moved])
+
+    def off(part: NDArray[np.float64]) -> float:
+        return float(np.sqrt(np.mean((encode(part * powers) - encode(best * powers)) ** 2)))
+
+    best, row = (fine := through(610)).mean(axis=0), {}
+    for count, light in [(count, through(count)) for count in (3, 5, 8, 13, 21, 34)] + [(610, fine)]:
+        dark = -np.log(light)
+        row[f"{count} points, light"] = off(light.mean(axis=0))
+        row[f"{count} points, absorbance"] = off(np.exp(-dark.mean(axis=0)))
+        row[f"{count} points, absorbance and curvature"] = off(np.exp(-dark.mean(axis=0)) * (1 + dark.var(axis=0) / 2))
+    return row
+
+
+def pieces(n: int, elevation_deg: float) -> Row:
+    """In how many pieces one pixel's beams fall that go through the same voxels, of 4000 in a row or 400 x 400."""
+    turned, raised = np.radians(17.3), np.radians(elevation_deg)
+    along = np.array([np.cos(turned) * np.cos(raised), -np.sin(turned) * np.cos(raised), -np.sin(raised)])
+    right, up = np.array([-np.sin(turned), -np.cos(turned), 0]), np.array([0.0, 0.0, 1.0])
+    fine = 400 if raised else 4000
+    across = (np.arange(fine) + 0.5) / fine - 0.5
+    planes, found = np.arange(n + 1) - n / 2, set()
+    for above in across if raised else [0.0]:
+        start = (0.3 * n + across)[:, None] * right + (0.06 * n + above) * up
+        axes = [axis for axis in range(3) if along[axis]]
+        times = np.stack([(planes - start[:, axis, None]) / along[axis] for axis in axes], axis=1)
+        first, last = times.min(axis=2).max(axis=1), times.max(axis=2).min(axis=1)
+        flat = times.reshape(fine, -1)
+        flat = np.where((flat >= first[:, None]) & (flat <= last[:, None]), flat, np.inf)
+        order = np.where(np.isinf(np.sort(flat, axis=1)), -1, np.argsort(flat, axis=1))
+        found |= {crossed.tobytes() for crossed in order}
+    return {"pieces": len(found)}
+
+
 def grain(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
     """Weights of points beside means."""
     for weight in (0.0, 0.003, 0.01, 0.03, 0.1, 0.3):
@@ -270,24 +326,15 @@ def grain(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
 
 def pixel(which: str) -> Iterator[tuple[str, Callable[[], Row]]]:
     """Pixels of one voxel and of more, in dark mats and held."""
-    for n, pixels, side, points in (
-        (64, 32, 1, 13),
-        (64, 16, 2, 13),
-        (64, 16, 2, 34),
-        (64, 48, 1, 13),
-        (64, 24, 2, 13),
-        (64, 24, 2, 34),
-        (128, 32, 2, 13),
-    ):
-        name = f"n = {n}, {pixels} x {pixels} pixels of {side} x {side} voxels, {points} points"
-        yield name, partial(coarse, which, n, pixels, side, points)
+    for n, pixels, side in ((64, 32, 1), (64, 16, 2), (64, 48, 1), (64, 24, 2), (128, 64, 1), (128, 32, 2)):
+        name = f"n = {n}, {pixels} x {pixels} pixels of {side} x {side} voxels"
+        yield name, partial(coarse, which, n, pixels, side)
 
 
-def coarse(which: str, n: int, pixels: int, side: int, points: int) -> Row:
+def coarse(which: str, n: int, pixels: int, side: int) -> Row:
     """Sixteen square pictures of so many pixels a side, of so many voxels each, and what is expected of them."""
     targets, grid = cube_for(which, 16, pixels, pixels, 35, n=n, pixel=side)
-    light = lc.Light(points)
-    recipe = lc.Recipe.of_quality("normal", mat=lc.Mat(), hold_deg=0.25 * 64 / n, light=light)
+    recipe = lc.Recipe.of_quality("normal", mat=lc.Mat(), hold_deg=0.25 * 64 / n)
     return {"expected": lc.predict(targets, grid, recipe).psnr_mean, **measured(targets, grid, recipe)[0]}
 
 
@@ -369,6 +416,7 @@ TABLES = {
     "starts": starts,
     "beyond": beyond,
     "points": points,
+    "means": means,
     "grain": grain,
     "pixel": pixel,
     "scenes": scenes,
