@@ -3,46 +3,38 @@
     python benchmarks/quality.py [TABLE ...] [--out FOLDER] [--figures FOLDER] [--passes N]
 
 Inputs are fixed: photographs that come with scikit-image, in the crops that `pictures.samples.photographs` states, and
-traced scenes. Tables, all of them unless some are named:
+traced scenes. Light is averaged over pixels, in the paper's set-up by thin beams too. Tables, all unless some are named:
 
-must        what has to be reached, with the paper's own method and set-up as the first figure
-default     sixteen photographs by the command line with all its defaults, n = 300
 literal     the paper's set-up: level, half a turn, pictures as wide as the cube, a lamp of power 1
-hold        what it costs that pictures stand over a range of angles
 elevation   how high the lamp should stand
 animations  traced scenes of 64 pictures
 capacity    PSNR against load: the plots
 
-Every solve has a fixed number of passes at full size, and ends before where it has converged; the coarser cubes that
-it starts from cost about 13 passes more. Seconds are those of the solve alone. Rows that are in FOLDER (out/quality)
-are not measured again: to measure anew, remove it. `--passes` allows no solve more passes, for a quick look. About a
-quarter of an hour on two cores.
+What has to be reached, holds, mats and defaults are in `light.py`. Every solve has a fixed number of passes at full
+size, and ends before where it has converged; the coarser cubes that it starts from cost about 13 passes more. Seconds
+are those of the solve alone. Rows that are in FOLDER (out/quality) are not measured again: to measure anew, remove it.
+`--passes` allows no solve more passes, for a quick look. About an hour on two cores.
 """
 
 import argparse
 import json
-import subprocess
 import sys
 import time
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from PIL import Image
 
 import lightcube as lc
 from lightcube.backward.recipe import Recipe
 from lightcube.drawing import plots
-from lightcube.optics.transfer import encode, to_uint8
+from lightcube.optics.light import Beams, Light
 from lightcube.pictures import samples
 from lightcube.pictures.fitting import fit
-from lightcube.planning.order import best_order
-from lightcube.scoring.metrics import psnr
 
 Row = dict[str, Any]
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
-COMMAND_LINE = "command line"
 
 
 @dataclass(frozen=True)
@@ -55,22 +47,12 @@ class Problem:
     elevation_deg: float
     #: Largest lamp power; None is the paper's fixed lamp of power 1.
     lamp_max: float | None
-    #: At most so many; 0 is the command line's own number.
     passes: int
     n: int = 64
-    hold_deg: float | None = None
-    order: str = "given"
     method: str = "display"
     #: Photographs, or the name of a scene.
     pictures: str = "photographs"
-
-
-class Entry(NamedTuple):
-    """A row of a table: what to solve, and what has to be reached, in dB and in seconds."""
-
-    problem: Problem
-    target: float | None = None
-    limit: float | None = None
+    light: Beams = "area"
 
 
 @dataclass(frozen=True)
@@ -97,59 +79,24 @@ def paper(pictures: str, count: int) -> Problem:
     return Problem(count, 64, 64, 0, None, 100, method="gauss-seidel", pictures=pictures)
 
 
-#: Count, columns, rows, elevation, order, passes, seconds allowed, and the target of each largest lamp power.
-MUST: list[tuple[int, int, int, float, str, int, float | None, dict[float, float | None]]] = [
-    (16, 32, 32, 35, "given", 200, 15, {4: 52, 16: 57}),
-    (16, 32, 56, 45, "given", 200, 25, {4: 32, 16: 41, 64: 47}),
-    (32, 32, 32, 35, "given", 200, 40, {16: 26.5, 64: None}),
-    (32, 32, 32, 35, "best", 200, 40, {16: 32.5, 64: None}),
-    (64, 32, 32, 35, "best", 200, None, {16: 22.5, 64: None}),
-    (16, 16, 64, 0, "given", 400, 10, {4: 48, 16: 55}),
-    (16, 16, 64, 0, "best", 400, None, {4: 48}),
-    (16, 22, 64, 0, "given", 400, 15, {4: 30.5, 16: 36, 64: 41}),
-    (16, 32, 64, 0, "given", 400, 20, {4: 23, 16: 25.6, 64: 28.2, 1024: 33.2}),
-    (32, 32, 64, 0, "given", 400, 40, {64: 21.3, 1024: 23.9}),
-]
 ELEVATIONS = (10, 20, 25, 30, 35, 40, 45, 50)
-TABLES: dict[str, list[Entry]] = {
-    "must": [
-        Entry(Problem(count, columns, rows, raised, power, passes, order=order), target, limit)
-        for count, columns, rows, raised, order, passes, limit, targets in MUST
-        for power, target in targets.items()
-    ],
-    "default": [Entry(Problem(16, 0, 0, 0, None, 0, 300, method=COMMAND_LINE), 42, 360)],
+TABLES: dict[str, list[Problem]] = {
     "literal": [
-        Entry(problem)
+        problem
         for own in (paper("photographs", 16), paper("photographs", 32), paper("photographs", 64), paper("gems", 64))
-        for problem in (own, replace(own, method="display"))
+        for problem in (own, replace(own, method="display", light="thin"), replace(own, method="display"))
     ],
-    "hold_deg": [
-        Entry(Problem(8, 22, 64, 0, 4, 200, hold_deg=1.5), 42),
-        Entry(Problem(8, 22, 64, 0, 64, 250, hold_deg=3), 41),
-        Entry(Problem(8, 32, 32, 35, 16, 150, hold_deg=1.5)),
-        Entry(Problem(8, 32, 32, 35, 16, 150, hold_deg=3)),
-        Entry(Problem(8, 32, 32, 35, 16, 250, hold_deg=6), 39),
-        Entry(Problem(8, 32, 32, 35, 16, 100, hold_deg=12)),
-        Entry(Problem(8, 32, 32, 35, 16, 60, hold_deg=22.5)),
-        *(Entry(Problem(16, 32, 32, 35, 16, 150, hold_deg=degrees)) for degrees in (0.375, 0.75, 1.5, 3)),
-    ],
-    "elevation_deg": [
-        *(
-            Entry(Problem(16, 32, rows, raised, power, 80))
-            for rows in (32, 56)
-            for power in (4, 16)
-            for raised in ELEVATIONS
-        ),
-        *(Entry(Problem(16, 64, 64, raised, 4, 80, 128)) for raised in (25, 35, 45)),
+    "elevation": [
+        *(Problem(16, 32, rows, raised, power, 80) for rows in (32, 56) for power in (4, 16) for raised in ELEVATIONS),
+        *(Problem(16, 64, 64, raised, 4, 80, 128) for raised in (25, 35, 45)),
     ],
     "animations": [
-        Entry(Problem(64, 64, 64, 0, 16, 150, pictures="gems"), 45),
+        Problem(64, 64, 64, 0, 16, 100, pictures="gems"),
         *(
-            Entry(Problem(64, side, side, raised, power, 150, pictures="juggler"))
-            for raised, power, sides in ((0, 16, (16, 24, 32, 48)), (0, 64, (16, 32)), (35, 16, (16, 24, 32, 40)))
+            Problem(64, side, side, raised, 16, 100, pictures="juggler")
+            for raised, sides in ((0, (16, 24, 32, 48)), (35, (16, 24, 32, 40)))
             for side in sides
         ),
-        *(Entry(Problem(64, 32, 32, raised, 16, 150, pictures="juggler")) for raised in (20, 45)),
     ],
 }
 WIDTHS, SIDES = (8, 12, 16, 18, 20, 22, 26, 32, 48, 64), (16, 24, 28, 32, 36, 40, 48, 64)
@@ -176,9 +123,7 @@ PLOTS: list[tuple[str, float, list[Curve]]] = [
         ],
     ),
 ]
-TABLES["capacity"] = [
-    Entry(problem) for _, raised, curves in PLOTS for curve in curves for problem in curve.problems(raised)
-]
+TABLES["capacity"] = [problem for _, raised, curves in PLOTS for curve in curves for problem in curve.problems(raised)]
 
 
 def targets_of_problem(problem: Problem) -> tuple[lc.Targets, lc.Grid]:
@@ -195,65 +140,16 @@ def targets_of_problem(problem: Problem) -> tuple[lc.Targets, lc.Grid]:
 def measure(problem: Problem) -> Row:
     """Solve a problem and score it."""
     targets, grid = targets_of_problem(problem)
-    row: Row = {}
-    if problem.order == "best":
-        began = time.perf_counter()
-        targets = best_order(targets, grid)(targets)
-        row["order_seconds"] = time.perf_counter() - began
-    recipe = Recipe(method=problem.method, hold_deg=problem.hold_deg or 0.0, passes=problem.passes)
+    thin = problem.light == "thin" or problem.method != "display"
+    recipe = Recipe(method=problem.method, passes=problem.passes, light=Light.thin() if thin else None)
     began = time.perf_counter()
     solution = lc.solve(targets, grid, recipe)
-    row["seconds"] = time.perf_counter() - began
+    row: Row = {"seconds": time.perf_counter() - began}
     scores = lc.score(solution.cube, targets)
-    row |= {name: scores[name] for name in ("psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean")}
+    row |= {name: scores[name] for name in ("psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "thin_psnr_mean")}
     row |= {"done": len(solution.residuals), "rejected": len(solution.rejected) / targets.pictures.size or None}
     row |= solution.optimality or {}
-    if problem.hold_deg:
-        row |= over_the_hold(solution.cube, targets, problem.hold_deg)
     return row
-
-
-def over_the_hold(cube: lc.Cube, targets: lc.Targets, degrees: float) -> Row:
-    """The least mean over the pictures, and the worst picture, at every tenth of a degree of the held range."""
-    wanted = encode(targets.pictures, targets.transfer)
-    each = np.array(
-        [
-            [
-                psnr(encode(shown, targets.transfer), *pair)
-                for shown, *pair in zip(
-                    lc.play(cube, cube.angles_deg + offset, picture_only=True), wanted, targets.weight, strict=True
-                )
-            ]
-            for offset in np.append(np.arange(-degrees, degrees - 1e-9, 0.1), degrees)
-        ]
-    )
-    return {"held_min": float(each.mean(axis=1).min()), "held_worst": float(each.min())}
-
-
-def by_command_line(problem: Problem, folder: Path) -> Row:
-    """Solve photographs as someone does who has never read the manual: a folder, a name, and --n."""
-    folder.mkdir(parents=True, exist_ok=True)
-    photos = samples.photographs(problem.count)
-    for number, (name, image) in enumerate(zip(photos.names, photos.images, strict=True)):
-        Image.fromarray(to_uint8(image)).save(folder / f"{number:02}-{name}.png")
-    made = folder.with_suffix(".zarr")
-    command = [Path(sys.executable).with_name("lightcube"), "solve", folder, "-o", made, "--n", problem.n]
-    options = ["--json", "--overwrite", *(["--iterations", problem.passes] if problem.passes else [])]
-    words = [str(word) for word in (*command, *options)]
-    said = subprocess.run(words, check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603 - our own words
-    result = json.loads(said.stdout.splitlines()[-1])
-    cube = lc.load(made)
-    rows, columns = cube.rig.picture_shape
-    return {
-        **{name: result[name] for name in ("psnr_mean", "psnr_min", "ssim_mean", "delta_e_mean", "seconds")},
-        "done": result["iterations"],
-        **result["optimality"],
-        "elevation_deg": float(cube.rig.views.elevations_deg[0]),
-        "columns": columns,
-        "rows": rows,
-        "lamp_max": cube.provenance.get("lamp_max"),
-        "hold_deg": cube.hold_deg or None,
-    }
 
 
 class Runs:
@@ -269,8 +165,7 @@ class Runs:
         if self.most_passes is not None:
             problem = replace(problem, passes=min(problem.passes or self.most_passes, self.most_passes))
         if problem not in self.known:
-            by_hand = problem.method != COMMAND_LINE
-            figures = measure(problem) if by_hand else by_command_line(problem, self.folder / "photographs")
+            figures = measure(problem)
             self.known[problem] = {"problem": asdict(problem), **figures}
             with self.file.open("a") as stream:
                 stream.write(json.dumps(self.known[problem]) + "\n")
@@ -285,24 +180,18 @@ class Runs:
 COLUMNS = {
     "pictures": "{count} {pictures} {columns} × {rows}",
     "n": "{n}",
-    "elevation_deg": "{elevation:g}°",
-    "order": "{order}",
+    "elevation": "{elevation_deg:g}°",
     "method": "{method}",
+    "light": "{light}",
     "lamp": "{lamp}",
-    "hold_deg": "± {hold:g}°",
-    "the paper": "{paper:.1f}",
-    "target": "{target:.1f}",
     "mean dB": "{psnr_mean:.1f}",
     "worst dB": "{psnr_min:.1f}",
-    "least mean in hold": "{held_min:.1f}",
-    "worst in hold": "{held_worst:.1f}",
+    "by thin beams": "{thin_psnr_mean:.1f}",
     "SSIM": "{ssim_mean:.3f}",
     "ΔE2000": "{delta_e_mean:.2f}",
     "thrown out": "{rejected:.0%}",
     "passes": "{done}",
     "seconds": "{seconds:.1f}",
-    "allowed": "{limit:.0f}",
-    "ordering s": "{order_seconds:.1f}",
     "objective": "{objective:.3g}",
     "bound": "{lower_bound:.3g}",
     "dB left at most": "{left_db:.1f}",
@@ -311,7 +200,7 @@ COLUMNS = {
 
 def cell(row: Row, text: str) -> str:
     try:
-        return text.format_map({name: value for name, value in row.items() if value not in (None, "given", "display")})
+        return text.format_map({name: value for name, value in row.items() if value not in (None, "display", "area")})
     except KeyError:
         return ""
 
@@ -359,14 +248,9 @@ def main() -> None:
         measure(Problem(2, 4, 4, elevation_deg, 16, 1, n=8))
     run = Runs(given.out, given.passes)
     for name in given.tables:
-        rows = []
-        for problem, target, limit in TABLES[name]:
-            row = run(problem) | {"target": target, "limit": limit}
-            if name == "must":
-                row["paper"] = run(paper(problem.pictures, problem.count))["psnr_mean"]
-            rows.append(row)
+        rows = [run(problem) for problem in TABLES[name]]
         print_table(name, rows)
-        if name == "elevation_deg":
+        if name == "elevation":
             say_best_elevation(rows)
         if name == "capacity":
             for file, raised, curves in PLOTS:

@@ -27,19 +27,22 @@ def main() -> None:
         "gems 64 x 64, 0 degrees": lc.scene_targets(lc.read_scene("gems"), level, grid),
     }
     for name, targets in pictures.items():
-        for method, power in (("display", None), *((m, 1.0) for m in ("display", "sirt", "cgls", "gauss-seidel"))):
+        dim = replace(targets.rig.lamps, least=np.array([1.0]), most=np.array([1.0]))
+        paper = replace(targets, rig=replace(targets.rig, lamps=dim))
+        for method, wanted, light in (
+            ("display", targets, lc.Light()),
+            ("display", targets, lc.Light.thin()),
+            ("display", paper, lc.Light()),
+            *((method, paper, lc.Light.thin()) for method in ("display", "sirt", "cgls", "gauss-seidel")),
+        ):
             sweeps = 100 if method == "gauss-seidel" else 200
-            lamps = (
-                targets.rig.lamps
-                if power is None
-                else replace(targets.rig.lamps, least=np.array([power]), most=np.array([power]))
-            )
-            wanted = replace(targets, rig=replace(targets.rig, lamps=lamps))
-            solution = lc.solve(wanted, grid, lc.Recipe(method=method, passes=sweeps))
+            solution = lc.solve(wanted, grid, lc.Recipe(method=method, passes=sweeps, light=light))
             scores = lc.score(solution.cube, targets)
-            figures = f"{scores['psnr_mean']:.1f} / {scores['psnr_min']:.1f} dB"
+            figures = f"{scores['psnr_mean']:.1f} / {scores['psnr_min']:.1f} dB, thin {scores['thin_psnr_mean']:.1f} dB"
+            lamp = "per view" if wanted is targets else "1"
+            asked = "thin beams" if light.is_thin else "areas"
             thrown = len(solution.rejected) / targets.pictures.size
-            print(f"{name}: {method}, lamp {power or 'per view'}: {figures}, {thrown:.0%} thrown out", flush=True)
+            print(f"{name}: {method}, {asked}, lamp {lamp}: {figures}, {thrown:.0%} thrown out", flush=True)
 
 
 if __name__ == "__main__":
