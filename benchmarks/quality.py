@@ -3,7 +3,7 @@
     python benchmarks/quality.py [TABLE ...] [--out FOLDER] [--figures FOLDER] [--passes N]
 
 Inputs are fixed: photographs that come with scikit-image, in the crops that `pictures.samples.photographs` states, and
-traced scenes. Light is averaged over pixels, in the paper's set-up by thin beams too. Tables, all unless some are named:
+traced scenes. Light is averaged over pixels, in the paper's set-up by thin beams too. Tables, all unless some are said:
 
 literal     the paper's set-up: level, half a turn, pictures as wide as the cube, a lamp of power 1
 elevation   how high the lamp should stand
