@@ -11,6 +11,7 @@ from PIL import Image
 
 from lightcube import io
 from lightcube.backward import solving
+from lightcube.backward.mat import Mat
 from lightcube.backward.recipe import Recipe
 from lightcube.optics.cube import Cube
 from lightcube.pictures.samples import photographs
@@ -25,9 +26,9 @@ __all__ = ["run"]
 
 @pytest.fixture(scope="module")
 def cube() -> Cube:
-    """Eight photographs in 48 x 48 x 48 voxels."""
-    planned = plan(photographs(8), 48, picture_width=0.6)
-    found = solving.solve(planned.targets, planned.grid, Recipe(passes=150)).cube
+    """Eight photographs in 48 x 48 x 48 voxels, in mats and held, as `lightcube solve` makes them."""
+    planned = plan(photographs(8), 48, Recipe.of_quality("normal", mat=Mat()), longest_hold=True, smooth=True)
+    found = solving.solve(planned.targets, planned.grid, planned.recipe).cube
     return replace(found, scores=metrics.score(found, planned.targets))
 
 
