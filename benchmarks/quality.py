@@ -24,8 +24,6 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 import lightcube as lc
 from lightcube.backward.recipe import Recipe
 from lightcube.drawing import plots
@@ -86,10 +84,7 @@ TABLES: dict[str, list[Problem]] = {
         for own in (paper("photographs", 16), paper("photographs", 32), paper("photographs", 64), paper("gems", 64))
         for problem in (own, replace(own, method="display", light="thin"), replace(own, method="display"))
     ],
-    "elevation": [
-        *(Problem(16, 32, rows, raised, power, 80) for rows in (32, 56) for power in (4, 16) for raised in ELEVATIONS),
-        *(Problem(16, 64, 64, raised, 4, 80, 128) for raised in (25, 35, 45)),
-    ],
+    "elevation": [Problem(16, 32, rows, raised, 16, 80) for rows in (32, 56) for raised in ELEVATIONS],
     "animations": [
         Problem(64, 64, 64, 0, 16, 100, pictures="gems"),
         *(
@@ -214,16 +209,6 @@ def print_table(title: str, rows: list[Row]) -> None:
     sys.stdout.flush()
 
 
-def say_best_elevation(rows: list[Row]) -> None:
-    for n in sorted({row["n"] for row in rows}):
-        means = {
-            raised: np.mean([row["psnr_mean"] for row in rows if (row["n"], row["elevation_deg"]) == (n, raised)])
-            for raised in sorted({row["elevation_deg"] for row in rows if row["n"] == n})
-        }
-        said = ", ".join(f"{raised:g}° {mean:.1f}" for raised, mean in means.items())
-        print(f"\nn = {n}, mean of all rows: {said} dB; best: {max(means, key=lambda raised: means[raised]):g}°")
-
-
 def points(run: "Runs", curve: Curve, raised: float) -> list[tuple[float, float]]:
     """Load, as `planning.consistency.load`, and mean PSNR of each width; level pictures are as high as the cube."""
     rows = [run(problem) for problem in curve.problems(raised)]
@@ -250,8 +235,6 @@ def main() -> None:
     for name in given.tables:
         rows = [run(problem) for problem in TABLES[name]]
         print_table(name, rows)
-        if name == "elevation":
-            say_best_elevation(rows)
         if name == "capacity":
             for file, raised, curves in PLOTS:
                 lc.save(capacity_plot(run, curves, raised), given.figures / file, overwrite=True)
