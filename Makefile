@@ -1,11 +1,12 @@
 # make demo   set everything up and run the demonstration, into out/
-# make test   set everything up and run the tests, compiled and interpreted
+# make test   set everything up and run the tests, compiled, and those of the rooms that compute interpreted too
 #             (one thread for each of the processes that run side by side; tests of threads take more)
 # make check  lint, format and types
 # Use another Python with: make demo PYTHON=python3.12
 
 PYTHON ?= python3
 EXTRAS ?= dev,mesh,plot,notebook,remote,cluster
+COMPUTING := backward forward kernels laws optics planning projection scene scoring solvers
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 
@@ -16,7 +17,7 @@ demo: .venv/.ready
 
 test: .venv/.ready-$(EXTRAS)
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -q -n auto
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n auto
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n auto $(addprefix tests/,$(COMPUTING))
 
 check: .venv/.ready-$(EXTRAS)
 	$(BIN)/ruff check .

@@ -24,6 +24,7 @@ from lightcube.pictures.turntable import Turntable
 from lightcube.planning.measured import is_measured, unmeasured
 from lightcube.projection.stacked import StackedBeams, is_stacked
 from lightcube.scoring.metrics import score
+from tests.conftest import INTERPRETED
 from tests.helpers import wall
 from tests.helpers.areas import divided
 from tests.helpers.thin import cast
@@ -152,6 +153,7 @@ def test_planning_says_what_it_does_not_know() -> None:
     assert "was not measured" in said
 
 
+@pytest.mark.skipif(INTERPRETED, reason="interpreted solves of discs take minutes")
 def test_a_cube_that_knows_of_its_lamp_is_better_under_it() -> None:
     grid = Grid((9, 12, 11), 1.0)
     random = np.random.default_rng(2)
