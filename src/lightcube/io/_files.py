@@ -1,15 +1,15 @@
 """Writing whole files or none, and what the operating system says in one sentence."""
 
 import errno
-import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path, PurePath
 from typing import TypeVar
 
 from lightcube.errors import InputError
 from lightcube.io._places import Place, exists, is_folder, name_of, send
+from lightcube.io._workplaces import put, workplace
 
 Entry = TypeVar("Entry")
 
@@ -74,8 +74,9 @@ def system_errors(path: Place, doing: str) -> Iterator[None]:
 def written_whole(path: Place, *, overwrite: bool, replaceable: Callable[[Place], bool]) -> Iterator[Path]:
     """Yield a path beside `path`, in a folder of its own; what was written there takes its place at the end.
 
-    Nothing is left behind when the body raises. An older target stays until the new one is whole. For a URL the
-    folder is a temporary one.
+    Nothing is left behind when the body raises, and what a killed program leaves is removed by the next one that writes
+    into the same folder. An older target stays until the new one is whole and on the disk. For a URL the folder is a
+    temporary one.
     """
     check_free(path, overwrite=overwrite, replaceable=replaceable)
     if not isinstance(path, Path):
@@ -86,26 +87,9 @@ def written_whole(path: Place, *, overwrite: bool, replaceable: Callable[[Place]
             check_free(path, overwrite=overwrite, replaceable=replaceable)
             send(fresh, path)
         return
-    with system_errors(path, "writing"):
-        workplace = Path(tempfile.mkdtemp(prefix=".lightcube-", dir=path.parent))
-        try:
-            fresh = workplace / path.name
-            yield fresh
-            check_free(path, overwrite=overwrite, replaceable=replaceable)
-            _put(fresh, path, workplace / "old")
-        finally:
-            shutil.rmtree(workplace, ignore_errors=True)
-
-
-def _put(fresh: Path, path: Path, aside: Path) -> None:
-    """Rename `fresh` to `path`; a folder cannot be renamed onto another one, so an older folder steps `aside`."""
-    if not path.is_dir() or path.is_symlink():
-        fresh.replace(path)
-        return
-    path.rename(aside)
-    try:
-        fresh.rename(path)
-    except OSError:
-        with suppress(OSError):
-            aside.rename(path)
-        raise
+    path = path.resolve() if path.is_symlink() else path  # what a link leads to is written, and the link stays
+    with system_errors(path, "writing"), workplace(path) as made:
+        fresh = made / path.name
+        yield fresh
+        check_free(path, overwrite=overwrite, replaceable=replaceable)
+        put(fresh, path, made / "old")

@@ -18,6 +18,7 @@ from typing import IO, Any
 from uuid import uuid4
 
 from lightcube.errors import InputError
+from lightcube.io._workplaces import settle
 
 #: A file on this disk, or a URL.
 Place = Path | str
@@ -140,6 +141,7 @@ def written(at: Place) -> Iterator[IO[bytes]]:
             file.flush()
             os.fsync(file.fileno())
         fresh.replace(at)
+        settle(at.parent)
     except BaseException:
         fresh.unlink(missing_ok=True)
         raise

@@ -1,0 +1,124 @@
+"""Folders in which files are made before they get their names, and renaming that a power cut does not undo.
+
+A workplace lies beside its target, ``.lightcube-NAME-…``, and holds a mark that its program has locked: the system
+takes the lock away however a program ends, so the next one that writes there knows whose workplaces nobody needs.
+"""
+
+import ctypes
+import os
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+if sys.platform != "win32":
+    import fcntl
+
+#: What `tempfile` makes of the prefix of a workplace.
+_NAME = re.compile(r"\.lightcube-.*-[a-z0-9_]{8}", re.DOTALL)
+_MARK = "owner"
+#: Of the target's name, so that the workplace's is none that is too long.
+_LETTERS = 50
+_AT_CWD, _SWAP = -100, 2
+
+
+@contextmanager
+def workplace(target: Path) -> Iterator[Path]:
+    """Yield a folder of one's own beside `target`, which goes away at the end; those of killed programs go first."""
+    sweep(target.parent)
+    made, owner = _made(target)
+    try:
+        yield made
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+        os.close(owner)
+
+
+def sweep(folder: Path) -> None:
+    """Remove the workplaces in a folder whose programs are gone."""
+    with suppress(OSError):  # whoever may not look there is told when writing
+        for found in folder.iterdir():
+            if _NAME.fullmatch(found.name) and found.is_dir():
+                _remove_deserted(found)
+
+
+def _remove_deserted(found: Path) -> None:
+    try:
+        owner = os.open(found / _MARK, os.O_RDWR)
+    except FileNotFoundError:  # killed before there was a mark; or it is about to be there, and then another is made
+        with suppress(OSError):
+            found.rmdir()
+        return
+    except OSError:
+        return
+    if _locked(owner, wait=False):
+        shutil.rmtree(found, ignore_errors=True)
+    os.close(owner)
+
+
+def _made(target: Path) -> tuple[Path, int]:
+    """A new workplace and its open mark, locked."""
+    while True:
+        made = Path(tempfile.mkdtemp(prefix=f".lightcube-{target.name[:_LETTERS]}-", dir=target.parent))
+        with suppress(FileNotFoundError):  # it was swept before it was marked
+            owner = os.open(made / _MARK, os.O_CREAT | os.O_RDWR, 0o600)
+            if _locked(owner, wait=True) and (made / _MARK).exists():
+                return made, owner
+            os.close(owner)
+
+
+def _locked(owner: int, *, wait: bool) -> bool:
+    """Whether a mark is ours now. Where nobody can lock, each is its owner's for ever."""
+    if sys.platform == "win32":
+        return wait
+    try:
+        fcntl.flock(owner, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except OSError:
+        return wait
+    return True
+
+
+def put(fresh: Path, path: Path, aside: Path) -> None:
+    """Rename what is whole to `path`, so that it lasts; an older folder, which no name can replace, goes `aside`.
+
+    On Linux and macOS, where two names can change places, there is the old one or the new one at every moment.
+    """
+    for each in (fresh, *(fresh.rglob("*") if fresh.is_dir() else ())):
+        settle(each)
+    if not path.is_dir():
+        fresh.replace(path)
+    elif not _swapped(fresh, path):
+        path.rename(aside)
+        try:
+            fresh.rename(path)
+        except OSError:
+            with suppress(OSError):
+                aside.rename(path)
+            raise
+    settle(path.parent)
+
+
+def settle(path: Path) -> None:
+    """Have the system write a file, or the names in a folder, to the disk."""
+    if sys.platform == "win32" and path.is_dir():
+        return
+    opened = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(opened)
+    finally:
+        os.close(opened)
+
+
+def _swapped(one: Path, other: Path) -> bool:
+    """Let two names change places at once, or return False where the system cannot."""
+    if sys.platform == "win32":
+        return False
+    names, library = (os.fsencode(one), os.fsencode(other)), ctypes.CDLL(None)
+    with suppress(AttributeError):
+        return not library.renameat2(_AT_CWD, names[0], _AT_CWD, names[1], _SWAP)
+    with suppress(AttributeError):
+        return not library.renamex_np(*names, _SWAP)
+    return False

@@ -1,0 +1,188 @@
+"""What is written is there as a whole and lasts, whatever ends the program that writes it."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lightcube as lc
+from lightcube.errors import InputError
+from lightcube.io import _workplaces
+from lightcube.io._files import written_whole
+from lightcube.io._workplaces import put, sweep, workplace
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from lightcube.io._files import written_whole
+
+with written_whole(Path(sys.argv[1]), overwrite=True, replaceable=lambda path: True) as fresh:
+    fresh.write_text("half of it")
+    print("begun", flush=True)
+    {then}
+"""
+
+
+def writing(target: Path, then: str) -> "subprocess.Popen[str]":
+    """Another program that is in the middle of writing `target`."""
+    code = KILLED.format(then=then)
+    program = subprocess.Popen(
+        [sys.executable, "-c", code, str(target)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert program.stdout is not None
+    assert program.stdout.readline() == "begun\n"
+    return program
+
+
+def hidden(folder: Path) -> list[str]:
+    return [found.name for found in folder.iterdir() if found.name.startswith(".")]
+
+
+def write(path: Path, text: str = "whole") -> None:
+    with written_whole(path, overwrite=True, replaceable=lambda path: True) as fresh:
+        fresh.write_text(text)
+
+
+def test_what_a_killed_program_left_goes_with_the_next_that_writes_there(tmp_path: Path) -> None:
+    program = writing(tmp_path / "one.txt", "os.kill(os.getpid(), signal.SIGKILL)")
+    program.communicate()
+    assert program.returncode == -signal.SIGKILL
+    assert len(hidden(tmp_path)) == 1
+    assert not (tmp_path / "one.txt").exists()
+    write(tmp_path / "other.txt")
+    assert sorted(found.name for found in tmp_path.iterdir()) == ["other.txt"]
+
+
+def test_what_another_program_is_writing_stays(tmp_path: Path) -> None:
+    program = writing(tmp_path / "one.txt", "sys.stdin.readline()")
+    write(tmp_path / "other.txt")
+    program.communicate("go on\n")
+    assert program.returncode == 0
+    assert (tmp_path / "one.txt").read_text() == "half of it"
+    assert hidden(tmp_path) == []
+
+
+def test_two_in_one_program_do_not_sweep_each_other(tmp_path: Path) -> None:
+    with workplace(tmp_path / "one") as one, workplace(tmp_path / "other") as other:
+        assert one.is_dir()
+        assert other.is_dir()
+        sweep(tmp_path)
+        assert one.is_dir()
+    assert hidden(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "name", [".lightcube", ".lightcube-unfinished", ".lightcube-mine-notes", "lightcube-x-abcdefgh"]
+)
+def test_only_workplaces_are_swept(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).mkdir()
+    (tmp_path / name / "owner").write_text("a friend")
+    linked = tmp_path / "elsewhere"
+    linked.mkdir()
+    (linked / "owner").write_text("")
+    (tmp_path / ".lightcube-link-abcdefgh").symlink_to(linked)
+    full = tmp_path / ".lightcube-full-abcdefgh"  # of no program that marks its own
+    full.mkdir()
+    (full / "letter").write_text("dear")
+    sweep(tmp_path)
+    assert (tmp_path / name / "owner").exists()
+    assert (linked / "owner").exists()
+    assert (full / "letter").exists()
+
+
+def folder_of(path: Path, text: str) -> Path:
+    path.mkdir()
+    (path / "zarr.json").write_text(text)
+    return path
+
+
+def test_a_folder_that_is_replaced_is_there_at_every_moment(tmp_path: Path) -> None:
+    target, missing, done = folder_of(tmp_path / "cube.zarr", "0"), [], threading.Event()
+
+    def look() -> None:
+        while not done.is_set():
+            if not target.is_dir():
+                missing.append(True)
+
+    looking = threading.Thread(target=look)
+    looking.start()
+    for number in range(200):
+        with workplace(target) as made:
+            put(folder_of(made / "cube.zarr", str(number)), target, made / "old")
+    done.set()
+    looking.join()
+    assert (target / "zarr.json").read_text() == "199"
+    assert hidden(tmp_path) == []
+    if sys.platform.startswith(("linux", "darwin")):
+        assert not missing
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_where_names_cannot_change_places_the_old_one_comes_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: bool
+) -> None:
+    monkeypatch.setattr(_workplaces, "_swapped", lambda one, other: False)
+    target, fresh = folder_of(tmp_path / "cube.zarr", "old"), folder_of(tmp_path / "fresh", "new")
+    renamed = Path.rename
+
+    def rename(self: Path, other: Path) -> Path:
+        if fails and self == fresh:
+            raise OSError(28, "No space left on device")
+        return renamed(self, other)
+
+    monkeypatch.setattr(Path, "rename", rename)
+    if fails:
+        with pytest.raises(OSError, match="No space"):
+            put(fresh, target, tmp_path / "aside")
+    else:
+        put(fresh, target, tmp_path / "aside")
+    assert (target / "zarr.json").read_text() == ("old" if fails else "new")
+
+
+@pytest.mark.parametrize("name", ["cube.zarr", "cube.zarr.zip", "cube.npz"])
+def test_all_is_on_the_disk_before_it_has_its_name_and_the_name_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """At a power cut there is the old file or the new one."""
+    settled: list[int] = []
+    synced: Any = os.fsync
+
+    def fsync(opened: int) -> None:
+        synced(opened)
+        settled.append(os.fstat(opened).st_ino)
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    grid = lc.Grid((2, 3, 4))
+    rig = lc.turntable(grid, [0.0, 90.0])
+    lc.save(lc.Cube(np.zeros((3, 2, 3, 4), np.float32), grid, rig), tmp_path / name)
+    target = tmp_path / name
+    whole = {each.stat().st_ino for each in (target, *(target.rglob("*") if target.is_dir() else ()))}
+    assert whole <= set(settled[:-1])
+    assert settled[-1] == tmp_path.stat().st_ino
+
+
+def test_what_a_link_leads_to_is_written_and_the_link_stays(tmp_path: Path) -> None:
+    (tmp_path / "far").mkdir()
+    (tmp_path / "far" / "real.txt").write_text("old")
+    (tmp_path / "link.txt").symlink_to(tmp_path / "far" / "real.txt")
+    write(tmp_path / "link.txt")
+    assert (tmp_path / "link.txt").is_symlink()
+    assert (tmp_path / "far" / "real.txt").read_text() == "whole"
+    assert hidden(tmp_path) == hidden(tmp_path / "far") == []
+
+
+def test_names_of_any_length_have_workplaces(tmp_path: Path) -> None:
+    write(tmp_path / ("ü" * 120 + ".txt"))
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="there is no folder"):
+        write(tmp_path / "file" / "x.txt")
