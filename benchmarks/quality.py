@@ -94,17 +94,17 @@ TABLES: dict[str, list[Problem]] = {
         ),
     ],
 }
-WIDTHS, SIDES = (8, 12, 16, 18, 20, 22, 26, 32, 48, 64), (16, 24, 28, 32, 36, 40, 48, 64)
+WIDTHS, SIDES = (16, 22, 32, 40, 48, 64), (24, 32, 40, 48, 56, 64)
 #: File, elevation, and the curves of the capacity plots.
 PLOTS: list[tuple[str, float, list[Curve]]] = [
     (
         "capacity.png",
         0,
         [
-            *(Curve(f"lamp power up to {power}", power, WIDTHS) for power in (64, 16, 4, 1)),
-            Curve("up to 16, 32 pictures", 16, (4, 8, 10, 12, 16, 32), count=32),
-            Curve("up to 16, n = 32", 16, (4, 6, 8, 10, 12, 16, 32), n=32),
-            Curve("up to 16, n = 128", 16, (16, 32, 40, 48), n=128),
+            *(Curve(f"lamp power up to {power}", power, WIDTHS) for power in (16, 4, 1)),
+            Curve("up to 16, 32 pictures", 16, (11, 16, 24, 32), count=32),
+            Curve("up to 16, n = 32", 16, (11, 16, 24, 32), n=32),
+            Curve("up to 16, n = 128", 16, (64,), n=128),
         ],
     ),
     (
@@ -112,9 +112,9 @@ PLOTS: list[tuple[str, float, list[Curve]]] = [
         35,
         [
             *(Curve(f"lamp power up to {power}", power, SIDES) for power in (16, 4, 1)),
-            Curve("up to 16, 32 pictures", 16, (16, 20, 24, 28, 32, 40), count=32),
-            Curve("up to 16, n = 32", 16, (8, 12, 16, 20, 24, 32), n=32),
-            Curve("up to 16, n = 128", 16, (48, 64), n=128),
+            Curve("up to 16, 32 pictures", 16, (17, 24, 32, 40), count=32),
+            Curve("up to 16, n = 32", 16, (12, 16, 20, 24), n=32),
+            Curve("up to 16, n = 128", 16, (64,), n=128),
         ],
     ),
 ]
