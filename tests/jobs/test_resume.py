@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,7 +16,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from lightcube import load
+from lightcube import load, save
 from lightcube.backward import needs
 from lightcube.backward.job import Job, fingerprint
 from lightcube.backward.pieces import solve_piece
@@ -23,9 +24,12 @@ from lightcube.backward.solution import merged
 from lightcube.backward.solving import solve_job as solved
 from lightcube.errors import InputError
 from lightcube.jobs import publishing
-from lightcube.jobs.partial import DiskStore, load_job, open_partial
+from lightcube.jobs.partial import DiskStore, discard_partial, load_job, open_partial
 from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import UnfinishedCube
+from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import turntable
 from tests.backward.test_job import LEVEL, RAISED, job, same
 from tests.cli.test_cli import pressed, run
 from tests.conftest import INTERPRETED
@@ -45,6 +49,7 @@ from lightcube.__main__ import main
 main()
 """
 PASSES = 4 if INTERPRETED else 300
+ANOTHER = Cube(np.zeros((3, 2, 3, 4), np.float32), Grid((2, 3, 4)), turntable(Grid((2, 3, 4)), [0.0]))
 LEVEL_LAMP = ("--elevation-deg", "0", "--max-extinction", "1")
 
 
@@ -111,6 +116,54 @@ def test_killed_anywhere_the_same_command_comes_to_the_same_cube(
 
 def content_of(cube: Path) -> dict[str, bytes]:
     return {str(path.relative_to(cube)): data for path, data in content(cube).items()}
+
+
+@pytest.mark.parametrize("verb", ["solve", "publish"])
+@pytest.mark.parametrize("mine", [True, False])
+def test_killed_before_it_was_tidied_the_same_command_tidies(  # type: ignore[no-untyped-def]
+    run, photographs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, verb: str, *, mine: bool
+) -> None:
+    """The cube has its name by then. Another cube of that name stays, and so does what was solved."""
+    out = tmp_path / "a.zarr"
+    solve = ("solve", photographs, "-o", out, *options())
+    again = solve if verb == "solve" else ("publish", partial_path(out))
+
+    def killed(_: Any) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(publishing, "discard_partial", killed)
+        assert run(*solve).code == 130
+    assert partial_path(out).exists()
+    if not mine:
+        save(ANOTHER, out, overwrite=True)
+    before, number = content_of(out), (out / "zarr.json").stat().st_ino
+    said = run(*again)
+    assert said.code == (0 if mine else 2), said.err
+    assert content_of(out) == before
+    assert (out / "zarr.json").stat().st_ino == number
+    assert partial_path(out).exists() is not mine
+    assert mine or "exists already" in said.err
+    if not mine:
+        assert run(*again, "--overwrite").code == 0
+        assert content_of(out) != before
+
+
+def test_killed_while_it_was_tidied_nothing_stays_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = job()
+    begun(tmp_path / "a.zarr", made, *made.pieces)
+
+    def killed(*_: Any, **__: Any) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(shutil, "rmtree", killed)
+        with pytest.raises(KeyboardInterrupt):
+            discard_partial(tmp_path / "a.zarr")
+    assert not partial_path(tmp_path / "a.zarr").exists()
+    assert len(files_in(tmp_path)) == 1
+    save(ANOTHER, tmp_path / "b.zarr")
+    assert [found.name for found in tmp_path.iterdir()] == ["b.zarr"]
 
 
 def test_units_of_several_programs_published_are_the_run_in_one(run, photographs: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]

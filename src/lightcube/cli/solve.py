@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from lightcube import io
 from lightcube.backward.job import Job
 from lightcube.backward.needs import job_memory
 from lightcube.backward.solution import Solution
@@ -50,7 +49,7 @@ def solve(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compute the cube whose shadows are the pictures; what was stopped or killed goes on where it was."""
-    io.Output(output, "cube", overwrite).check()
+    publishing.check_output(output, overwrite=overwrite)
     check_partial(output)
     if unit is not None and (memory is not None or scheduler is not None):
         other = "--memory" if scheduler is None else "--scheduler"

@@ -33,8 +33,10 @@ def workplace(target: Path) -> Iterator[Path]:
     try:
         yield made
     finally:
-        shutil.rmtree(made, ignore_errors=True)
-        os.close(owner)
+        try:
+            shutil.rmtree(made, ignore_errors=True)
+        finally:
+            os.close(owner)
 
 
 def sweep(folder: Path) -> None:

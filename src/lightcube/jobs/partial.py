@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from lightcube.backward.job import Fingerprint, Job, differences, fingerprint
+from lightcube.backward.job import Fingerprint, Job, differences, fingerprint, unit_name
 from lightcube.backward.recipe import from_plain
 from lightcube.backward.store import Arrays
 from lightcube.errors import InputError
@@ -41,6 +41,7 @@ from lightcube.io._places import (
     written,
 )
 from lightcube.io._rig import RigJson, rig_to_json
+from lightcube.io._workplaces import workplace
 from lightcube.optics.arrays import locked
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
@@ -239,12 +240,23 @@ def discard_partial(out: str | Path) -> None:
     folder = partial_path(out)
     if not is_partial(folder):
         raise InputError(f"there is no unfinished cube {folder} to remove: check the name")
-    _empty(folder)
-    with system_errors(folder, "removing"):
-        if isinstance(folder, Path):
-            folder.rmdir()  # and not what somebody else has just put there
-        else:
+    if not isinstance(folder, Path):
+        _empty(folder)
+        with system_errors(folder, "removing"):
             remove(folder)
+        return
+    with system_errors(folder, "removing"), workplace(folder) as made:
+        folder.rename(made / "old")  # all at once: half of it would be nobody's
+
+
+def is_finished(out: str | Path) -> bool:
+    """Whether the partial folder of `out` is there with all of its job's units finished."""
+    try:
+        store = DiskStore(partial_path(out))
+        units = _read_job(store.folder).units
+        return store.names().issuperset(map(unit_name, range(units)))
+    except InputError:  # there is none, or it is damaged
+        return False
 
 
 def load_job(partial: str | Path) -> Job:

@@ -5,12 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from lightcube.backward.job import Job
 from lightcube.backward.solution import Solution, merged
+from lightcube.errors import InputError
 from lightcube.io._places import Place, place
 from lightcube.io.outputs import Output
-from lightcube.jobs.partial import DiskStore, begun_store, discard_partial, load_job, published_path
+from lightcube.jobs.partial import DiskStore, begun_store, discard_partial, is_finished, load_job, published_path
+from lightcube.jobs.reading import load
 from lightcube.optics.checks import checked
+from lightcube.optics.cube import Cube
 from lightcube.scoring import metrics
 
 
@@ -53,9 +58,18 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
         the partial folder is kept then.
     """
     out = published_path(partial)
-    Output(out, "cube", overwrite).check()
+    check_output(out, overwrite=overwrite)
     store = begun_store(place(partial))
     return finish(load_job(partial), store, out, overwrite=overwrite)
+
+
+def check_output(out: str | Path, *, overwrite: bool = False) -> None:
+    """Raise `InputError` unless a cube could be written as `out`, or may be there already.
+
+    Killed between the writing of a cube and the removal of its partial folder, a job is finished and its cube is there:
+    `finish` sees whether it is that one.
+    """
+    Output(out, "cube", overwrite or is_finished(out)).check()
 
 
 def finish(job: Job, store: DiskStore, out: str | Path, *, overwrite: bool = False) -> Published:
@@ -66,7 +80,17 @@ def finish(job: Job, store: DiskStore, out: str | Path, *, overwrite: bool = Fal
         scored = replace(solution.cube, scores=metrics.score(solution.cube, job.targets))
         solution = replace(solution, cube=scored)
     made = Published(place(out), solution, done, job.units)
-    Output(made.path, "cube", overwrite).write(solution.cube)
+    if overwrite or not (made.is_whole and _is_there(made.path, solution.cube)):
+        Output(made.path, "cube", overwrite).write(solution.cube)
     if made.is_whole:
         discard_partial(made.path)
     return made
+
+
+def _is_there(path: Place, cube: Cube) -> bool:
+    """Whether this very cube stands there already."""
+    try:
+        found = load(path)
+    except InputError:
+        return False
+    return np.array_equal(found.extinction, cube.extinction) and np.array_equal(found.powers, cube.powers)
