@@ -225,3 +225,38 @@ def test_compiling_is_said_once_and_not_to_machines(tmp_path: Path, capsys: pyte
     assert compiled(as_json=True) == ""
     assert compiled(as_json=False) == "compiling, once: about 30 s\n"
     assert compiled(as_json=False) == ""
+
+
+#: A function that C calls back, of LLVM's bindings by its name, in which a signal comes; then a second of other work.
+CALLED_BACK = """
+import ctypes, signal, sys, time
+from lightcube.__main__ import main
+from lightcube.cli import main as line
+
+def run(words):
+    line.prepare()
+    exec(
+        "import ctypes, signal\\n"
+        "called = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.{name}))\\n"
+        "called()",
+        {{"__name__": "llvmlite.binding.executionengine"}},
+    )
+    try:
+        time.sleep(5)
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+line.run = run
+main()
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_ctrl_c_in_what_compiled_code_calls_back_is_not_forgotten(name: str) -> None:
+    """There Python prints an exception and goes on."""
+    done = subprocess.run(
+        [sys.executable, "-c", CALLED_BACK.format(name=name)], capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 130, done.stderr
+    assert done.stderr == ""

@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from functools import cache
+from types import FrameType
 from typing import Any
 
 from rich.console import Console
@@ -24,6 +25,8 @@ err: Console = Console(soft_wrap=True, highlight=False, markup=False, emoji=Fals
 
 #: Seconds between two lines of progress.
 _BEAT = 0.5
+#: After so many seconds a signal that could not be answered is looked at again.
+_SOON_S = 0.02
 
 
 def json_line(event: str, **fields: Any) -> None:
@@ -124,7 +127,8 @@ def ctrl_c() -> Iterator[Callable[[], bool]]:
     def handle(number: int, frame: Any) -> None:
         nonlocal pressed
         if pressed:
-            raise KeyboardInterrupt
+            interrupt(number, frame)
+            return
         pressed = True
         err.print("stopping after this pass; press Ctrl-C again to stop at once")
 
@@ -142,12 +146,29 @@ def prepare() -> None:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
-    def stop(*_: Any) -> None:
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGTERM, stop)
+    signal.signal(signal.SIGTERM, interrupt)
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, interrupt)
+
+
+def interrupt(_: int, frame: FrameType | None) -> None:
+    """Raise `KeyboardInterrupt` out of what a signal found at work, or as soon as no call back from LLVM is at work.
+
+    Whatever such a call raises is printed and forgotten: the command would go on as if nobody had pressed Ctrl-C.
+    """
+    if not _in_llvm(frame) or not hasattr(signal, "setitimer"):
+        raise KeyboardInterrupt
+    signal.signal(signal.SIGALRM, interrupt)
+    signal.setitimer(signal.ITIMER_REAL, _SOON_S)
+
+
+def _in_llvm(frame: FrameType | None) -> bool:
+    """Whether a frame, or one that called it, is of LLVM's bindings."""
+    while frame is not None:
+        if frame.f_globals.get("__name__", "").startswith("llvmlite."):
+            return True
+        frame = frame.f_back
+    return False
 
 
 class Stopped(Exception):  # noqa: N818 - nothing is wrong
