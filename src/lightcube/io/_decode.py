@@ -5,21 +5,14 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io._containers import is_cut_short
 from lightcube.io._files import system_errors
-
-if TYPE_CHECKING:
-    import av
-
-#: ``(row, column, 3 or 4)`` in uint8 or uint16; a fourth channel is the opacity.
-Levels = NDArray[np.uint8] | NDArray[np.uint16]
+from lightcube.io._frames import Levels, levels_of
 
 #: Called with each picture of a file in turn.
 Take = Callable[[Levels], None]
@@ -155,16 +148,7 @@ def _deep(path: Path, image: Image.Image) -> Levels:
         orientation = again.getexif().get(_ORIENTATION) or image.getexif().get(_ORIENTATION, 1)
     with path.open("rb") as file, av.open(file, "r", format=f"{(image.format or '').lower()}_pipe") as container:
         frame = next(iter(container.decode(video=0)))
-    return _upright(video_levels(frame), orientation)
-
-
-def video_levels(frame: "av.VideoFrame") -> Levels:
-    """Levels of a decoded video frame, with as many bits and channels as it has."""
-    deep = max(part.bits for part in frame.format.components) > 8
-    alpha = any(part.is_alpha for part in frame.format.components)
-    wanted = ("rgba" if alpha else "rgb") + (("64le" if alpha else "48le") if deep else ("" if alpha else "24"))
-    levels = frame.to_ndarray(format=wanted)
-    return levels.astype(np.uint16, copy=False) if deep else levels.astype(np.uint8, copy=False)
+    return _upright(levels_of(frame), orientation)
 
 
 def _upright(levels: Levels, orientation: int) -> Levels:
