@@ -13,6 +13,7 @@ from lightcube.errors import InputError
 from lightcube.io._containers import is_cut_short
 from lightcube.io._files import system_errors
 from lightcube.io._frames import Levels, levels_of
+from lightcube.io._newer import learn
 
 #: Called with each picture of a file in turn.
 Take = Callable[[Levels], None]
@@ -86,8 +87,9 @@ def read_single(path: Path, budget: Budget, take: Take) -> None:
     InputError
         Where the file cannot be read, or is an animation.
     """
+    learn(path)
     with decoding(path), Image.open(path) as image:
-        if image.format in ("PNG", "WEBP", "GIF") and getattr(image, "n_frames", 1) > 1:
+        if image.format in ("PNG", "WEBP", "GIF", "AVIF") and getattr(image, "n_frames", 1) > 1:
             raise InputError(f"{path} is an animation inside a folder of pictures: give that file itself, or move it")
         budget.spend(path, image.height, image.width)
         take(_deep(path, image) if _deep_colour(path, image) else _frame(path, image))
@@ -95,6 +97,7 @@ def read_single(path: Path, budget: Budget, take: Take) -> None:
 
 def read_animation(path: Path, budget: Budget, take: Take) -> None:
     """Give every picture of an animated GIF, WebP or APNG, or every page of a TIFF, to `take`."""
+    learn(path)
     with decoding(path), Image.open(path) as image:
         refuse_cut_short(path)
         count = getattr(image, "n_frames", 1)

@@ -45,9 +45,10 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     Parameters
     ----------
     path
-        A folder of PNG, JPEG, WebP or TIFF files, taken in natural order (2 before 10), whose `views.toml`, if
-        there is one, gives angles, elevation and names; or an animated GIF, WebP or APNG, or a TIFF of several
-        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken. It may be a URL.
+        A folder of PNG, JPEG, WebP, TIFF, AVIF or HEIC files, taken in natural order (2 before 10), whose `views.toml`,
+        if there is one, gives angles, elevation and names; or an animated GIF, WebP, APNG or AVIF, or a TIFF of several
+        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken. HEIC takes the extra `heif`. It
+        may be a URL.
     transfer
         How display values become linear light.
     least
