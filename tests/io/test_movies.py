@@ -127,8 +127,9 @@ def test_the_same_pictures_are_the_same_bytes(tmp_path: Path, suffix: str) -> No
 @pytest.mark.parametrize("suffix", ["", ".png", ".apng"])
 def test_pngs_say_that_they_are_srgb(tmp_path: Path, suffix: str) -> None:
     save(from_levels(levels()[: 1 if suffix == ".png" else 3]), tmp_path / f"a{suffix}")
+    save(levels()[0], tmp_path / "single.png")
     files = list((tmp_path / "a").iterdir()) if not suffix else [tmp_path / f"a{suffix}"]
-    for file in files:
+    for file in (*files, tmp_path / "single.png"):
         assert file.read_bytes().index(b"\0\0\0\x01sRGB") < file.read_bytes().index(b"IDAT")
 
 
