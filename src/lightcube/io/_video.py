@@ -73,7 +73,7 @@ def _decoded(
     says = {key.lower(): value for key, value in stream.metadata.items()}
     if says.get("alpha_mode") == "1" and context.name in _WITH_OPACITY:
         context = cast("av.VideoCodecContext", av.CodecContext.create(_WITH_OPACITY[context.name], "r"))
-    context.options = {"err_detect": "crccheck+explode"}
+    context.options = {"err_detect": "explode"}
     context.thread_type = "AUTO"
     for packet in container.demux(stream):
         if packet.is_corrupt:
