@@ -32,6 +32,7 @@ ALLOWED_IN_KERNELS = {
 }
 FILE_AND_SCREEN = {
     *("pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "zarr", "matplotlib", "trimesh", "fsspec"),
+    "pi_heif",
 }
 #: A plot is made without being shown or written; of the system, kernels want the environment, and to know of forks.
 HARMLESS = {"lightcube.drawing.plots": {"matplotlib"}, "lightcube.kernels": {"os"}, "lightcube.kernels.tasks": {"os"}}
@@ -120,6 +121,7 @@ def test_every_module_has_a_room() -> None:
         *sys.stdlib_module_names,
         *("lightcube", "numpy", "scipy", "numba", "skimage", "PIL", "av", "zarr", "typer", "click", "rich", "pydantic"),
         *("pydantic_core", "trimesh", "matplotlib", "fsspec", "llvmlite", "torch", "astra", "dask", "distributed"),
+        "pi_heif",
         *("anywidget", "traitlets"),
     }
 

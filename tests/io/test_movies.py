@@ -87,13 +87,50 @@ def test_an_mp4_keeps_the_colours_of_single_pixels(tmp_path: Path) -> None:
     assert np.max(np.abs(read_levels(tmp_path / "a.mp4").astype(int) - wanted)) < 25
 
 
-def test_an_mp4_says_which_colours_it_means(tmp_path: Path) -> None:
-    save(from_levels(smooth(3)), tmp_path / "a.mp4")
+@pytest.mark.parametrize(("scale", "pixels"), [(1, "yuv444p"), (2, "yuv420p"), (3, "yuv444p"), (4, "yuv420p")])
+def test_an_mp4_says_which_colours_it_means(tmp_path: Path, scale: int, pixels: str) -> None:
+    save(from_levels(smooth(3)), tmp_path / "a.mp4", scale=scale)
     with av.open(str(tmp_path / "a.mp4")) as container:
         context = container.streams.video[0].codec_context
         assert context.name == "h264"
-        assert context.pix_fmt == "yuv444p"
+        assert context.pix_fmt == pixels
         assert (context.colorspace, context.color_primaries, context.color_trc, context.color_range) == (1, 1, 13, 1)
+
+
+@pytest.mark.parametrize("scale", [1, 2, 3, 4])
+def test_an_mp4_comes_back_whatever_its_first_picture_is(tmp_path: Path, scale: int) -> None:
+    colours = np.array([(255, 0, 0), (0, 255, 0), (0, 0, 255), (220, 30, 40), (255, 255, 255), (0, 0, 0)], np.uint8)
+    wanted = colours[RANDOM.integers(0, len(colours), (5, 24, 32))]
+    wanted[0] = 255
+    path = save(from_levels(wanted), tmp_path / "a.mp4", scale=scale)
+    enlarged = wanted.repeat(scale, 1).repeat(scale, 2).astype(float)
+    with av.open(str(path)) as container:
+        shown = np.stack([frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)])
+    for read in (read_levels(path), shown):
+        assert np.mean(np.abs(read - enlarged)) < 1.5
+
+
+@pytest.mark.parametrize("suffix", [*ALL, ".png"])
+def test_the_same_pictures_are_the_same_bytes(tmp_path: Path, suffix: str) -> None:
+    pictures = from_levels(levels()[: 1 if suffix == ".png" else 4])
+
+    def written(name: str) -> list[bytes]:
+        save(pictures, tmp_path / name)
+        files = [tmp_path / name, *(tmp_path / name).glob("*")]
+        return [file.read_bytes() for file in sorted(files) if file.is_file()]
+
+    first = written(f"a{suffix}")
+    assert first
+    assert written(f"b{suffix}") == first
+
+
+@pytest.mark.parametrize("suffix", ["", ".png", ".apng"])
+def test_pngs_say_that_they_are_srgb(tmp_path: Path, suffix: str) -> None:
+    save(from_levels(levels()[: 1 if suffix == ".png" else 3]), tmp_path / f"a{suffix}")
+    save(levels()[0], tmp_path / "single.png")
+    files = list((tmp_path / "a").iterdir()) if not suffix else [tmp_path / f"a{suffix}"]
+    for file in (*files, tmp_path / "single.png"):
+        assert file.read_bytes().index(b"\0\0\0\x01sRGB") < file.read_bytes().index(b"IDAT")
 
 
 @pytest.mark.parametrize("suffix", [".webm", ".webp", ".apng", ".mp4", ".gif"])
@@ -115,9 +152,25 @@ def test_movies_have_the_asked_speed(tmp_path: Path, suffix: str, fps: float) ->
     np.testing.assert_allclose(times - times[0], np.arange(6) / fps, atol=0.0051 if suffix == ".gif" else 0.0011)
 
 
+def test_a_pipe_is_refused_and_no_folder_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for path in ("-", Path("-")):
+        with pytest.raises(InputError, match=r"^- is no name"):
+            save(from_levels(levels()), path)
+    assert files_in(tmp_path) == []
+
+
 def test_a_gif_faster_than_browsers_play_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="at most 50 pictures a second"):
         save(from_levels(levels()), tmp_path / "a.gif", fps=51)
+
+
+def test_a_gif_slower_than_its_delays_is_refused(tmp_path: Path) -> None:
+    save(from_levels(levels()), tmp_path / "a.gif", fps=1 / 655)
+    with av.open(str(tmp_path / "a.gif")) as container:
+        assert [frame.time for frame in container.decode(video=0)] == [0, 655, 1310, 1965]
+    with pytest.raises(InputError, match="at most 655 seconds, not 656:"):
+        save(from_levels(levels()), tmp_path / "b.gif", fps=1 / 656)
 
 
 def test_a_gif_of_many_colours_has_one_palette(tmp_path: Path) -> None:

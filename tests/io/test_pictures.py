@@ -267,20 +267,6 @@ def test_orientation_holds_for_16_bits_as_for_8(tmp_path: Path, orientation: int
     np.testing.assert_allclose(reads[0][0], np.asarray(ImageOps.exif_transpose(image)) / 255, atol=1 / 200)
 
 
-@pytest.mark.parametrize("quarters", [0, 1, 2, 3])
-def test_a_turned_video_is_turned_upright(tmp_path: Path, quarters: int) -> None:
-    path = tmp_path / "film.mp4"
-    pictures = sample(path)
-    cos, sin = [(1, 0), (0, 1), (-1, 0), (0, -1)][quarters]
-    data = path.read_bytes()
-    at = data.index(b"tkhd") + 4 + 40
-    matrix = struct.pack(">9i", cos << 16, sin << 16, 0, -sin << 16, cos << 16, 0, 0, 0, 1 << 30)
-    path.write_bytes(data[:at] + matrix + data[at + 36 :])
-    for image, picture in zip(read_pictures(path).images, pictures, strict=True):
-        # The matrix (a b; c d) takes x to a x + c y and y to b x + d y, y down: clockwise quarter turns.
-        np.testing.assert_array_equal(image, from_levels(np.rot90(picture, -quarters)))
-
-
 def test_a_gif_of_changes_shows_whole_pictures(tmp_path: Path) -> None:
     base = Image.new("P", (7, 5), 1)
     base.putpalette([255, 255, 255, 200, 30, 10, 0, 90, 220])

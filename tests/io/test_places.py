@@ -374,6 +374,7 @@ def test_files_of_a_folder(folder: str) -> None:
         ("nobody://x/a.zarr", r"nobody://x/a\.zarr cannot be reached, nobody knows nobody://"),
         ("s3://", "names no file and no folder"),
         ("file://a.zarr", "begin with three slashes, such as file:///tmp/a.zarr"),
+        ("-", "^- is no name: nothing is read from a pipe or written to one"),
         ("s3://b/a.tar", r"s3://b/a\.tar has no suffix that a cube can have"),
     ],
 )

@@ -3,24 +3,31 @@
 from typing import BinaryIO
 
 _EBML_SEGMENT = b"\x18\x53\x80\x67"
+_EBML_CLUSTER = b"\x1f\x43\xb6\x75"
+#: Boxes that stand at the top of ISO media files.
+_BOXES = frozenset(
+    b"ftyp styp moov moof mdat free skip wide uuid meta sidx ssix mfra prft emsg pnot udta pdin imda".split()
+)
+_UNTOLD = 0xFFFFFFFF
 
 
 def is_cut_short(file: BinaryIO) -> bool:
     """Whether the container in `file` says that there should be more of it than there is.
 
-    Knows ISO media (MP4, MOV), RIFF (AVI, WebP), Matroska (MKV, WebM) and GIF; of others it says False.
+    Knows ISO media (MP4, MOV), RIFF (AVI, WebP), Matroska (MKV, WebM) and GIF; of others, and of an AVI that was
+    written through a pipe and does not know its length, it says False.
     """
     size = file.seek(0, 2)
     file.seek(0)
     start = file.read(12)
     if start[:4] == b"GIF8":
         return _gif_end_missing(file)
-    if start[4:8] in (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip"):
-        return _boxes_end(file, size) > size
+    if start[4:8] in _BOXES:
+        return _boxes_cut(file, size)
     if start[:4] == b"RIFF":
-        return int.from_bytes(start[4:8], "little") + 8 > size
+        return _riffs_cut(file, size)
     if start[:4] == b"\x1a\x45\xdf\xa3":
-        return _segment_end(file) > size
+        return _elements_cut(file, size)
     return False
 
 
@@ -49,8 +56,11 @@ def _skip_palette(file: BinaryIO, behind: int) -> None:
     file.seek(behind + (3 * 2 << (flags & 7) if flags & 0x80 else 0), 1)
 
 
-def _boxes_end(file: BinaryIO, size: int) -> int:
-    """Where the last top-level box of an ISO media file ends (ISO/IEC 14496-12, 4.2)."""
+def _boxes_cut(file: BinaryIO, size: int) -> bool:
+    """Whether a top-level box of an ISO media file ends behind its end (ISO/IEC 14496-12, 4.2).
+
+    What stands behind the last box and is no box is nobody's loss: cameras and messengers leave such bytes.
+    """
     at = 0
     while at + 8 <= size:
         file.seek(at)
@@ -58,21 +68,47 @@ def _boxes_end(file: BinaryIO, size: int) -> int:
         length = int.from_bytes(head[:4], "big")
         if length == 1:
             length = int.from_bytes(head[8:16], "big")
-        if length < 8:  # 0: up to the end of the file; anything else is for the decoder to refuse
-            return size
+        if head[4:8] not in _BOXES or length < 8:  # 0: up to the end of the file
+            return False
         at += length
-    return at if at >= size else size + 1
+    return at > size
 
 
-def _segment_end(file: BinaryIO) -> int:
-    """Where the segment of a Matroska file ends by its own word; 0 where it does not tell (RFC 8794, 4 and 6)."""
-    file.seek(4)
-    header = _vint(file)
-    file.seek(max(header, 0), 1)
-    if file.read(4) != _EBML_SEGMENT:
-        return 0
-    length = _vint(file)
-    return file.tell() + length if length >= 0 else 0
+def _riffs_cut(file: BinaryIO, size: int) -> bool:
+    """Whether a RIFF file, or one of the parts that a large AVI is made of, ends behind the end of the file."""
+    at = 0
+    while True:
+        file.seek(at)
+        head = file.read(8)
+        length = int.from_bytes(head[4:], "little")
+        # What is written through a pipe does not know its length.
+        if head[:4] != b"RIFF" or length in (0, _UNTOLD):
+            return False
+        if at + 8 + length > size:
+            return True
+        at += 8 + length + length % 2
+
+
+def _elements_cut(file: BinaryIO, size: int) -> bool:
+    """Whether an element of a Matroska file ends behind the end of the file (RFC 8794, 4 to 6).
+
+    A segment that knows its length says so at once; of one that was written through a pipe its last block does.
+    """
+    file.seek(0)
+    while file.tell() < size:
+        start = file.read(1)
+        name = start + file.read(8 - start[0].bit_length())
+        length = _vint(file)
+        if name in (_EBML_SEGMENT, _EBML_CLUSTER) and length < 0:
+            continue  # its elements follow
+        if start == b"\0" or length < 0:  # damaged: for the decoder to refuse
+            return False
+        if file.tell() == size:  # the file ends in the head of an element
+            return True
+        file.seek(length, 1)
+        if name == _EBML_SEGMENT:
+            break
+    return file.tell() > size
 
 
 def _vint(file: BinaryIO) -> int:

@@ -5,21 +5,15 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io._containers import is_cut_short
 from lightcube.io._files import system_errors
-
-if TYPE_CHECKING:
-    import av
-
-#: ``(row, column, 3 or 4)`` in uint8 or uint16; a fourth channel is the opacity.
-Levels = NDArray[np.uint8] | NDArray[np.uint16]
+from lightcube.io._frames import Levels, levels_of
+from lightcube.io._newer import learn
 
 #: Called with each picture of a file in turn.
 Take = Callable[[Levels], None]
@@ -93,8 +87,9 @@ def read_single(path: Path, budget: Budget, take: Take) -> None:
     InputError
         Where the file cannot be read, or is an animation.
     """
+    learn(path)
     with decoding(path), Image.open(path) as image:
-        if image.format in ("PNG", "WEBP", "GIF") and getattr(image, "n_frames", 1) > 1:
+        if image.format in ("PNG", "WEBP", "GIF", "AVIF") and getattr(image, "n_frames", 1) > 1:
             raise InputError(f"{path} is an animation inside a folder of pictures: give that file itself, or move it")
         budget.spend(path, image.height, image.width)
         take(_deep(path, image) if _deep_colour(path, image) else _frame(path, image))
@@ -102,6 +97,7 @@ def read_single(path: Path, budget: Budget, take: Take) -> None:
 
 def read_animation(path: Path, budget: Budget, take: Take) -> None:
     """Give every picture of an animated GIF, WebP or APNG, or every page of a TIFF, to `take`."""
+    learn(path)
     with decoding(path), Image.open(path) as image:
         refuse_cut_short(path)
         count = getattr(image, "n_frames", 1)
@@ -155,16 +151,7 @@ def _deep(path: Path, image: Image.Image) -> Levels:
         orientation = again.getexif().get(_ORIENTATION) or image.getexif().get(_ORIENTATION, 1)
     with path.open("rb") as file, av.open(file, "r", format=f"{(image.format or '').lower()}_pipe") as container:
         frame = next(iter(container.decode(video=0)))
-    return _upright(video_levels(frame), orientation)
-
-
-def video_levels(frame: "av.VideoFrame") -> Levels:
-    """Levels of a decoded video frame, with as many bits and channels as it has."""
-    deep = max(part.bits for part in frame.format.components) > 8
-    alpha = any(part.is_alpha for part in frame.format.components)
-    wanted = ("rgba" if alpha else "rgb") + (("64le" if alpha else "48le") if deep else ("" if alpha else "24"))
-    levels = frame.to_ndarray(format=wanted)
-    return levels.astype(np.uint16, copy=False) if deep else levels.astype(np.uint8, copy=False)
+    return _upright(levels_of(frame), orientation)
 
 
 def _upright(levels: Levels, orientation: int) -> Levels:

@@ -5,15 +5,16 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from lightcube.errors import InputError
+from lightcube.io._frames import AVERAGING, BT709, FULL, NARROW
 
 if TYPE_CHECKING:
     import av
@@ -23,11 +24,16 @@ Levels = NDArray[np.uint8]
 #: Called with the file to write, the pictures ``(row, column, 3)``, and pictures per second.
 Encoder = Callable[[Path, Iterable[Levels], Fraction], None]
 
-#: The codes of ITU-T H.273 for BT.709 colours, the sRGB curve, and levels from 16 to 235.
-_BT709, _SRGB_CURVE, _NARROW = 1, 13, 1
+#: The code of ITU-T H.273 for the sRGB curve.
+_SRGB_CURVE = 13
+
+#: Without it a file would hold a random number and the library's version.
+_SAME_BYTES = {"fflags": "+bitexact"}
 
 #: A delay of less than two hundredths of a second makes browsers play at a tenth of the speed.
 _MOST_GIF_RATE = 50
+#: A delay is at most so many hundredths of a second.
+_LEAST_GIF_RATE = Fraction(100, 65535)
 _MOST_WEBP = 16383
 #: Pixels that a palette is chosen from, at most.
 _PALETTE_SAMPLE = 1 << 20
@@ -54,26 +60,29 @@ _GIF = _Codec("gif", "gif", "pal8", {"gifflags": "0"}, {"loop": "0"})
 
 
 def encode_mp4(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
-    """H.264 (BT.709), visually lossless: 4:2:0, which every player knows, for pictures enlarged evenly, else 4:4:4."""
-    all_pictures = iter(pictures)
-    first = next(all_pictures)
-    codec = _MP4_COMMON if _is_doubled(first) else _MP4
-
-    def frames() -> Iterator["av.VideoFrame"]:
-        for picture in chain([first], all_pictures):
-            frame = _rgb_frame(picture).reformat(format=codec.pixels, dst_colorspace=_BT709, dst_color_range=_NARROW)
-            frame.colorspace, frame.color_range = _BT709, _NARROW
-            yield frame
-
-    _encode(path, frames(), fps, codec)
+    """H.264 (BT.709), visually lossless, 4:4:4."""
+    _encode(path, (_coded_frame(picture, _MP4) for picture in pictures), fps, _MP4)
 
 
-def _is_doubled(picture: Levels) -> bool:
-    """Tell whether the picture is made of uniform squares of 2 x 2 pixels."""
-    if picture.shape[0] % 2 or picture.shape[1] % 2:
-        return False
-    corner = picture[::2, ::2]
-    return all(np.array_equal(corner, picture[row::2, column::2]) for row, column in ((0, 1), (1, 0), (1, 1)))
+def encode_doubled_mp4(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
+    """Squares of 2 x 2 pixels alike, without loss at half the colour resolution, 4:2:0, which every player knows."""
+    _encode(path, (_coded_frame(picture, _MP4_COMMON) for picture in pictures), fps, _MP4_COMMON)
+
+
+def _coded_frame(picture: Levels, codec: _Codec) -> "av.VideoFrame":
+    """A picture as brightness and two colours, which says what they mean."""
+    plain = _rgb_frame(picture)
+    frame = plain.reformat(
+        format=codec.pixels,
+        src_colorspace=BT709,
+        dst_colorspace=BT709,
+        interpolation=AVERAGING,
+        src_color_range=FULL,
+        dst_color_range=NARROW,
+    )
+    frame.colorspace, frame.color_range = BT709, NARROW
+    frame.color_primaries, frame.color_trc = plain.color_primaries, plain.color_trc
+    return frame
 
 
 def encode_webm(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
@@ -90,6 +99,8 @@ def encode_gif(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
     """GIF, looping, with one palette for all: exact up to 256 colours, else chosen from all and dithered."""
     if fps > _MOST_GIF_RATE:
         raise InputError(f"a GIF shows at most {_MOST_GIF_RATE} pictures a second, not {float(fps):g}: lower the rate")
+    if fps < _LEAST_GIF_RATE:
+        raise InputError(f"a GIF shows a picture for at most 655 seconds, not {float(1 / fps):g}: raise the rate")
     with tempfile.TemporaryFile(dir=path.parent) as spool:
         shape: tuple[int, ...] = ()
         for picture in pictures:
@@ -109,6 +120,15 @@ def encode_gif(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
         opaque[:, 1:] = palette[-1]
         opaque[: len(palette), 1:] = palette
         _encode(path, (_palette_frame(index, opaque) for index in indices), fps, _GIF)
+
+
+def png(picture: Levels) -> memoryview:
+    """Return the file of one picture ``(row, column, 3)``, which says that it is sRGB."""
+    said = PngInfo()
+    said.add(b"sRGB", b"\0")
+    file = io.BytesIO()
+    Image.fromarray(picture).save(file, "PNG", pnginfo=said)
+    return file.getbuffer()
 
 
 def encode_webp(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
@@ -153,25 +173,27 @@ def _encode(path: Path, frames: Iterator["av.VideoFrame"], fps: Fraction, codec:
     import av
 
     stream = None
-    with av.open(str(path), "w", format=codec.container, options=codec.container_options) as container:
+    options = {**_SAME_BYTES, **codec.container_options}
+    with av.open(str(path), "w", format=codec.container, options=options) as container:
         for frame in frames:
             if stream is None:
                 stream = cast("av.VideoStream", container.add_stream(codec.name, rate=fps, options=codec.codec_options))
                 stream.width, stream.height, stream.pix_fmt = frame.width, frame.height, codec.pixels
-                if codec is _MP4:
-                    context = stream.codec_context
-                    context.colorspace, context.color_range = _BT709, _NARROW
-                    context.color_primaries, context.color_trc = _BT709, _SRGB_CURVE
+                context = stream.codec_context
+                context.colorspace, context.color_range = frame.colorspace, frame.color_range
+                context.color_primaries, context.color_trc = frame.color_primaries, frame.color_trc
             container.mux(stream.encode(frame))
         if stream is not None:
             container.mux(stream.encode())
 
 
 def _rgb_frame(picture: Levels) -> "av.VideoFrame":
-    """A picture ``(row, column, 3)``."""
+    """A picture ``(row, column, 3)``, which says that it is sRGB."""
     import av
 
-    return av.VideoFrame.from_ndarray(picture, format="rgb24")
+    frame = av.VideoFrame.from_ndarray(picture, format="rgb24")
+    frame.color_primaries, frame.color_trc = BT709, _SRGB_CURVE
+    return frame
 
 
 def _palette_frame(index: Levels, palette: Levels) -> "av.VideoFrame":

@@ -42,8 +42,11 @@ def place(given: str | Path) -> Place:
     Raises
     ------
     InputError
-        Where a URL says nothing but its scheme, or a ``file://`` does not begin at the root.
+        Where a URL says nothing but its scheme, a ``file://`` does not begin at the root, or it is "-", which
+        elsewhere stands for a pipe.
     """
+    if str(given) == "-":
+        raise InputError("- is no name: nothing is read from a pipe or written to one, give a file or a folder")
     match = _URL.fullmatch(given) if isinstance(given, str) else None
     if match is None:
         return Path(given)

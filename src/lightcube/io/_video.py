@@ -1,18 +1,35 @@
 """Pictures of a video file, through PyAV."""
 
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import chain
 from pathlib import Path
-
-import numpy as np
+from typing import TYPE_CHECKING, cast
 
 from lightcube.errors import InputError
-from lightcube.io._decode import Budget, Take, decoding, refuse_cut_short, video_levels
+from lightcube.io._colours import converted, curve_of, ordinary
+from lightcube.io._decode import Budget, Take, decoding, refuse_cut_short
+from lightcube.io._frames import Levels, is_known, levels_of, matrix_of, square, upright
+
+if TYPE_CHECKING:
+    import av
 
 #: Containers that are read; a playlist under a video's name would make the reader open other files.
 _FORMATS = "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi"
 
+#: Decoders of codecs whose opacity FFmpeg's own leave out.
+_WITH_OPACITY = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
 
-def read_video(path: Path, budget: Budget, take: Take) -> None:
-    """Give every picture of the first video stream of `path` to `take`, turned as the file says.
+#: Both fields of an interlaced frame as one picture of one moment; frames that are not interlaced pass.
+_WEAVER = ("bwdif", "mode=send_frame:deint=interlaced")
+
+
+def read_video(path: Path, budget: Budget, take: Take) -> list[str]:
+    """Give every picture of the film in `path` to `take`: upright, its pixels square, in sRGB.
+
+    Returns
+    -------
+    What had to be changed in it, as the rest of a sentence that begins with its name.
 
     Raises
     ------
@@ -21,14 +38,89 @@ def read_video(path: Path, budget: Budget, take: Take) -> None:
     """
     import av
 
+    notes: dict[str, None] = {}
     with decoding(path):
         refuse_cut_short(path)
         with path.open("rb") as file, av.open(file, "r", options={"format_whitelist": _FORMATS}) as container:
-            if not container.streams.video:
-                raise InputError(f"{path} has no video in it: give a video, an animation or a folder of pictures")
-            stream = container.streams.video[0]
-            stream.codec_context.options = {"err_detect": "explode"}
-            stream.thread_type = "AUTO"
-            for frame in container.decode(stream):
-                budget.spend(path, frame.height, frame.width)
-                take(np.rot90(video_levels(frame), round(frame.rotation / 90)))
+            stream = _film(path, container)
+            for frame in _unwoven(_decoded(path, container, stream), notes):
+                shape = square(frame, stream.sample_aspect_ratio)
+                budget.spend(path, *shape)
+                if not is_known(frame):
+                    raise InputError(f"{path} has colours of a kind that is not read (YCgCo, ICtCp): convert it first")
+                take(upright(_levels(frame, shape, notes), frame))
+    return list(notes)
+
+
+def _film(path: Path, container: "av.container.InputContainer") -> "av.VideoStream":
+    """The first video stream that is no cover and no preview."""
+    from av.stream import Disposition
+
+    stills = Disposition.attached_pic | Disposition.timed_thumbnails
+    for stream in container.streams.video:
+        if not stream.disposition & stills:
+            return stream
+    raise InputError(f"{path} has no video in it: give a video, an animation or a folder of pictures")
+
+
+def _decoded(
+    path: Path, container: "av.container.InputContainer", stream: "av.VideoStream"
+) -> Iterator["av.VideoFrame"]:
+    """Frames of a stream; `InputError` where a part of it is known to be missing."""
+    import av
+
+    context = stream.codec_context
+    says = {key.lower(): value for key, value in stream.metadata.items()}
+    if says.get("alpha_mode") == "1" and context.name in _WITH_OPACITY:
+        context = cast("av.VideoCodecContext", av.CodecContext.create(_WITH_OPACITY[context.name], "r"))
+    context.options = {"err_detect": "explode"}
+    context.thread_type = "AUTO"
+    for packet in container.demux(stream):
+        if packet.is_corrupt:
+            raise InputError(f"{path} is cut short, its end is missing: copy it or make it again")
+        for frame in context.decode(packet if packet.size else None):
+            if frame.is_corrupt:
+                raise InputError(f"{path} is damaged, parts of its pictures are missing: copy it or make it again")
+            yield frame
+
+
+def _unwoven(frames: Iterator["av.VideoFrame"], notes: dict[str, None]) -> Iterator["av.VideoFrame"]:
+    """The same frames, from the first one on that is interlaced with fields of one moment."""
+    for frame in frames:
+        if not frame.interlaced_frame:
+            yield frame
+            continue
+        notes["is interlaced: of every picture one field was kept, and the lines between were filled in"] = None
+        yield from _woven_anew(frame, frames)
+
+
+def _woven_anew(first: "av.VideoFrame", others: Iterator["av.VideoFrame"]) -> Iterator["av.VideoFrame"]:
+    """Frames through the filter, which wants to see the next one before it gives one back."""
+    import av
+
+    graph = av.filter.Graph()
+    ticks = first.time_base or Fraction(1, 1000)  # which the filter asks for and has no use for
+    source = graph.add_buffer(width=first.width, height=first.height, format=first.format, time_base=ticks)
+    weaver, sink = graph.add(*_WEAVER), graph.add("buffersink")
+    source.link_to(weaver)
+    weaver.link_to(sink)
+    graph.configure()
+    for frame in chain([first], others, [None]):
+        graph.push(frame)
+        while True:
+            try:
+                yield graph.vpull()
+            except (av.BlockingIOError, av.EOFError):
+                break
+
+
+def _levels(frame: "av.VideoFrame", shape: tuple[int, int], notes: dict[str, None]) -> Levels:
+    """Levels of a frame in sRGB."""
+    deep = frame.format.components[0].bits > 8
+    curve = curve_of(frame.color_trc, matrix_of(frame), frame.color_primaries, deep=deep)
+    primaries = frame.color_primaries
+    levels = levels_of(frame, shape)
+    if note := converted(curve, primaries):
+        notes[note] = None
+        return ordinary(levels, curve, primaries)
+    return levels

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from lightcube.io._encoders import png
 from lightcube.io._files import Writer
 
 if TYPE_CHECKING:
@@ -38,6 +39,11 @@ def _plot(kind: str) -> Writer:
     return write
 
 
+def _write_png(path: Path, picture: NDArray[np.uint8]) -> None:
+    """Write one picture ``(row, column, 3)`` of 8-bit sRGB, and say so."""
+    path.write_bytes(png(picture))
+
+
 def _picture(kind: str) -> Writer:
     """Writer of one picture ``(row, column, 3)`` of 8-bit sRGB."""
 
@@ -50,4 +56,9 @@ def _picture(kind: str) -> Writer:
 
 
 PLOTS = {".png": _plot("png"), ".svg": _plot("svg")}
-PICTURES = {".png": _picture("PNG"), ".webp": _picture("WEBP"), ".jpg": _picture("JPEG"), ".jpeg": _picture("JPEG")}
+PICTURES: dict[str, Writer] = {
+    ".png": _write_png,
+    ".webp": _picture("WEBP"),
+    ".jpg": _picture("JPEG"),
+    ".jpeg": _picture("JPEG"),
+}

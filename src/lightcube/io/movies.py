@@ -9,7 +9,6 @@ from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io import _encoders
@@ -35,6 +34,7 @@ class _Job:
     transfer: Transfer
     fps: Fraction
     views: str
+    scale: int
 
 
 @dataclass
@@ -89,9 +89,10 @@ def _writer(write: Callable[[Path, Iterable[Picture], _Job, _Clipped], None]) ->
             raise InputError(
                 f"cannot write {number} pictures at scale {scale}: both must be whole numbers of at least 1"
             )
-        job, clipped = _Job(number, check_transfer(transfer), _rate(fps), views_text(views, names)), _Clipped()
+        job = _Job(number, check_transfer(transfer), _rate(fps), views_text(views, names), int(scale))
+        clipped = _Clipped()
         try:
-            write(path, _checked(pictures, number, int(scale)), job, clipped)
+            write(path, _checked(pictures, number, job.scale), job, clipped)
         except Exception as error:
             from av.error import FFmpegError
 
@@ -171,12 +172,18 @@ def _movie(encoder: _encoders.Encoder) -> Writer:
     return _writer(write)
 
 
+def _write_mp4(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
+    """At half the colour resolution where pixels are enlarged evenly, so that no picture can lose by it."""
+    encoder = _encoders.encode_mp4 if job.scale % 2 else _encoders.encode_doubled_mp4
+    encoder(path, _levels(pictures, job.transfer, clipped), job.fps)
+
+
 def _write_folder(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
     """PNGs whose numbers have the same number of digits, and `views.toml` where there is something to say."""
     path.mkdir()
     digits = len(str(job.count))
     for number, levels in enumerate(_levels(pictures, job.transfer, clipped), 1):
-        Image.fromarray(levels).save(path / f"{number:0{digits}d}.png")
+        (path / f"{number:0{digits}d}.png").write_bytes(_encoders.png(levels))
     if job.views:
         (path / VIEWS_FILE).write_bytes(job.views.encode("utf-8", errors="replace"))
 
@@ -186,7 +193,7 @@ def _write_png(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Cli
     if job.count > 1:
         raise InputError(f"a .png holds one picture, not {job.count}: give a folder (no suffix), or another suffix")
     for levels in _levels(pictures, job.transfer, clipped):
-        Image.fromarray(levels).save(path, format="PNG")
+        path.write_bytes(_encoders.png(levels))
 
 
 def _write_npy(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Clipped) -> None:
@@ -205,7 +212,7 @@ def is_pictures_folder(path: Place) -> bool:
 
 
 WRITERS = {
-    ".mp4": _movie(_encoders.encode_mp4),
+    ".mp4": _writer(_write_mp4),
     ".webm": _movie(_encoders.encode_webm),
     ".gif": _movie(_encoders.encode_gif),
     ".webp": _movie(_encoders.encode_webp),

@@ -119,10 +119,11 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
         * A cube: ``.zarr`` (a folder, OME-Zarr 0.5: napari and others open it as it is), ``.zarr.zip`` (the same in
           one file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
         * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white:
-          ``.png`` for a single one, ``.mp4`` (H.264, visually lossless), ``.webm`` (VP9, lossless), ``.gif`` (256
-          colours for all pictures), ``.webp`` and ``.apng`` (lossless), ``.npy`` (float32 linear light, never
-          clipped), or no suffix for a folder of PNGs, with a `views.toml` where `views` or `names` are given. Of
-          pictures that are made one by one, only one is in memory at a time.
+          ``.png`` for a single one, ``.mp4`` (H.264, visually lossless; at an even `scale` in 4:2:0, which every player
+          knows, else in 4:4:4), ``.webm`` (VP9, lossless), ``.gif`` (256 colours for all pictures), ``.webp`` and
+          ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no suffix for a folder of PNGs, with
+          a `views.toml` where `views` or `names` are given. Of pictures that are made one by one, only one is in
+          memory at a time.
         * The text of a page, ``.html``, or of a drawing, ``.svg``.
         * A matplotlib figure, ``.png`` or ``.svg``.
         * One picture ``(row, column, 3)`` of 8-bit sRGB, such as a contact sheet: ``.png``, ``.webp``, ``.jpg``.

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.io._decode import Budget, Levels, Take, read_animation, read_single
+from lightcube.io._decode import Budget, Take, read_animation, read_single
 from lightcube.io._files import suffix_entry, system_errors
+from lightcube.io._frames import Levels
 from lightcube.io._places import fetched, place
 from lightcube.io._video import read_video
 from lightcube.io.pictures_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
@@ -20,7 +21,8 @@ from lightcube.optics.checks import checked
 from lightcube.optics.transfer import Transfer, check_transfer, decode
 from lightcube.pictures.pictures import Pictures
 
-_READERS: dict[str, Callable[[Path, Budget, Take], None]] = {
+#: By suffix; they return what had to be changed, as the rest of a sentence that begins with the file's name.
+_READERS: dict[str, Callable[[Path, Budget, Take], Sequence[str] | None]] = {
     ".gif": read_animation,
     ".apng": read_animation,
     **dict.fromkeys(PICTURE_SUFFIXES, read_animation),
@@ -32,6 +34,10 @@ class TransparentPictures(UserWarning):
     """Some pictures that were read are not opaque, and were put on white."""
 
 
+class ChangedPictures(UserWarning):
+    """Pictures that were read are not of the kind that a cube shows, and were changed."""
+
+
 @checked
 def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int = 2) -> Pictures:
     """Read pictures in linear light.
@@ -39,9 +45,10 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     Parameters
     ----------
     path
-        A folder of PNG, JPEG, WebP or TIFF files, taken in natural order (2 before 10), whose `views.toml`, if
-        there is one, gives angles, elevation and names; or an animated GIF, WebP or APNG, or a TIFF of several
-        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken. It may be a URL.
+        A folder of PNG, JPEG, WebP, TIFF, AVIF or HEIC files, taken in natural order (2 before 10), whose `views.toml`,
+        if there is one, gives angles, elevation and names; or an animated GIF, WebP, APNG or AVIF, or a TIFF of several
+        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken. HEIC takes the extra `heif`. It
+        may be a URL.
     transfer
         How display values become linear light.
     least
@@ -50,10 +57,14 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     Returns
     -------
     Pictures in float32, 1 = white, upright as their EXIF orientation says, with all the bits that the file has
-    (8 or 16). Colour profiles are not applied: numbers are taken as sRGB.
+    (8 or 16). Colour profiles are not applied: numbers are taken as sRGB. Of a film they are what a player shows: by
+    its own matrix and range, turned and mirrored, and with square pixels.
 
     Warns
     -----
+    ChangedPictures
+        Where a film is of high dynamic range (PQ, HLG) or wide colours, which are brought into sRGB with white at 203
+        nits; and where it is interlaced, of which one field is kept.
     TransparentPictures
         Once, where pictures are not opaque: they are put on white, in linear light.
 
@@ -62,10 +73,17 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     InputError
         Where there is nothing to read, a file is damaged or of another kind, there are too few pictures, they
         would not fit into half of the machine's memory, or `views.toml` has a fault.
+
+    Notes
+    -----
+    A file that is cut short is refused where it says itself how long it, or its last picture, should be. Damage inside
+    a film is refused where its decoder sees it: most have no checksums, so changed bytes may pass as changed pictures.
     """
     transfer = check_transfer(transfer)
     with fetched(place(path), _is_wanted) as local:
-        pictures, transparent = _read(local, transfer, least)
+        pictures, transparent, notes = _read(local, transfer, least)
+    for note in notes:
+        warnings.warn(f"{path} {note}", ChangedPictures, stacklevel=3)
     if transparent:
         warnings.warn(
             f"{transparent} of {len(pictures)} pictures in {path} are partly transparent: they were put on white",
@@ -80,14 +98,15 @@ def _is_wanted(name: str) -> bool:
     return name == VIEWS_FILE or (Path(name).suffix.lower() in PICTURE_SUFFIXES and not name.startswith("."))
 
 
-def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
-    """Pictures, and how many of them are not opaque."""
+def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int, Sequence[str]]:
+    """Pictures, how many of them are not opaque, and what was changed in them."""
     with system_errors(path, "reading"):
         there, is_folder = path.exists(), path.is_dir()
     if not there:
         raise InputError(f"there is no {path}: give a folder of pictures, an animation or a video")
     images: list[NDArray[np.float32]] = []
     transparent = 0
+    notes: Sequence[str] = ()
 
     def take(levels: Levels) -> None:
         nonlocal transparent
@@ -104,13 +123,13 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
             read_single(file, budget, take)
         names = views.names or tuple(file.stem for file in files)
     else:
-        suffix_entry(path, _READERS, "pictures")(path, Budget(), take)
+        notes = suffix_entry(path, _READERS, "pictures")(path, Budget(), take) or ()
         names = tuple(str(index + 1) for index in range(len(images))) if len(images) > 1 else (path.stem,)
     if len(images) < least:
         held = "one picture" if images else "no picture"
         needed = "a cube needs at least two: add more" if least > 1 else "one at least is needed: give another"
         raise InputError(f"{path} holds {held}, and {needed}")
-    return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), transparent
+    return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), transparent, notes
 
 
 def _linear_light(levels: Levels, transfer: Transfer) -> tuple[NDArray[np.float32], bool]:

@@ -14,11 +14,12 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lightcube.errors import InputError
 from lightcube.io._files import system_errors
+from lightcube.io._newer import SUFFIXES
 from lightcube.optics.grid import check_elevation
 from lightcube.optics.views import Views, distinct_angles, spread_angles
 
 VIEWS_FILE = "views.toml"
-PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff")
+PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", *SUFFIXES)
 
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 
