@@ -5,7 +5,7 @@
 # Use another Python with: make demo PYTHON=python3.12
 
 PYTHON ?= python3
-EXTRAS ?= dev,mesh,plot,notebook,remote,cluster
+EXTRAS ?= dev,plot,notebook,remote,cluster
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 
