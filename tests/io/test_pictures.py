@@ -339,7 +339,7 @@ class TestViewsToml:
             ("elevation_deg = 90", "elevation_deg: "),
             ("elevation_deg = -90", "elevation_deg: "),
             ("elevation_deg = nan", "elevation_deg: "),
-            ("elevations = 3", "elevations: there is no such key"),
+            ("elevations = 3", "elevations: no such key here"),
             ("names = [1, 2, 3]", "names.0: "),
             ("angles_deg = [1, 2", "not a TOML file"),
             ("angles_deg = [1, 2, 3]\xff", "not a TOML file"),

@@ -245,12 +245,12 @@ def test_files_that_are_no_scene(tmp_path: Path) -> None:
         ("d.toml", b"x = " + b"[" * 5000),
     ):
         (tmp_path / name).write_bytes(content)
-        with pytest.raises(InputError, match=rf"^{name} is not a TOML file"):
+        with pytest.raises(InputError, match=rf"^{name} is not a TOML file( for us)?: "):
             read_scene(tmp_path / name)
-    with pytest.raises(InputError, match="cannot read the scene"):
+    with pytest.raises(InputError, match=r"^reading .*none\.toml failed: No such file"):
         read_scene(tmp_path / "none.toml")
     (tmp_path / "folder.toml").mkdir()
-    with pytest.raises(InputError, match="cannot read the scene"):
+    with pytest.raises(InputError, match="failed: Is a directory"):
         read_scene(tmp_path / "folder.toml")
     with pytest.raises(InputError, match=r"there is no scene 'nothing': give a \.toml file, or one of bloom"):
         read_scene("nothing")

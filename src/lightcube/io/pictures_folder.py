@@ -2,7 +2,6 @@
 
 import json
 import re
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,8 +13,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lightcube.errors import InputError
 from lightcube.io._files import system_errors
+from lightcube.io._toml import read_tables
 from lightcube.optics.grid import check_elevation
 from lightcube.optics.views import Views, distinct_angles, spread_angles
+from lightcube.scene.description import sentence
 
 VIEWS_FILE = "views.toml"
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff")
@@ -101,18 +102,11 @@ def read_views(folder: Path, count: int) -> FolderViews:
 def _parse(file: Path) -> _ViewsToml:
     """Read and check the keys of one `views.toml`."""
     try:
-        with system_errors(file, "reading"):
-            text = file.read_bytes().decode("utf-8")
-        return _ViewsToml.model_validate(tomllib.loads(text))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(f"{file} is not a TOML file: {error}") from error
+        return _ViewsToml.model_validate(read_tables(file, str(file)))
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        if first["type"] == "extra_forbidden":
-            known = ", ".join(_ViewsToml.model_fields)
-            raise InputError(f"{file}: {key}: there is no such key, use {known}") from error
-        raise InputError(f"{file}: {key}: {first['msg'][0].lower()}{first['msg'][1:]}") from error
+        first = error.errors(include_url=False)[0]
+        known = f" (there are {', '.join(_ViewsToml.model_fields)})" if first["type"] == "extra_forbidden" else ""
+        raise InputError(f"{file}: {sentence(first)}{known}") from error
 
 
 def views_text(views: Views | None, names: Sequence[str] | None) -> str:

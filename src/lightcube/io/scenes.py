@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from lightcube.errors import InputError
+from lightcube.io._toml import read_tables
 from lightcube.io.meshes import read_mesh
 from lightcube.optics.checks import checked
 from lightcube.scene.description import Mesh, parse
@@ -41,19 +40,10 @@ def read_scene(path_or_name: str | Path) -> Scene:
                 f"there is no scene {str(path_or_name)!r}: give a .toml file, or one of {', '.join(scene_names())}"
             )
         path = Path(str(resources.files("lightcube.scene") / "library" / f"{path_or_name}.toml"))
-    description = parse(_tables(path), path.name)
+    description = parse(read_tables(path, path.name), path.name)
     meshes = {
         shape.file: read_mesh(path.parent / shape.file, f"{path.name}: shapes.{i}.file")
         for i, shape in enumerate(description.shapes)
         if isinstance(shape, Mesh)
     }
     return Scene(description, meshes, path.name)
-
-
-def _tables(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read the scene {path}: {error.strerror or error}") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"{path.name} is not a TOML file: {error}") from None
