@@ -297,3 +297,16 @@ def test_any_pictures_come_back(tmp_path: Path, wanted: Levels, suffix: str) -> 
     path = tmp_path / f"a{suffix}"
     save(from_levels(wanted), path, overwrite=True)
     np.testing.assert_array_equal(read_levels(path), wanted)
+
+
+def test_what_systems_leave_in_a_folder_of_pictures_does_not_keep_it(tmp_path: Path) -> None:
+    pictures = np.full((2, 3, 4, 3), 0.5, np.float32)
+    save(pictures, tmp_path / "a")
+    (tmp_path / "a" / "1.png").rename(tmp_path / "a" / "1.PNG")
+    for name in (".DS_Store", "Thumbs.db", "desktop.ini", "._1.png"):
+        (tmp_path / "a" / name).write_bytes(b"x")
+    save(pictures, tmp_path / "a", overwrite=True)
+    assert files_in(tmp_path / "a") == ["1.png", "2.png"]
+    (tmp_path / "a" / ".git").mkdir()
+    with pytest.raises(InputError, match="folder of something else"):
+        save(pictures, tmp_path / "a", overwrite=True)

@@ -15,7 +15,7 @@ from lightcube.errors import InputError
 from lightcube.io import _encoders
 from lightcube.io._files import Writer
 from lightcube.io._places import Place, names_in
-from lightcube.io.pictures_folder import VIEWS_FILE, views_text
+from lightcube.io.pictures_folder import VIEWS_FILE, is_left_by_systems, views_text
 from lightcube.optics.transfer import Transfer, check_transfer, encode
 from lightcube.optics.views import Views
 
@@ -200,8 +200,11 @@ def _write_npy(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Cli
 
 
 def is_pictures_folder(path: Place) -> bool:
-    """Whether a folder holds nothing but what `_write_folder` writes."""
-    return all(name == VIEWS_FILE or PurePath(name).suffix == ".png" for name in names_in(path))
+    """Whether a folder holds nothing but what `_write_folder` writes, and what systems leave."""
+    return all(
+        name == VIEWS_FILE or PurePath(name).suffix.lower() == ".png" or is_left_by_systems(name)
+        for name in names_in(path)
+    )
 
 
 WRITERS = {

@@ -14,7 +14,16 @@ from lightcube.io._decode import Budget, Levels, Take, read_animation, read_sing
 from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._places import fetched, place
 from lightcube.io._video import read_video
-from lightcube.io.pictures_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
+from lightcube.io.pictures_folder import (
+    PICTURE_SUFFIXES,
+    VIEWS_FILE,
+    FolderViews,
+    is_picture,
+    left_out,
+    may_be_radians,
+    picture_files,
+    read_views,
+)
 from lightcube.optics.arrays import locked
 from lightcube.optics.checks import checked
 from lightcube.optics.transfer import Transfer, check_transfer, decode
@@ -30,6 +39,10 @@ _READERS: dict[str, Callable[[Path, Budget, Take], None]] = {
 
 class TransparentPictures(UserWarning):
     """Some pictures that were read are not opaque, and were put on white."""
+
+
+class DoubtfulFolder(UserWarning):
+    """Not all of a folder was read, or its angles may not be degrees."""
 
 
 @checked
@@ -56,6 +69,9 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     -----
     TransparentPictures
         Once, where pictures are not opaque: they are put on white, in linear light.
+    DoubtfulFolder
+        Where other files in a folder were left out, hidden ones and what systems leave not counted; and where all
+        angles lie so near to each other that they may be radians.
 
     Raises
     ------
@@ -66,6 +82,15 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     transfer = check_transfer(transfer)
     with fetched(place(path), _is_wanted) as local:
         pictures, transparent = _read(local, transfer, least)
+        others = left_out(local)
+    if others:
+        warnings.warn(f"{path}: {others}", DoubtfulFolder, stacklevel=3)
+    if may_be_radians(pictures.angles_deg):
+        warnings.warn(
+            f"{path}: all angles lie within a few degrees: if they are radians, multiply them by 57.2958",
+            DoubtfulFolder,
+            stacklevel=3,
+        )
     if transparent:
         warnings.warn(
             f"{transparent} of {len(pictures)} pictures in {path} are partly transparent: they were put on white",
@@ -77,7 +102,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
 
 def _is_wanted(name: str) -> bool:
     """Whether a file of a folder is read."""
-    return name == VIEWS_FILE or (Path(name).suffix.lower() in PICTURE_SUFFIXES and not name.startswith("."))
+    return name == VIEWS_FILE or is_picture(name)
 
 
 def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
