@@ -6,7 +6,7 @@
 
 PYTHON ?= python3
 COMPUTING := backward forward kernels laws optics planning projection scene scoring solvers
-EXTRAS ?= dev,mesh,heif,plot,notebook,remote,cluster
+EXTRAS ?= dev,heif,plot,notebook,remote,cluster
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 

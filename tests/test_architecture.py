@@ -31,7 +31,7 @@ ALLOWED_IN_KERNELS = {
     *("contextlib", "os", "queue", "warnings"),
 }
 FILE_AND_SCREEN = {
-    *("pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "zarr", "matplotlib", "trimesh", "fsspec"),
+    *("pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "zarr", "matplotlib", "fsspec"),
     "pi_heif",
 }
 #: A plot is made without being shown or written; of the system, kernels want the environment, and to know of forks.
@@ -120,7 +120,7 @@ def test_every_module_has_a_room() -> None:
     assert {name.split(".")[0] for file in MODULES for name in imports(file)} <= {
         *sys.stdlib_module_names,
         *("lightcube", "numpy", "scipy", "numba", "skimage", "PIL", "av", "zarr", "typer", "click", "rich", "pydantic"),
-        *("pydantic_core", "trimesh", "matplotlib", "fsspec", "llvmlite", "torch", "astra", "dask", "distributed"),
+        *("pydantic_core", "matplotlib", "fsspec", "llvmlite", "torch", "astra", "dask", "distributed"),
         "pi_heif",
         *("anywidget", "traitlets"),
     }

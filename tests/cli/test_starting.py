@@ -22,7 +22,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 
 #: What takes long to load.
-HEAVY = {"numba", "scipy", "zarr", "av", "matplotlib", "trimesh", "distributed"}
+HEAVY = {"numba", "scipy", "zarr", "av", "matplotlib", "distributed"}
 PRESSED = (130, "", "interrupted: no file was finished\n")
 #: Loads the command line in a program that then names what it has loaded.
 LISTING = """

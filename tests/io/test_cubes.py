@@ -108,7 +108,8 @@ def cubes(draw: st.DrawFn) -> Cube:
     grid = Grid(shape, draw(st.floats(1e-6, 1e6)))
     angles_deg = draw(st.lists(st.floats(0, 359), min_size=count, max_size=count))
     flat = turntable(grid, angles_deg, elevation_deg=draw(st.floats(-80, 80)))
-    origins_mm = draw(st_numpy.arrays(np.float64, (count, 3), elements=finite))
+    reach_mm = 1e8 * grid.voxel_mm
+    origins_mm = draw(st_numpy.arrays(np.float64, (count, 3), elements=st.floats(-reach_mm, reach_mm)))
     targets = st_numpy.arrays(np.uint16, (count, *picture, channels + 1))
     names = st.lists(st.text(st.characters(codec="utf-8"), max_size=4), min_size=count, max_size=count)
     return Cube(
@@ -337,11 +338,16 @@ def test_a_file_without_our_metadata_is_no_cube(tmp_path: Path, suffix: str, doc
         (put("voxel_mm", value=0), "voxel_mm"),
         (put("voxel_mm", value=float("nan")), "voxel_mm"),
         (put("rig", "views", "lamps", 1, 2, value=float("inf")), r"rig\.views\.lamps\.1\.2"),
-        (put("rig", "views", "lamps", 1, value=[0, 0, 0, 0]), "a direction of light is zero"),
+        (put("rig", "views", "lamps", 1, value=[0, 0, 0, 0]), "lamps of view 2 is 0"),
+        (put("rig", "views", "lamps", 1, 0, value=1e308), r"lamps of view 2 is 1e\+308"),
+        (put("rig", "views", "origins_mm", 1, 0, value=1e17), "the picture of view 2 reaches"),
+        (put("rig", "views", "picture_shape", 0, value=10**30), "million|too large|picture_shape"),
+        (put("rig", "stops", "window", 0, 0, value=10**30), "whole numbers"),
+        (put("rig", "stops", "angle_deg", 0, value=1e308), "angle_deg"),
         (put("rig", "views", "lamps", 1, 3, value=0.5), "fourth number"),
         (put("rig", "views", "lamps", 1, value=[1.0]), r"views\.lamps\.1"),
         (put("rig", "views", "origins_mm", value=[]), "origins_mm"),
-        (put("rig", "views", "row_steps_mm", 0, value=[0, 0, 0]), "one line"),
+        (put("rig", "views", "row_steps_mm", 0, value=[0, 0, 0]), "row_steps_mm of view 1 is 0"),
         (put("rig", "views", "picture_shape", value=[3, 0]), r"picture_shape\.1"),
         (put("rig", "views", "picture_shape", value=[3, 6]), "targets"),
         (put("lamp_powers", 0, 0, value=0), r"lamp_powers\.0\.0"),
@@ -383,7 +389,11 @@ def poke(path: Path, name: str, values: Any) -> None:
     [
         ("0", np.full((3, 3, 5, 7), np.nan, np.float32), "non-finite"),
         ("0", np.full((3, 3, 5, 7), -1, np.float32), "negative"),
-        ("0", np.ones((3, 3, 5, 7), np.float64), "float32"),
+        ("0", np.ones((3, 3, 5, 7), np.int32), "float32"),
+        ("0", np.ones((3, 3, 5, 7), np.float16), "float32"),
+        ("0", np.full((3, 3, 5, 7), 1e300), "non-finite"),
+        ("targets", np.full((2, 3, 5, 4), 65536, np.int32), "uint16"),
+        ("targets", np.ones((2, 3, 5, 4), np.float64), "uint16"),
         ("0", np.ones((3, 5, 7), np.float32), "3 axes|4 axes"),
         ("0", np.ones((2, 3, 5, 7), np.float32), "lamp powers"),
         ("targets", np.zeros((2, 3, 5, 3), np.uint16), "targets"),
@@ -397,6 +407,57 @@ def test_arrays_that_cannot_be_right_are_refused(
     poke(path, name, values)
     with pytest.raises(InputError, match=f"damaged light cube.*({message})"):
         load(path)
+
+
+@pytest.mark.parametrize("suffix", [".zarr", ".npz"])
+@pytest.mark.parametrize(("floats", "levels"), [(np.float64, np.int64), (">f4", ">u2"), (">f8", np.uint32)])
+def test_arrays_that_others_rewrote_in_wider_types_are_read(
+    tmp_path: Path, suffix: str, floats: Any, levels: Any
+) -> None:
+    cube = make()
+    path = save(cube, tmp_path / f"a{suffix}")
+    assert cube.targets is not None
+    poke(path, "0", cube.extinction.astype(floats))
+    poke(path, "targets", cube.targets.astype(levels))
+    assert_same(load(path), cube)
+
+
+def packed(folder: Path, file: Path, prefix: str, *beside: str) -> Path:
+    """A zip archive of a folder under a prefix, made as people's programs make it."""
+    with zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as archive:
+        for each in sorted(folder.rglob("*")):
+            archive.write(each, prefix + each.relative_to(folder).as_posix())
+        for name in beside:
+            archive.writestr(name, b"")
+    return file
+
+
+@pytest.mark.parametrize(
+    ("prefix", "beside"),
+    [
+        ("", []),
+        ("cube.zarr/", []),
+        ("a b/c.zarr/", [".DS_Store"]),
+        ("ü.zarr/", ["__MACOSX/ü.zarr/._zarr.json", "__MACOSX/zarr.json"]),
+        ("cube.zarr/", ["Thumbs.db", "notes.txt"]),
+        ("./cube.zarr/", []),
+    ],
+)
+def test_a_zip_archive_may_hold_the_folder_itself(tmp_path: Path, prefix: str, beside: list[str]) -> None:
+    cube = make()
+    file = packed(save(cube, tmp_path / "a.zarr"), tmp_path / "b.ZARR.zip", prefix, *beside)
+    assert_same(load(file), cube)
+
+
+def test_a_zip_archive_holds_one_cube(tmp_path: Path) -> None:
+    folder = save(make(), tmp_path / "a.zarr")
+    two = packed(folder, packed(folder, tmp_path / "two.zarr.zip", "a/"), "b/")
+    with pytest.raises(InputError, match=r"two\.zarr\.zip holds 2 Zarr groups: give a zip archive of one cube"):
+        load(two)
+    with zipfile.ZipFile(tmp_path / "none.zarr.zip", "w") as archive:
+        archive.writestr("a.txt", b"")
+    with pytest.raises(InputError, match=r"none\.zarr\.zip holds no Zarr group"):
+        load(tmp_path / "none.zarr.zip")
 
 
 def test_missing_parts_of_a_folder_are_noticed(tmp_path: Path) -> None:

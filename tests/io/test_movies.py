@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import av
 import numpy as np
@@ -276,13 +277,13 @@ def test_a_stream_is_taken_one_picture_at_a_time(tmp_path: Path) -> None:
 @pytest.mark.parametrize("suffix", ALL)
 @pytest.mark.parametrize("count", [3, 5])
 def test_a_wrong_count_leaves_nothing(tmp_path: Path, suffix: str, count: int) -> None:
-    with pytest.raises(ValueError, match=r"of 3 has shape|were announced"):
+    with pytest.raises(InputError, match="were announced"):
         save(iter(from_levels(levels(4))), tmp_path / f"a{suffix}", count=count)
     assert files_in(tmp_path) == []
 
 
 def test_a_stream_needs_a_count(tmp_path: Path) -> None:
-    with pytest.raises(TypeError, match="count"):
+    with pytest.raises(InputError, match="count"):
         save(iter(from_levels(levels())), tmp_path / "a.gif")
 
 
@@ -350,3 +351,38 @@ def test_any_pictures_come_back(tmp_path: Path, wanted: Levels, suffix: str) -> 
     path = tmp_path / f"a{suffix}"
     save(from_levels(wanted), path, overwrite=True)
     np.testing.assert_array_equal(read_levels(path), wanted)
+
+
+def test_what_systems_leave_in_a_folder_of_pictures_does_not_keep_it(tmp_path: Path) -> None:
+    pictures = np.full((2, 3, 4, 3), 0.5, np.float32)
+    save(pictures, tmp_path / "a")
+    (tmp_path / "a" / "1.png").rename(tmp_path / "a" / "1.PNG")
+    for name in (".DS_Store", "Thumbs.db", "desktop.ini", "._1.png"):
+        (tmp_path / "a" / name).write_bytes(b"x")
+    save(pictures, tmp_path / "a", overwrite=True)
+    assert files_in(tmp_path / "a") == ["1.png", "2.png"]
+    (tmp_path / "a" / ".git").mkdir()
+    with pytest.raises(InputError, match="folder of something else"):
+        save(pictures, tmp_path / "a", overwrite=True)
+
+
+GREY = np.full((2, 3, 4, 3), 0.5, np.float32)
+
+
+@pytest.mark.parametrize("name", ["a", "a.npy", "a.gif"])
+@pytest.mark.parametrize(
+    "wrong",
+    [GREY * 1j, GREY.astype(object), GREY.astype(str), [GREY[0], [[1, 2], [3]]], [GREY[0], None], ["a", "b"]],
+    ids=["complex", "objects", "texts", "ragged", "none", "words"],
+)
+def test_pictures_are_real_numbers(tmp_path: Path, name: str, wrong: Any) -> None:
+    with pytest.raises(InputError, match=r"^picture number [12] does not hold real numbers but"):
+        save(wrong, tmp_path / name)
+    assert files_in(tmp_path) == []
+
+
+def test_lists_are_pictures_and_what_has_no_length_needs_a_count(tmp_path: Path) -> None:
+    save(GREY.tolist(), tmp_path / "a.npy")
+    np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), GREY)
+    with pytest.raises(InputError, match="one by one need a count"):
+        save(iter(GREY), tmp_path / "b.npy")

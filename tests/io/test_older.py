@@ -201,7 +201,7 @@ def test_nothing_of_an_older_document_is_changed(told: Told) -> None:
         (LAST, lambda said: {"format_version": 1, "something": "else"}, "not as format 1 was"),
         (LAST, put("views", value=[]), "not as format 1 was"),
         (LAST, put("views", "lamps", value=[[1.0]]), "not as format 1 was"),
-        (LAST, put("views", "row_steps", 0, value=[0, 0, 0]), "one line"),
+        (LAST, put("views", "row_steps", 0, value=[0, 0, 0]), "row_steps_mm of view 1 is 0"),
         (LAST, put("provenance", value=3), "not as format 1 was"),
         (LAST, put("provenance", "lamp", value=[]), "not as format 1 was"),
         (LAST, put("provenance", "black", value="dark"), "not as format 1 was"),
@@ -210,7 +210,7 @@ def test_nothing_of_an_older_document_is_changed(told: Told) -> None:
         (STAGE, put("lighting", "share", value=[[-1.0]]), r"rig\.sums\.share"),
         (THIRD, put("rig", "stops", value=3), "not as format 3 was"),
         (THIN, put("scores", value=3), "not as format 4 was"),
-        (AREA, put("format_version", value=5), "is not an array of uint16"),
+        (AREA, put("format_version", value=5), "not those of uint16"),
     ],
 )
 def test_what_cannot_be_right_is_refused(tmp_path: Path, told: Told, edit: Any, message: str) -> None:
@@ -225,7 +225,9 @@ def test_what_cannot_be_right_is_refused(tmp_path: Path, told: Told, edit: Any, 
 def test_targets_of_another_kind_than_its_format_had_are_refused(tmp_path: Path) -> None:
     with np.load(LAST.path) as arrays:
         np.savez(tmp_path / "a.npz", **{**arrays, "targets": arrays["targets"].astype(np.uint16)})
-    with pytest.raises(InputError, match=r"damaged light cube.*targets are uint16, not 8-bit"):
+    with pytest.raises(
+        InputError, match=r"damaged light cube.*targets is an array of uint16, and its numbers are not those of uint8"
+    ):
         load(tmp_path / "a.npz")
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 from lightcube.errors import InputError
-from lightcube.io import TransparentPictures, _decode, read_pictures, save
+from lightcube.io import DoubtfulFolder, TransparentPictures, _decode, read_pictures, save
 from lightcube.optics.transfer import Transfer, decode, from_levels, to_uint8
 from lightcube.optics.views import spread_angles
 
@@ -148,12 +148,47 @@ def test_a_folder_is_read_in_natural_order(tmp_path: Path, transfer: Transfer) -
     Image.fromarray(second[:3]).save(tmp_path / "View 2.PNG")
     Image.fromarray(first).save(tmp_path / "view 01.tif")
     (tmp_path / ".hidden.png").write_bytes(b"not a picture")
-    (tmp_path / "notes.txt").write_text("not a picture")
     read = read_pictures(tmp_path, transfer=transfer)
     assert read.names == ("view 01", "View 2", "view 10")
     assert read.transfer == transfer
     for image, picture in zip(read.images, (first, second[:3], tenth), strict=True):
         np.testing.assert_array_equal(image, from_levels(picture, transfer))
+
+
+def test_names_are_in_order_by_their_stems(tmp_path: Path) -> None:
+    names = ["a.png", "a1.PNG", "a1b.jpg", "A2.png", "a10.png", "b.webp", "b1.png", "٣.png", "४².png"]
+    for name in names:
+        Image.new("RGB", (3, 2)).save(tmp_path / name)
+    assert read_pictures(tmp_path).names == tuple(Path(name).stem for name in names)
+
+
+def test_what_is_left_out_of_a_folder_is_said_once(tmp_path: Path) -> None:
+    for index in range(2):
+        Image.new("RGB", (3, 2)).save(tmp_path / f"{index}.png")
+    for name in (".DS_Store", "Thumbs.db", "desktop.ini", "Desktop.INI", "._0.png", ".hidden"):
+        (tmp_path / name).write_bytes(b"x")
+    assert len(read_pictures(tmp_path)) == 2
+    for name in ("a.heic", "b.gif", "notes.txt"):
+        (tmp_path / name).write_bytes(b"x")
+    with pytest.warns(DoubtfulFolder, match=r": 3 of what is .* left out: a\.heic, b\.gif, notes\.txt$") as caught:
+        assert len(read_pictures(tmp_path)) == 2
+    assert len(caught) == 1
+    (tmp_path / "z.png").mkdir()
+    (tmp_path / "z.tiff.part").write_bytes(b"x")
+    with pytest.warns(DoubtfulFolder, match=r": 5 of what is .* a\.heic, b\.gif, notes\.txt and 2 more$"):
+        read_pictures(tmp_path)
+
+
+def test_angles_that_may_be_radians_are_told(tmp_path: Path) -> None:
+    for index in range(4):
+        Image.new("RGB", (3, 2)).save(tmp_path / f"{index}.png")
+    for said in ("[0, 1.5708, 3.1416, 4.7124]", "[-1.5, -0.5, 0.5, 1.5]", "[361, 362, 363, 364]"):
+        (tmp_path / "views.toml").write_text(f"angles_deg = {said}")
+        with pytest.warns(DoubtfulFolder, match=r"all angles lie within a few degrees: if they are radians"):
+            read_pictures(tmp_path)
+    for said in ("angles_deg = [0, 3, 6, 9]", "span_deg = 10", "angles_deg = [0, 45, 90, 135]"):
+        (tmp_path / "views.toml").write_text(said)
+        read_pictures(tmp_path)
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
@@ -325,7 +360,7 @@ class TestViewsToml:
             ("elevation_deg = 90", "elevation_deg: "),
             ("elevation_deg = -90", "elevation_deg: "),
             ("elevation_deg = nan", "elevation_deg: "),
-            ("elevations = 3", "elevations: there is no such key"),
+            ("elevations = 3", "elevations: no such key here"),
             ("names = [1, 2, 3]", "names.0: "),
             ("angles_deg = [1, 2", "not a TOML file"),
             ("angles_deg = [1, 2, 3]\xff", "not a TOML file"),

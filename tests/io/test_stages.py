@@ -335,7 +335,7 @@ def test_files_that_are_no_stage(tmp_path: Path) -> None:
     digits = b"x = " + b"9" * 5000
     for content in (b"[[[", b"\xff\xfe", b"x = 1\nx = 2", b"x = " + b"[" * 5000, digits):
         (tmp_path / "a.toml").write_bytes(content)
-        with pytest.raises(InputError, match=r"^a\.toml is not a TOML file: [^\n]*$"):
+        with pytest.raises(InputError, match=r"^a\.toml is not a TOML file( for us)?: [^\n]*$"):
             read_stage(tmp_path / "a.toml")
     (tmp_path / "a.toml").write_bytes(b"")
     with pytest.raises(InputError, match=r"^a\.toml: cube: is missing$"):

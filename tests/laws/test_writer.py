@@ -164,6 +164,7 @@ def test_suffixes_are_known_in_any_case(tmp_path: Path, kind: Kind, suffix: str)
     Output(path, kind).check()
     assert save(thing, path) == path
     assert [each.name for each in tmp_path.iterdir()] == [path.name]
+    example.found(thing, path, suffix)
 
 
 @every_row

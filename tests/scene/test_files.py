@@ -1,6 +1,5 @@
 """Scene files and the meshes they name: what is read, and what is refused with one sentence."""
 
-import builtins
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +14,7 @@ from lightcube.errors import InputError
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.scene.description import parse
 from lightcube.scene.kernels.mesh import mesh_inside
-from lightcube.scene.meshes import is_closed, tidy, tree, volume
+from lightcube.scene.meshes import DoubtfulMesh, is_closed, tidy, tree, volume
 from lightcube.scene.scene import Scene, scene_from_tables
 from lightcube.scene.tracer import trace
 
@@ -246,12 +245,12 @@ def test_files_that_are_no_scene(tmp_path: Path) -> None:
         ("d.toml", b"x = " + b"[" * 5000),
     ):
         (tmp_path / name).write_bytes(content)
-        with pytest.raises(InputError, match=rf"^{name} is not a TOML file"):
+        with pytest.raises(InputError, match=rf"^{name} is not a TOML file( for us)?: "):
             read_scene(tmp_path / name)
-    with pytest.raises(InputError, match="cannot read the scene"):
+    with pytest.raises(InputError, match=r"^reading .*none\.toml failed: No such file"):
         read_scene(tmp_path / "none.toml")
     (tmp_path / "folder.toml").mkdir()
-    with pytest.raises(InputError, match="cannot read the scene"):
+    with pytest.raises(InputError, match="failed: Is a directory"):
         read_scene(tmp_path / "folder.toml")
     with pytest.raises(InputError, match=r"there is no scene 'nothing': give a \.toml file, or one of bloom"):
         read_scene("nothing")
@@ -280,7 +279,9 @@ def test_a_mesh_that_is_not_closed_can_be_seen_but_is_no_glass(tmp_path: Path) -
     with pytest.raises(InputError, match="is not closed"):
         read_scene(path)
     path.write_text(path.read_text().replace("glass = 1", ""))
-    assert trace(read_scene(path), 1, (3, 3))[0, 1, 1, 0] < 1
+    with pytest.warns(DoubtfulMesh, match=r"^mesh\.toml: shapes\.0\.file: open\.stl is not closed"):
+        seen = read_scene(path)
+    assert trace(seen, 1, (3, 3))[0, 1, 1, 0] < 1
 
 
 @pytest.mark.parametrize(
@@ -320,22 +321,6 @@ def test_missing_and_unknown_mesh_files(tmp_path: Path) -> None:
 
 def _mesh_shape(file: str) -> dict[str, Any]:
     return {"type": "mesh", "file": file, "colour": "#fff", "glass": 1}
-
-
-def test_without_the_mesh_reader_a_sentence_says_what_to_install(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    write_stl(tmp_path / "cube.stl", CUBE)
-    real = builtins.__import__
-
-    def without(name: str, *rest: Any) -> Any:
-        if name.startswith("trimesh"):
-            raise ImportError(name)
-        return real(name, *rest)
-
-    monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(InputError, match=r"pip install 'lightcube\[mesh\]'"):
-        read_scene(mesh_scene(tmp_path, "cube.stl"))
 
 
 def test_the_test_cube_is_a_cube() -> None:

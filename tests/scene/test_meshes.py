@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from lightcube.errors import InputError
-from lightcube.scene import letters, meshes
+from lightcube.scene import letters, meshes, polygons
 from lightcube.scene.kernels import solids
 from lightcube.scene.kernels.mesh import mesh_inside, mesh_nearest
 
@@ -182,10 +182,10 @@ def test_a_polygon_is_cut_into_triangles_that_fill_it_once(
     holes = [star(hole, turn)[::-1] + np.array([0.32, 0.02])] + (
         [star(hole)[::-1] - np.array([0.33, 0.01])] if two else []
     )
-    triangles = letters.triangulated(ring, holes)
-    areas = np.array([letters.area(t) for t in triangles])
+    triangles = polygons.triangulated(ring, holes)
+    areas = np.array([polygons.area(t) for t in triangles])
     assert np.all(areas > -1e-12)
-    assert areas.sum() == pytest.approx(letters.area(ring) + sum(letters.area(h) for h in holes))
+    assert areas.sum() == pytest.approx(polygons.area(ring) + sum(polygons.area(h) for h in holes))
     body = meshes.tidy(letters.extruded(ring, holes, 0.5))
     assert meshes.is_closed(body)
     assert meshes.volume(body) == pytest.approx(0.5 * areas.sum(), rel=1e-5)
@@ -212,10 +212,10 @@ SPIKED = np.array([[-10.0, -10], [-0.5, -10], [0, 0], [0.5, -10], [10, -10], [10
 @pytest.mark.parametrize("turn", [0.0, 1.0, 2.5, 4.0])
 def test_holes_that_stand_in_each_others_way_are_holes(holes: list[Array], turn: float) -> None:
     spin = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
-    triangles = letters.triangulated(SPIKED @ spin, [hole @ spin for hole in holes])
-    areas = np.array([letters.area(t) for t in triangles])
+    triangles = polygons.triangulated(SPIKED @ spin, [hole @ spin for hole in holes])
+    areas = np.array([polygons.area(t) for t in triangles])
     assert np.all(areas > -1e-12)
-    assert areas.sum() == pytest.approx(letters.area(SPIKED) + sum(letters.area(h) for h in holes))
+    assert areas.sum() == pytest.approx(polygons.area(SPIKED) + sum(polygons.area(h) for h in holes))
     middles = np.array([hole.mean(axis=0) for hole in holes]) @ spin
     for middle in middles:
         assert not any(letters._contains(t, middle) for t in triangles)

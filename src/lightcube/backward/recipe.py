@@ -109,6 +109,8 @@ class Recipe:
             raise InputError(f"method {solver.name} frames no pictures with a mat: use method display, or no mat")
         if not self.hold_deg >= 0:
             raise InputError(f"a hold must be a number of degrees of at least 0, not {self.hold_deg:g}")
+        if math.isnan(self.enough_db):
+            raise InputError("good enough must be a number of dB, or infinity for never, not nan")
         if self.passes is not None and self.passes < 1:
             raise InputError(f"a solver needs at least 1 pass, not {self.passes}")
         for name in ("hold_deg", "enough_db"):

@@ -92,7 +92,7 @@ def play_angles(
 
 def movie_scale(output: str, rows: int) -> int:
     """An even scale that makes a movie at least 256 pixels high; single pictures and numbers stay as they are."""
-    return 1 if PurePath(output).suffix in ("", ".npy", ".png") else 2 * -(-128 // rows) if rows < 256 else 1
+    return 1 if PurePath(output).suffix.lower() in ("", ".npy", ".png") else 2 * -(-128 // rows) if rows < 256 else 1
 
 
 def short(value: object) -> str:

@@ -12,6 +12,7 @@ __getattr__, __dir__, __all__ = when_used(
         "Output": "outputs",
         "save": "outputs",
         "ChangedPictures": "pictures",
+        "DoubtfulFolder": "pictures",
         "TransparentPictures": "pictures",
         "read_pictures": "pictures",
         "Remembered": "remembered",

@@ -4,7 +4,7 @@ from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures
 from lightcube.io.outputs import Output, save
-from lightcube.io.pictures import ChangedPictures, TransparentPictures, read_pictures
+from lightcube.io.pictures import ChangedPictures, DoubtfulFolder, TransparentPictures, read_pictures
 from lightcube.io.remembered import Remembered
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.stages import is_stage, read_stage, read_stage_targets, stage_pictures
@@ -12,6 +12,7 @@ from lightcube.io.stages import is_stage, read_stage, read_stage_targets, stage_
 __all__ = [
     "ChangedPictures",
     "ClippedPictures",
+    "DoubtfulFolder",
     "Output",
     "Remembered",
     "TransparentPictures",

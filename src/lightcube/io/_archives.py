@@ -1,9 +1,5 @@
 """NumPy's archives of arrays (.npz), read without trust."""
 
-import lzma
-import tokenize
-import zipfile
-import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import IO
@@ -11,13 +7,6 @@ from typing import IO
 from numpy.lib.npyio import NpzFile
 
 from lightcube.errors import InputError
-
-#: What zipfile, its decompressors, NumPy and whoever reads an array raise where a file is not what it should be;
-#: NotImplementedError is for a way of compression that zipfile does not know.
-_WRONG = (
-    *(zipfile.BadZipFile, NotImplementedError, EOFError, zlib.error, lzma.LZMAError),
-    *(ValueError, TypeError, KeyError, RecursionError, tokenize.TokenError),
-)
 
 
 @contextmanager
@@ -38,7 +27,7 @@ def archive(file: IO[bytes], where: object, damaged: Callable[[str], InputError]
         raise
     except MemoryError as error:
         raise InputError(f"{where} does not fit into this machine's memory: open it on a larger one") from error
-    except (*_WRONG, OSError) as error:
+    except Exception as error:  # zipfile, its decompressors and NumPy raise whatever they trip over
         if isinstance(error, OSError) and error.errno is not None:  # the disk's; bzip2's own errors have no number
             raise
-        raise damaged(" ".join(str(error).split())[:100]) from error
+        raise damaged(" ".join(str(error).split())[:100] or type(error).__name__) from error

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from lightcube.errors import InputError
 from lightcube.io import _older
 from lightcube.io._rig import RigJson, rig_to_json
+from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube, Status
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
@@ -76,17 +77,24 @@ def plain(value: Any) -> Any:
     return value if value is None or isinstance(value, bool | int | str) else str(value)
 
 
-def from_json(path: Path, document: object, extinction: NDArray[np.float32], targets: NDArray[Any] | None) -> Cube:
-    """Build the cube again; `InputError` naming `path` and the key where the document cannot be right."""
-    newest, targets = _newest(path, check_version(path, document), targets)
+def from_json(path: Path, document: object, extinction: NDArray[Any], targets: NDArray[Any] | None) -> Cube:
+    """Build the cube again; `InputError` naming `path` and the key where the document cannot be right.
+
+    Arrays may be of wider types than they were written as: other programs rewrite them so.
+    """
+    said_of = check_version(path, document)
+    if targets is not None:
+        targets = _narrowed(path, "targets", targets, _older.targets_dtype(said_of))
+    newest, targets = _newest(path, said_of, targets)
     try:
         said = _CubeJson.model_validate(newest)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
         raise damaged(path, f"{key}: {first['msg'][0].lower()}{first['msg'][1:]}") from error
-    if extinction.dtype != np.float32 or extinction.ndim != 4:
-        raise damaged(path, f"extinction is {extinction.dtype} with {extinction.ndim} axes, not float32 with 4")
+    if extinction.ndim != 4:
+        raise damaged(path, f"extinction has {extinction.ndim} axes, not 4")
+    extinction = _narrowed(path, "extinction", extinction, np.dtype(np.float32))
     try:
         _, nz, ny, nx = extinction.shape
         return Cube(
@@ -102,8 +110,21 @@ def from_json(path: Path, document: object, extinction: NDArray[np.float32], tar
             said.status,
             said.hold_deg,
         )
-    except ValueError as error:  # InputError among them
+    except Exception as error:  # InputError among them, and whatever NumPy makes of numbers that no array holds
         raise damaged(path, str(error)) from error
+
+
+def _narrowed(path: Path, name: str, array: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+    """An array as the `dtype` that it was written as; `InputError` where its numbers are none of those."""
+    if array.dtype == dtype:
+        return array
+    alike = array.dtype.itemsize in (dtype.itemsize, 4, 8)  # levels of 8 bits do not pass for those of 16
+    if alike and array.dtype.kind in ("f" if dtype.kind == "f" else "iu"):
+        with np.errstate(over="ignore"):  # what overflows is no longer finite, and is told so
+            same = array.astype(dtype)
+        if dtype.kind == "f" or np.array_equal(same, array):
+            return locked(same)
+    raise damaged(path, f"{name} is an array of {array.dtype}, and its numbers are not those of {dtype}")
 
 
 def _newest(

@@ -60,8 +60,6 @@ def newest(document: Mapping[str, Any], targets: NDArray[Any] | None) -> tuple[D
     """
     said, found = dict(document), _format(document)
     if found <= _EIGHT_BIT and targets is not None:
-        if targets.dtype != np.uint8:
-            raise ValueError(f"targets are {targets.dtype}, not 8-bit numbers")
         targets = targets * np.uint16(257)  # 255 becomes 65535
     for number in range(found, _EIGHT_BIT + 1):
         said = _STEPS[number](said) | {"format_version": number + 1}

@@ -7,7 +7,6 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from lightcube.errors import InputError
 from lightcube.optics.rig import Rig
 from lightcube.optics.tables import Fading, Lamps, Screens, Stops, Sums, Turning
 from lightcube.optics.views import Views
@@ -99,7 +98,6 @@ class RigJson(BaseModel):
         said = {name: _infinite(part) for name, part in self.model_dump().items()}
         views = said["views"]
         made = Views(**{**views, "picture_shape": tuple(views["picture_shape"])})
-        _check_light(made)
         return Rig(
             made,
             Sums(**said["sums"]),
@@ -132,14 +130,3 @@ def _infinite(value: Any) -> Any:
     if isinstance(value, list):
         return [_infinite(item) for item in value]
     return math.inf if value is None else value
-
-
-def _check_light(views: Views) -> None:
-    """Raise `InputError` where a lamp shines nowhere or a screen has no size."""
-    lamps = views.lamps
-    if not np.all(np.isin(lamps[:, 3], (0.0, 1.0))):
-        raise InputError("lamps: the fourth number of a lamp is 0 or 1")
-    if not np.all((lamps[:, 3] == 1) | np.any(lamps[:, :3] != 0, axis=1)):
-        raise InputError("lamps: a direction of light is zero")
-    if not np.all(np.any(np.cross(views.column_steps_mm, views.row_steps_mm) != 0, axis=1)):
-        raise InputError("column_steps_mm: a screen's columns and rows run along one line")

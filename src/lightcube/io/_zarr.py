@@ -8,26 +8,27 @@ import concurrent.futures
 import math
 import zipfile
 from collections.abc import Callable, Coroutine
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any, TypeVar
 
 import numpy as np
 import zarr
 from numpy.typing import NDArray
 from zarr.codecs import ZstdCodec
-from zarr.storage import LocalStore, ZipStore
+from zarr.storage import LocalStore, StorePath, ZipStore
 
 from lightcube.errors import InputError
-from lightcube.io import _metadata, _older
+from lightcube.io import _metadata
 from lightcube.io._files import system_errors
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 
 Value = TypeVar("Value")
-Parts = tuple[object, NDArray[np.float32], NDArray[Any] | None]
+Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
 
 #: A chunk is as many whole slices as fit into this many bytes, at least one.
 _CHUNK_BYTES = 8 << 20
+_ROOT = "zarr.json"
 _IMAGE, _TARGETS, _ATTRIBUTE = "0", "targets", "lightcube"
 _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
 
@@ -39,7 +40,7 @@ def write_zarr(folder: Path, cube: Cube) -> None:
 
 def read_zarr(path: Path) -> Cube:
     """Read a cube from a Zarr folder."""
-    if not (path / "zarr.json").is_file():
+    if not (path / _ROOT).is_file():
         raise InputError(f"{path} is no light cube: there is no zarr.json in it, give a folder that lightcube wrote")
     return _metadata.from_json(path, *_reading(path, lambda: _read(path, LocalStore(path, read_only=True))))
 
@@ -54,15 +55,30 @@ def write_zarr_zip(file: Path, cube: Cube) -> None:
 def zip_folder(folder: Path, file: Path) -> None:
     """Put a Zarr folder into a zip archive, its root metadata first."""
     members = sorted(member for member in folder.rglob("*") if member.is_file())
-    members.sort(key=lambda member: (member.name != "zarr.json", len(member.parts)))
+    members.sort(key=lambda member: (member.name != _ROOT, len(member.parts)))
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for member in members:
             archive.write(member, member.relative_to(folder).as_posix())
 
 
 def read_zarr_zip(path: Path) -> Cube:
-    """Read a cube from a Zarr group in a zip archive."""
-    return _metadata.from_json(path, *_reading(path, lambda: _read(path, ZipStore(path, mode="r"))))
+    """Read a cube from a Zarr group in a zip archive, or from the one folder in it that holds such a group."""
+    return _metadata.from_json(path, *_reading(path, lambda: _read(path, ZipStore(path, mode="r"), _inside(path))))
+
+
+def _inside(path: Path) -> str:
+    """The folder in a zip archive that is the Zarr group: none, or that which was packed as a whole.
+
+    What systems pack beside it counts for nothing; `InputError` where there are two groups or none.
+    """
+    with zipfile.ZipFile(path) as archive:
+        roots = [name.removesuffix(_ROOT) for name in archive.namelist() if PurePosixPath(name).name == _ROOT]
+    roots = [root for root in roots if not root.startswith("__MACOSX/")]
+    outer = [root for root in roots if not any(root != other and root.startswith(other) for other in roots)]
+    if len(outer) != 1:
+        held = f"{len(outer)} Zarr groups" if outer else "no Zarr group"
+        raise InputError(f"{path} holds {held}: give a zip archive of one cube")
+    return outer[0].rstrip("/")
 
 
 async def _write(folder: Path, cube: Cube) -> None:
@@ -127,27 +143,27 @@ def _ome(cube: Cube) -> dict[str, Any]:
     }
 
 
-async def _read(path: Path, store: LocalStore | ZipStore) -> Parts:
-    """Metadata, extinction and targets."""
+async def _read(path: Path, store: LocalStore | ZipStore, inside: str = "") -> Parts:
+    """Metadata, extinction and targets of the group in a store, or in a folder inside it."""
     try:
-        group = await zarr.AsyncGroup.open(store, zarr_format=3)
+        group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
         document = group.attrs.get(_ATTRIBUTE)
         _metadata.check_version(path, document)
-        extinction = await _array(path, group, _IMAGE, np.dtype(np.float32))
+        extinction = await _array(path, group, _IMAGE)
         if extinction is None:
             raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await _array(path, group, _TARGETS, _older.targets_dtype(document))
+        return document, extinction, await _array(path, group, _TARGETS)
     finally:
         store.close()
 
 
-async def _array(path: Path, group: zarr.AsyncGroup, name: str, dtype: np.dtype[Any]) -> NDArray[Any] | None:
+async def _array(path: Path, group: zarr.AsyncGroup, name: str) -> NDArray[Any] | None:
     """All of an array, or None where there is none; `InputError` where chunks are missing."""
     if not await group.contains(name):
         return None
     array = await group.getitem(name)
-    if not isinstance(array, zarr.AsyncArray) or array.dtype != dtype or array.ndim != 4:
-        raise _metadata.damaged(path, f"{name!r} is not an array of {dtype} with 4 axes")
+    if not isinstance(array, zarr.AsyncArray) or array.ndim != 4:
+        raise _metadata.damaged(path, f"{name!r} is not an array with 4 axes")
     wanted = math.prod(-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True))
     if await array.nchunks_initialized() != wanted:
         raise _metadata.damaged(path, f"parts of its array {name!r} are missing")

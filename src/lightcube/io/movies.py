@@ -14,7 +14,7 @@ from lightcube.errors import InputError
 from lightcube.io import _encoders
 from lightcube.io._files import Writer
 from lightcube.io._places import Place, names_in
-from lightcube.io.pictures_folder import VIEWS_FILE, views_text
+from lightcube.io.pictures_folder import VIEWS_FILE, is_left_by_systems, views_text
 from lightcube.optics.transfer import Transfer, check_transfer, encode
 from lightcube.optics.views import Views
 
@@ -110,7 +110,7 @@ def _count(pictures: Iterable[Picture], count: int | None, each: Mapping[str, Si
     """How many pictures there are; `InputError` where there are not as many of `each`."""
     if count is None:
         if not isinstance(pictures, Sized):
-            raise TypeError("pictures without a length need a count")
+            raise InputError("pictures that are made one by one need a count: say how many there are")
         count = len(pictures)
     for what, given in each.items():
         if given is not None and len(given) != count:
@@ -140,15 +140,32 @@ def _checked(pictures: Iterable[Picture], count: int, scale: int) -> Iterator[Pi
     """Yield exactly `count` finite pictures of one shape, enlarged."""
     shape: tuple[int, ...] | None = None
     number = 0
-    for number, picture in enumerate(pictures, 1):
+    for number, given in enumerate(pictures, 1):
+        picture = _real(given, number)
         shape = shape or picture.shape
-        if picture.ndim != 3 or picture.shape != shape or picture.size == 0 or number > count:
-            raise ValueError(f"picture {number} of {count} has shape {picture.shape}, the first one {shape}")
+        if number > count:
+            raise InputError(f"more than the {count} pictures that were announced came: mend the count")
+        if picture.ndim != 3 or picture.shape != shape or picture.size == 0:
+            raise InputError(
+                f"picture number {number} has shape {picture.shape} and the first one {shape}: give pictures of one "
+                "shape (rows, columns, channels)"
+            )
         if not np.all(np.isfinite(picture)):
             raise InputError(f"picture number {number} holds NaN or infinite values and cannot be written: mend it")
         yield picture.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else picture
     if number != count:
-        raise ValueError(f"{count} pictures were announced and {number} came")
+        raise InputError(f"{count} pictures were announced and {number} came: mend the count")
+
+
+def _real(picture: Picture, number: int) -> Picture:
+    """A picture, or a list of lists, as an array of real numbers; `InputError` where it is none."""
+    try:
+        array = np.asarray(picture)
+    except ValueError:  # rows of unequal lengths
+        array = np.asarray(None)
+    if array.dtype.kind not in "biuf":
+        raise InputError(f"picture number {number} does not hold real numbers but {array.dtype}: give linear light")
+    return array
 
 
 def _levels(pictures: Iterable[Picture], transfer: Transfer, clipped: _Clipped) -> Iterator[Levels]:
@@ -207,8 +224,11 @@ def _write_npy(path: Path, pictures: Iterable[Picture], job: _Job, clipped: _Cli
 
 
 def is_pictures_folder(path: Place) -> bool:
-    """Whether a folder holds nothing but what `_write_folder` writes."""
-    return all(name == VIEWS_FILE or PurePath(name).suffix == ".png" for name in names_in(path))
+    """Whether a folder holds nothing but what `_write_folder` writes, and what systems leave."""
+    return all(
+        name == VIEWS_FILE or PurePath(name).suffix.lower() == ".png" or is_left_by_systems(name)
+        for name in names_in(path)
+    )
 
 
 WRITERS = {

@@ -15,7 +15,16 @@ from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._frames import Levels
 from lightcube.io._places import fetched, place
 from lightcube.io._video import read_video
-from lightcube.io.pictures_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
+from lightcube.io.pictures_folder import (
+    PICTURE_SUFFIXES,
+    VIEWS_FILE,
+    FolderViews,
+    is_picture,
+    left_out,
+    may_be_radians,
+    picture_files,
+    read_views,
+)
 from lightcube.optics.arrays import locked
 from lightcube.optics.checks import checked
 from lightcube.optics.transfer import Transfer, check_transfer, decode
@@ -36,6 +45,10 @@ class TransparentPictures(UserWarning):
 
 class ChangedPictures(UserWarning):
     """Pictures that were read are not of the kind that a cube shows, and were changed."""
+
+
+class DoubtfulFolder(UserWarning):
+    """Not all of a folder was read, or its angles may not be degrees."""
 
 
 @checked
@@ -67,6 +80,9 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
         nits; and where it is interlaced, of which one field is kept.
     TransparentPictures
         Once, where pictures are not opaque: they are put on white, in linear light.
+    DoubtfulFolder
+        Where other files in a folder were left out, hidden ones and what systems leave not counted; and where all
+        angles lie so near to each other that they may be radians.
 
     Raises
     ------
@@ -82,8 +98,17 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     transfer = check_transfer(transfer)
     with fetched(place(path), _is_wanted) as local:
         pictures, transparent, notes = _read(local, transfer, least)
+        others = left_out(local)
     for note in notes:
         warnings.warn(f"{path} {note}", ChangedPictures, stacklevel=3)
+    if others:
+        warnings.warn(f"{path}: {others}", DoubtfulFolder, stacklevel=3)
+    if may_be_radians(pictures.angles_deg):
+        warnings.warn(
+            f"{path}: all angles lie within a few degrees: if they are radians, multiply them by 57.2958",
+            DoubtfulFolder,
+            stacklevel=3,
+        )
     if transparent:
         warnings.warn(
             f"{transparent} of {len(pictures)} pictures in {path} are partly transparent: they were put on white",
@@ -95,7 +120,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
 
 def _is_wanted(name: str) -> bool:
     """Whether a file of a folder is read."""
-    return name == VIEWS_FILE or (Path(name).suffix.lower() in PICTURE_SUFFIXES and not name.startswith("."))
+    return name == VIEWS_FILE or is_picture(name)
 
 
 def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int, Sequence[str]]:

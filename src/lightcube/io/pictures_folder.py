@@ -1,11 +1,11 @@
 """A folder of pictures: natural order, and `views.toml` with the angles they are to be seen at."""
 
 import json
+import math
 import re
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Annotated
 
 import numpy as np
@@ -15,11 +15,20 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from lightcube.errors import InputError
 from lightcube.io._files import system_errors
 from lightcube.io._newer import SUFFIXES
+from lightcube.io._toml import read_tables
 from lightcube.optics.grid import check_elevation
 from lightcube.optics.views import Views, distinct_angles, spread_angles
+from lightcube.scene.description import sentence
 
 VIEWS_FILE = "views.toml"
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", *SUFFIXES)
+
+#: What systems leave in folders that people look into, in small letters.
+_LEFT_BY_SYSTEMS = (".ds_store", "thumbs.db", "desktop.ini", ".directory", ".localized", "__macosx", "@eadir")
+#: So many files that are left out are named.
+_NAMED = 3
+#: Angles that lie within a whole turn in radians may be some.
+_TURN_RAD = 2 * math.pi + 0.01
 
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 
@@ -45,16 +54,48 @@ class FolderViews:
 
 
 def natural_key(name: str) -> tuple[list[tuple[int, str]], str]:
-    """Sort key that puts ``"2"`` before ``"10"`` and ignores case."""
-    parts = re.split(r"([0-9]+)", name.casefold())
+    """Sort key of a file's name that puts ``"2"`` before ``"10"``, a name before longer ones, and ignores case."""
+    parts = re.split(r"([0-9]+)", PurePath(name).stem.casefold())
     return [(int(part), "") if index % 2 else (0, part) for index, part in enumerate(parts)], name
+
+
+def is_left_by_systems(name: str) -> bool:
+    """Whether a file's name is one of those that systems leave in any folder."""
+    return name.lower() in _LEFT_BY_SYSTEMS or name.startswith("._")
+
+
+def is_picture(name: str) -> bool:
+    """Whether a file of a folder is read as a picture, by its name."""
+    return PurePath(name).suffix.lower() in PICTURE_SUFFIXES and not name.startswith(".")
+
+
+def left_out(path: Path) -> str:
+    """Say which files of a folder are not read, but for hidden ones and what systems leave; nothing where all are."""
+    if not path.is_dir():
+        return ""
+    with system_errors(path, "reading"):
+        names = (entry.name for entry in path.iterdir() if not is_picture(entry.name) or not entry.is_file())
+        others = sorted(
+            name for name in names if name[0] != "." and name != VIEWS_FILE and not is_left_by_systems(name)
+        )
+    if not others:
+        return ""
+    more = f" and {len(others) - _NAMED} more" if len(others) > _NAMED else ""
+    return f"{len(others)} of what is there is no picture and was left out: {', '.join(others[:_NAMED])}{more}"
+
+
+def may_be_radians(angles_deg: NDArray[np.float64] | None) -> bool:
+    """Whether angles, three at least, lie as near to each other as if they were not in degrees."""
+    return angles_deg is not None and len(angles_deg) > 2 and float(np.ptp(angles_deg)) <= _TURN_RAD
 
 
 def picture_files(folder: Path) -> list[Path]:
     """Return the picture files of `folder` in natural order, hidden ones left out; `InputError` where there is none."""
     with system_errors(folder, "reading"):
-        visible = [entry for entry in folder.iterdir() if not entry.name.startswith(".")]
-        found = [entry for entry in visible if entry.suffix.lower() in PICTURE_SUFFIXES and entry.is_file()]
+        visible = [
+            entry for entry in folder.iterdir() if not entry.name.startswith(".") and not is_left_by_systems(entry.name)
+        ]
+        found = [entry for entry in visible if is_picture(entry.name) and entry.is_file()]
     if not visible:
         raise InputError(f"the folder {folder} is empty: put at least two pictures into it")
     if not found:
@@ -102,18 +143,11 @@ def read_views(folder: Path, count: int) -> FolderViews:
 def _parse(file: Path) -> _ViewsToml:
     """Read and check the keys of one `views.toml`."""
     try:
-        with system_errors(file, "reading"):
-            text = file.read_bytes().decode("utf-8")
-        return _ViewsToml.model_validate(tomllib.loads(text))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(f"{file} is not a TOML file: {error}") from error
+        return _ViewsToml.model_validate(read_tables(file, str(file)))
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        if first["type"] == "extra_forbidden":
-            known = ", ".join(_ViewsToml.model_fields)
-            raise InputError(f"{file}: {key}: there is no such key, use {known}") from error
-        raise InputError(f"{file}: {key}: {first['msg'][0].lower()}{first['msg'][1:]}") from error
+        first = error.errors(include_url=False)[0]
+        known = f" (there are {', '.join(_ViewsToml.model_fields)})" if first["type"] == "extra_forbidden" else ""
+        raise InputError(f"{file}: {sentence(first)}{known}") from error
 
 
 def views_text(views: Views | None, names: Sequence[str] | None) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -17,6 +16,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from lightcube.errors import InputError
 from lightcube.io._files import system_errors
+from lightcube.io._toml import read_tables
 from lightcube.io.pictures import read_pictures
 from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
@@ -227,14 +227,8 @@ def _about(where: str) -> Iterator[None]:
 
 def _parse(file: Path) -> StageFile:
     """Read and check the tables of a stage file."""
-    with system_errors(file, "reading"):
-        data = file.read_bytes()
     try:
-        tables = tomllib.loads(data.decode("utf-8"))
-    except (ValueError, RecursionError) as error:  # a number of thousands of digits is no more than a ValueError
-        raise InputError(f"{file.name} is not a TOML file: {error}") from None
-    try:
-        return StageFile.model_validate(tables)
+        return StageFile.model_validate(read_tables(file, file.name))
     except ValidationError as error:
         raise InputError(f"{file.name}: {_sentence(error.errors(include_url=False)[0])}") from None
 
@@ -246,7 +240,6 @@ def _sentence(problem: ErrorDetails) -> str:
         return f"{place[0]}: must be a list of tables: begin each with [[{place[0]}]]"
     if place[0] in _LISTS and len(place) > 1:
         about, place = f"{place[0]} {int(place[1]) + 1}: ", place[2:]
-    place = tuple(part if str(part).isprintable() else repr(part) for part in place)
     said = about + sentence({**problem, "loc": place})
     small = isinstance(value, str | float) or (isinstance(value, int) and abs(value) < 10**15)
     if problem["type"] == "extra_forbidden" or not small or len(repr(value)) > 60:

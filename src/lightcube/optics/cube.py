@@ -15,6 +15,7 @@ from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
+from lightcube.optics.views import check_pixels, check_reach
 
 Status = Literal["complete", "interrupted"]
 
@@ -79,6 +80,8 @@ class Cube:
             raise InputError(
                 "extinction holds negative or non-finite numbers: every voxel needs a finite value of at least 0"
             )
+        check_reach(self.rig.views, self.grid)
+        check_pixels(self.rig.views, self.grid)
         pictures, channels = len(self.rig), len(extinction)
         if self.rig.sums.share.shape[1] not in (1, channels):
             raise InputError(f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {channels}")

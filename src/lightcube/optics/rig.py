@@ -90,6 +90,7 @@ class Rig:
 
     def __post_init__(self) -> None:
         check_fields(self)
+        self.views.check_screens()
         views = len(self.views)
         if not len(self.sums.picture) == len(self.fading.cosine) == len(self.turning.turns) == views:
             raise InputError(f"the parts of a rig are not all of {views} views")

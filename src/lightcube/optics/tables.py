@@ -18,6 +18,9 @@ POWER_MIN, POWER_MAX = 1e-4, 16.0
 _ANY = -1
 #: No lamp may be stronger.
 POWER_MOST = 1e6
+#: No number is larger, but for lengths that may be endless.
+_LARGEST = 1e12
+_ENDLESS = ("reach_mm", "falloff_mm", "full_at_mm")
 
 
 class _Columns:
@@ -32,6 +35,9 @@ class _Columns:
             shape, found = tuple(count if n is None else n for n in asked), getattr(self, name).shape
             if len(found) != len(shape) or any(n not in (m, _ANY) for m, n in zip(found, shape, strict=True)):
                 raise InputError(f"{name} of a rig has shape {found}, not {shape}")
+            size = np.abs(getattr(self, name))
+            if not np.all((size <= _LARGEST) | ((name in _ENDLESS) & np.isinf(size))):
+                raise InputError(f"{name} of a rig holds NaN or numbers beyond {_LARGEST:g}: mend it")
 
 
 @dataclass(frozen=True, eq=False)

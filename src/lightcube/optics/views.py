@@ -12,9 +12,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Indices, Numbers, Reals, as_indices, as_numbers, keep
+from lightcube.optics.arrays import Flags, Indices, Numbers, Reals, as_indices, as_numbers, keep
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, check_elevation, check_pixel, raster_shape
+
+#: Lengths in mm lie between these: squares of squares of others are no numbers.
+SHORTEST_MM, FURTHEST_MM = 1e-18, 1e18
+#: Columns and rows of a screen run along one line where the sine between them is no larger.
+_ALONG = 1e-9
+#: A picture has no more rows or columns.
+_MOST_PIXELS = 1_000_000
+#: Lamps and screens stand no further from a cube than so many times its longest side: float64 counts no further.
+_MOST_SIDES = 1e15
+#: A cube's pixels are no smaller than this in its voxels' widths: else there is no end to the pixels of its shadow.
+_LEAST_PIXEL = 1e-4
+#: No angle is larger: float64 would not tell a thousandth of a degree.
+_MOST_DEG = 1e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +52,8 @@ class Views:
     Raises
     ------
     InputError
-        Where vectors are not finite or not as many as lamps, or a picture has no pixel.
+        Where vectors are not finite, not as many as lamps, or beyond 1e18 mm, a lamp shines nowhere, or a picture's
+        sides are not 1 to a million pixels.
 
     Examples
     --------
@@ -75,9 +89,38 @@ class Views:
                 raise InputError(
                     f"{name} of views must be finite numbers of shape ({count}, {width}), not {array.shape}"
                 )
-        if min(self.picture_shape) < 1:
-            raise InputError(f"a picture's shape is two whole numbers of at least 1, not {self.picture_shape}")
+        self._check_lengths()
+        if not 1 <= min(self.picture_shape) <= max(self.picture_shape) <= _MOST_PIXELS:
+            raise InputError(f"a picture's shape is two whole numbers from 1 to a million, not {self.picture_shape}")
         object.__setattr__(self, "picture_shape", tuple(int(n) for n in self.picture_shape))
+
+    def _check_lengths(self) -> None:
+        """Raise `InputError` where a length cannot be computed with, or a lamp shines nowhere."""
+        if not np.all(np.isin(self.lamps[:, 3], (0.0, 1.0))):
+            raise InputError("lamps: the fourth number of a lamp is 0, a direction, or 1, a place")
+        for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
+            sizes = np.max(np.abs(getattr(self, name)), axis=1)
+            self._refuse(name, sizes, sizes > FURTHEST_MM)
+        directions = np.max(np.abs(self.lamps[:, :3]), axis=1)
+        self._refuse("lamps", directions, (self.lamps[:, 3] == 0) & (directions < SHORTEST_MM))
+
+    def check_screens(self) -> None:
+        """Raise `InputError` where a picture has no size."""
+        for name in ("column_steps_mm", "row_steps_mm"):
+            sizes = np.max(np.abs(getattr(self, name)), axis=1)
+            self._refuse(name, sizes, sizes < SHORTEST_MM)
+        across, down = unit(self.column_steps_mm), unit(self.row_steps_mm)
+        if np.any(np.linalg.norm(np.cross(across, down), axis=1) <= _ALONG):
+            raise InputError("column_steps_mm: a screen's columns and rows run along one line: give it a size")
+
+    def _refuse(self, name: str, sizes: Reals, wrong: Flags) -> None:
+        """Raise `InputError` with the first of the sizes that are wrong."""
+        if np.any(wrong):
+            view = int(np.argmax(wrong))
+            raise InputError(
+                f"{name} of view {view + 1} is {sizes[view]:g}, and must be between {SHORTEST_MM:g} and "
+                f"{FURTHEST_MM:g} mm: mend it"
+            )
 
     def __len__(self) -> int:
         return len(self.lamps)
@@ -157,8 +200,11 @@ def check_angles(angles_deg: Numbers) -> Reals:
     vector = np.atleast_1d(as_numbers(angles_deg, "angles"))
     if vector.ndim != 1 or vector.size == 0:
         raise InputError("angles must be a list of at least one number of degrees")
-    if not np.all(np.isfinite(vector)):
-        raise InputError(f"angle number {int(np.argmin(np.isfinite(vector))) + 1} is not a finite number of degrees")
+    sane = np.abs(vector) <= _MOST_DEG
+    if not np.all(sane):
+        raise InputError(
+            f"angle number {int(np.argmin(sane)) + 1} is not a finite number of degrees below {_MOST_DEG:g}"
+        )
     return vector
 
 
@@ -217,6 +263,29 @@ def check_lamp(lamp_deg: float, screen_mm: float | None) -> None:
         raise InputError(f"a screen {screen_mm:g} mm behind the turning cube would stand inside it: use at least 0")
 
 
+def check_reach(views: Views, grid: Grid) -> None:
+    """Raise `InputError` where lamps or screens are too far from a cube to be computed with."""
+    most_mm = _MOST_SIDES * grid.longest * grid.voxel_mm
+    places = np.where(views.lamps[:, 3:] == 1, views.lamps[:, :3], 0.0)
+    half = np.multiply(views.picture_shape, 0.5)
+    edges = np.abs(views.origins_mm) + half[1] * np.abs(views.column_steps_mm) + half[0] * np.abs(views.row_steps_mm)
+    for what, lengths in (("lamp", np.abs(places)), ("picture", edges)):
+        furthest = np.max(lengths, axis=1)
+        if np.any(furthest > most_mm):
+            view = int(np.argmax(furthest))
+            raise InputError(
+                f"the {what} of view {view + 1} reaches {furthest[view]:g} mm from the cube's middle, and "
+                f"{most_mm:g} mm is the most for a cube of {grid.longest * grid.voxel_mm:g} mm: move it nearer"
+            )
+
+
+def check_pixels(views: Views, grid: Grid) -> None:
+    """Raise `InputError` where pixels are too small for their number to have an end."""
+    smallest = min(views.pixel_in(grid))
+    if smallest < _LEAST_PIXEL:
+        raise InputError(f"a pixel is {smallest:g} voxels large: make it {_LEAST_PIXEL:g} at least")
+
+
 def _turned(angles_deg: Reals, vector: tuple[float, float, float]) -> Reals:
     """`vector` of the room in the axes of a cube that was turned counter-clockwise by `angles_deg` (degrees)."""
     cos, sin = _cos_sin(angles_deg)
@@ -235,9 +304,9 @@ def _cos_sin(degrees: Reals) -> tuple[Reals, Reals]:
 
 
 def unit(vector: Numbers) -> Reals:
-    """The vector of length 1 that points the same way."""
+    """The vector, or each of ``(n, 3)`` vectors, of length 1 that points the same way."""
     array = np.asarray(vector, np.float64)
-    return np.asarray(array / np.linalg.norm(array))
+    return np.asarray(array / np.linalg.norm(array, axis=-1, keepdims=True))
 
 
 def rotations(axis: Numbers, degrees: Reals) -> Reals:

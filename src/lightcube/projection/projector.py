@@ -22,7 +22,7 @@ from lightcube.optics.arrays import Counts, Flags, Floats, Reals, as_numbers
 from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
-from lightcube.optics.views import Views
+from lightcube.optics.views import Views, check_reach
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -114,6 +114,7 @@ class Projector:
         from lightcube.projection.stacked import StackedBeams, is_stacked
 
         views = rig if isinstance(rig, Views) else rig.views
+        check_reach(views, grid)
         self.grid, self.views = grid, views
         self.domain_shape, self.range_shape = grid.shape, (len(views), *views.picture_shape)
         heard = None if heard is None else np.asarray(heard, np.bool_)

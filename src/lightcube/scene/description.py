@@ -377,6 +377,8 @@ def sentence(problem: ErrorDetails) -> str:
     return f"{path}: {message}" if path else message
 
 
+#: So many letters of a key are said.
+_LONGEST_KEY = 60
 _COMPARISONS = {
     "greater_than": (">", "gt"),
     "greater_than_equal": (">=", "ge"),
@@ -391,6 +393,7 @@ _MESSAGES = {
     "tuple_type": "must be a list",
     "model_type": "must be a table",
     "model_attributes_type": "must be a table",
+    "list_type": "must be a list",
     "dict_type": "must be a table",
     "float_type": "must be a number",
     "int_type": "must be a whole number",
@@ -401,9 +404,15 @@ _MESSAGES = {
 }
 
 
+def _shown(key: str) -> str:
+    """A key as one can read it: not too long, and without what moves a terminal's cursor."""
+    key = key if len(key) <= _LONGEST_KEY else f"{key[:_LONGEST_KEY]}..."
+    return key if key.isprintable() else repr(key)
+
+
 def _path(place: Sequence[int | str]) -> str:
     """Key path without the type names that pydantic puts after a table that may be of several types."""
-    parts = [str(part) for part in place]
+    parts = [_shown(str(part)) for part in place]
     typed = {2: "shapes lights", 1: "camera"}
     return ".".join(
         part for i, part in enumerate(parts) if not (i in typed and parts[0] in typed[i].split() and len(parts) > i)

@@ -9,6 +9,10 @@ from lightcube.errors import InputError
 _LEAF = 4
 
 
+class DoubtfulMesh(UserWarning):
+    """A mesh may not be what is meant: it is open, or not all that its file holds could be read."""
+
+
 def tidy(triangles: NDArray[np.floating], name: str = "mesh") -> NDArray[np.float64]:
     """Triangles ``(n, 3, 3)`` with corners that nearly coincide made equal.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,7 +14,7 @@ from lightcube.optics.arrays import Floats, Reals, owned
 from lightcube.optics.checks import check_fields
 from lightcube.scene.description import Mesh, SceneFile, Text, parse
 from lightcube.scene.letters import text_mesh
-from lightcube.scene.meshes import is_closed, outward, tidy
+from lightcube.scene.meshes import DoubtfulMesh, is_closed, outward, tidy
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +29,11 @@ class Scene:
         Triangles ``(n, 3, 3)`` of each mesh file that the description names, by the name written there.
     name
         The scene's name, for messages.
+
+    Warns
+    -----
+    DoubtfulMesh
+        Where an opaque mesh is not closed.
 
     Raises
     ------
@@ -67,6 +73,11 @@ class Scene:
                 f"{where}: {shape.file} is not closed, so glass has no inside: mend its holes and flipped faces, "
                 f"or leave out glass"
             )
+        warnings.warn(
+            f"{where}: {shape.file} is not closed: it is shown as a surface that can be seen from both sides",
+            DoubtfulMesh,
+            stacklevel=5,
+        )
         return triangles
 
     def __repr__(self) -> str:
