@@ -197,6 +197,7 @@ def test_rejected_pixels_are_named_by_view_row_column_and_channel(elevation_deg:
         {"powers": "shared", "method": "sirt"},
         {"lamp_max": 4.0, "method": "sirt"},
         {"hold_deg": -1.0},
+        {"enough_db": float("nan")},
         {"dtype": "int8"},
         {"max_extinction": -1.0},
         {"passes": 0},
