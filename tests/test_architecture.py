@@ -31,7 +31,20 @@ ALLOWED_IN_KERNELS = {
     *("contextlib", "os", "queue", "warnings"),
 }
 FILE_AND_SCREEN = {
-    *("pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "zarr", "matplotlib", "trimesh", "fsspec"),
+    *(
+        "pathlib",
+        "os",
+        "shutil",
+        "tempfile",
+        "rich",
+        "typer",
+        "av",
+        "tifffile",
+        "zarr",
+        "matplotlib",
+        "trimesh",
+        "fsspec",
+    ),
 }
 #: A plot is made without being shown or written; of the system, kernels want the environment, and to know of forks.
 HARMLESS = {"lightcube.drawing.plots": {"matplotlib"}, "lightcube.kernels": {"os"}, "lightcube.kernels.tasks": {"os"}}
@@ -118,7 +131,21 @@ def test_every_module_has_a_room() -> None:
     assert rooms - {""} == {name for names in STOREYS for name in names} - {""}
     assert {name.split(".")[0] for file in MODULES for name in imports(file)} <= {
         *sys.stdlib_module_names,
-        *("lightcube", "numpy", "scipy", "numba", "skimage", "PIL", "av", "zarr", "typer", "click", "rich", "pydantic"),
+        *(
+            "lightcube",
+            "numpy",
+            "scipy",
+            "numba",
+            "skimage",
+            "PIL",
+            "av",
+            "tifffile",
+            "zarr",
+            "typer",
+            "click",
+            "rich",
+            "pydantic",
+        ),
         *("pydantic_core", "trimesh", "matplotlib", "fsspec", "llvmlite", "torch", "astra", "dask", "distributed"),
         *("anywidget", "traitlets"),
     }

@@ -27,6 +27,8 @@ def read_video(path: Path, budget: Budget, take: Take) -> None:
             if not container.streams.video:
                 raise InputError(f"{path} has no video in it: give a video, an animation or a folder of pictures")
             stream = container.streams.video[0]
+            if stream.codec_context is None:
+                raise InputError(f"{path} cannot be read, its video is packed in an unknown way: make it H.264 first")
             stream.codec_context.options = {"err_detect": "explode"}
             stream.thread_type = "AUTO"
             for frame in container.decode(stream):

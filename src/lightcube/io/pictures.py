@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.io._decode import Budget, Levels, Take, read_animation, read_single
+from lightcube.io._decode import Budget, Levels, Take
 from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._places import fetched, place
+from lightcube.io._still import read_animation, read_single
 from lightcube.io._video import read_video
 from lightcube.io.pictures_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
 from lightcube.optics.arrays import locked
@@ -26,6 +27,9 @@ _READERS: dict[str, Callable[[Path, Budget, Take], None]] = {
     **dict.fromkeys(PICTURE_SUFFIXES, read_animation),
     **dict.fromkeys((".mp4", ".webm", ".mkv", ".mov", ".avi"), read_video),
 }
+
+#: How many rows are decoded at a time: what a large picture takes beside itself.
+_ROWS = 256
 
 
 class TransparentPictures(UserWarning):
@@ -41,7 +45,8 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     path
         A folder of PNG, JPEG, WebP or TIFF files, taken in natural order (2 before 10), whose `views.toml`, if
         there is one, gives angles, elevation and names; or an animated GIF, WebP or APNG, or a TIFF of several
-        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken. It may be a URL.
+        pages (thumbnails and masks are none); or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is
+        taken. It may be a URL.
     transfer
         How display values become linear light.
     least
@@ -50,7 +55,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     Returns
     -------
     Pictures in float32, 1 = white, upright as their EXIF orientation says, with all the bits that the file has
-    (8 or 16). Colour profiles are not applied: numbers are taken as sRGB.
+    (at most 16). Colour profiles are not applied: numbers are taken as sRGB.
 
     Warns
     -----
@@ -116,8 +121,13 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
 def _linear_light(levels: Levels, transfer: Transfer) -> tuple[NDArray[np.float32], bool]:
     """Levels ``(row, column, 3 or 4)`` as linear light on white, and whether they were opaque."""
     full = np.float32(np.iinfo(levels.dtype).max)
-    light = decode(levels[..., :3].astype(np.float32) / full, transfer).astype(np.float32, copy=False)
-    if levels.shape[2] == 3:
-        return light, True
-    opacity = levels[..., 3:].astype(np.float32) / full
-    return opacity * light + (1 - opacity), bool(np.all(opacity == 1))
+    light = np.empty((*levels.shape[:2], 3), np.float32)
+    opaque = True
+    for first in range(0, len(light), _ROWS):
+        part, rows = levels[first : first + _ROWS], light[first : first + _ROWS]
+        rows[:] = decode(part[..., :3].astype(np.float32) / full, transfer)
+        if levels.shape[2] == 4:
+            opacity = part[..., 3:].astype(np.float32) / full
+            rows[:] = opacity * rows + (1 - opacity)
+            opaque = opaque and bool(np.all(opacity == 1))
+    return light, opaque
