@@ -11,6 +11,7 @@ __getattr__, __dir__, __all__ = when_used(
         "ClippedPictures": "movies",
         "Output": "outputs",
         "save": "outputs",
+        "ColouredPictures": "pictures",
         "TransparentPictures": "pictures",
         "read_pictures": "pictures",
         "Remembered": "remembered",

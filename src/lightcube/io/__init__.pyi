@@ -4,13 +4,14 @@ from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures
 from lightcube.io.outputs import Output, save
-from lightcube.io.pictures import TransparentPictures, read_pictures
+from lightcube.io.pictures import ColouredPictures, TransparentPictures, read_pictures
 from lightcube.io.remembered import Remembered
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.stages import is_stage, read_stage, read_stage_targets, stage_pictures
 
 __all__ = [
     "ClippedPictures",
+    "ColouredPictures",
     "Output",
     "Remembered",
     "TransparentPictures",

@@ -10,10 +10,11 @@ from lightcube.optics.transfer import to_uint16
 #: ``(row, column, ...)`` in uint8 or uint16.
 Samples = NDArray[np.uint8] | NDArray[np.uint16]
 
-#: XYZ under D50, which Lab is relative to, and from there to linear sRGB with Bradford's adaptation to D65.
-_WHITE = np.array([0.96422, 1.0, 0.82521])
-_LIGHT_OF_XYZ = np.array(
-    [[3.1338561, -1.6168667, -0.4906146], [-0.9787684, 1.9161415, 0.0334540], [0.0719453, -0.2289914, 1.4052427]]
+#: XYZ of white under D50, which profiles and Lab are relative to.
+_WHITE = np.array([0.9642, 1.0, 0.8249])
+#: XYZ under D50 to linear sRGB: the inverse of the colourants that profiles of sRGB have.
+LIGHT_OF_XYZ = np.linalg.inv(
+    [[0.43607, 0.38515, 0.14307], [0.22249, 0.71687, 0.06061], [0.01392, 0.09708, 0.71410]],
 )
 
 
@@ -46,7 +47,7 @@ def of_lab(samples: Samples) -> NDArray[np.uint16]:
     y = (samples[..., 0] * (100 / most) + 16) / 116
     roots = np.stack([y + steps[..., 1] / 500, y, y - steps[..., 2] / 200], axis=-1)
     xyz = _WHITE * np.where(roots > 6 / 29, roots**3, 3 * (6 / 29) ** 2 * (roots - 4 / 29))
-    return to_uint16(np.clip(xyz @ _LIGHT_OF_XYZ.T, 0, 1))
+    return to_uint16(np.clip(xyz @ LIGHT_OF_XYZ.T, 0, 1))
 
 
 def with_opacity(colours: Samples, opacity: Samples, *, multiplied: bool) -> Samples:

@@ -6,10 +6,10 @@ import struct
 import traceback
 import warnings
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from PIL import Image, UnidentifiedImageError
 from lightcube.errors import InputError
 from lightcube.io._containers import is_cut_short
 from lightcube.io._files import system_errors
+from lightcube.io._spaces import Space
 
 if TYPE_CHECKING:
     import av
@@ -25,8 +26,12 @@ if TYPE_CHECKING:
 #: ``(row, column, 3 or 4)`` in uint8 or uint16; a fourth channel is the opacity.
 Levels = NDArray[np.uint8] | NDArray[np.uint16]
 
-#: Called with each picture of a file in turn.
-Take = Callable[[Levels], None]
+
+class Take(Protocol):
+    """Called with each picture of a file in turn, and with its colours where they are not sRGB."""
+
+    def __call__(self, levels: Levels, space: Space | None = None) -> None: ...
+
 
 #: A picture in memory takes three float32 numbers per pixel.
 _BYTES_PER_PIXEL = 12

@@ -13,6 +13,7 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.io._colours import full_of, with_opacity
 from lightcube.io._decode import Budget, Levels, Take, damaged, levels_of_image, orientation_of, upright, video_levels
+from lightcube.io._spaces import space_of_cicp, space_of_profile
 
 PNG_START = b"\x89PNG\r\n\x1a\n"
 
@@ -48,15 +49,17 @@ def read_png(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
         budget.check(path, rows, columns)
         image.load()  # checks the whole file, and reads metadata behind the pixels
         orientation = orientation_of(image)
-        if b"acTL" not in {name for name, _ in _chunks(path, data, until=b"IDAT")}:
+        before = dict(_chunks(path, data, until=b"IDAT"))
+        space = space_of_cicp(before[b"cICP"]) if b"cICP" in before else space_of_profile(image.info.get("icc_profile"))
+        if b"acTL" not in before:
             budget.spend(path, rows, columns)
-            take(upright(_levels(path, data, image), orientation))
+            take(upright(_levels(path, data, image), orientation), space)
             return
     frames = list(_frames(path, data, rows, columns))
     if single and len(frames) > 1:
         raise InputError(f"{path} is an animation inside a folder of pictures: give that file itself, or move it")
     for canvas in _composed(path, frames, rows, columns, budget):
-        take(upright(canvas, orientation))
+        take(upright(canvas, orientation), space)
 
 
 def _levels(path: Path, data: bytes, image: Image.Image) -> Levels:

@@ -15,11 +15,13 @@ from lightcube.io._decode import (
     upright,
 )
 from lightcube.io._png import PNG_START, read_png
+from lightcube.io._spaces import Space, adobe_rgb, space_of_profile
 from lightcube.io._tiff import TIFF_STARTS, read_tiff
 
 #: How the kinds of pictures of a multi-picture JPEG begin that are views of their own: panorama, disparity, angles.
 _VIEW_OF_MPO = "Multi-Frame"
 _MP_ENTRIES = 0xB002
+_INTEROPERABILITY = 0xA005
 
 
 def read_single(path: Path, budget: Budget, take: Take) -> None:
@@ -68,7 +70,7 @@ def _read_others(path: Path, image: Image.Image, budget: Budget, take: Take, *, 
         levels = levels_of_image(path, image)
         if image.format == "GIF":  # Pillow lets the screen grow where a later picture goes beyond it
             levels = levels[:rows, :columns]
-        take(upright(levels, orientation_of(image)))
+        take(upright(levels, orientation_of(image)), _space(image))
 
 
 def _views(image: Image.Image) -> list[int]:
@@ -79,3 +81,11 @@ def _views(image: Image.Image) -> list[int]:
     entries = image.mpinfo.get(_MP_ENTRIES, [])  # type: ignore[attr-defined]
     kinds = [entry["Attribute"]["MPType"] for entry in entries]
     return [0, *(index for index in range(1, count) if kinds[index].startswith(_VIEW_OF_MPO))]
+
+
+def _space(image: Image.Image) -> Space | None:
+    """Colours of a picture, by its profile, or by what a camera's EXIF says instead of one."""
+    profile = image.info.get("icc_profile")
+    if not profile and image.getexif().get_ifd(_INTEROPERABILITY).get(1) == "R03":
+        return adobe_rgb()
+    return space_of_profile(profile)

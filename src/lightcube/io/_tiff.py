@@ -12,6 +12,7 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.io._colours import Samples, full_of, of_inks, of_lab, spread, with_opacity
 from lightcube.io._decode import Budget, Levels, Take, refuse_cut_short, upright
+from lightcube.io._spaces import space_of_profile
 
 if TYPE_CHECKING:
     from tifffile import TiffPage
@@ -22,7 +23,7 @@ logging.getLogger("tifffile").addHandler(logging.NullHandler())
 #: How a TIFF or BigTIFF of either byte order starts.
 TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 
-_ORIENTATION = 0x0112
+_ORIENTATION, _PROFILE = 0x0112, 34675
 _REDUCED, _MASK = 1, 4
 _WHITE_IS_ZERO, _BLACK_IS_ZERO, _RGB, _PALETTE, _TRANSPARENCY, _INKS, _YCBCR, _LAB = 0, 1, 2, 3, 4, 5, 6, 8
 #: How many samples make a colour; others are opacity or of no use here.
@@ -54,7 +55,8 @@ def read_tiff(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
         pages = [page for page in pages if not page.subfiletype & _REDUCED] or pages
         for page in pages[: 1 if single else None]:
             budget.spend(path, page.imagelength, page.imagewidth)
-            take(_levels(path, page))
+            lab = page.photometric == _LAB
+            take(_levels(path, page), None if lab else space_of_profile(page.tags.valueof(_PROFILE)))
 
 
 def _levels(path: Path, page: "TiffPage") -> Levels:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from lightcube.errors import InputError
 from lightcube.io._decode import Budget, Levels, Take
 from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._places import fetched, place
+from lightcube.io._spaces import Space
 from lightcube.io._still import read_animation, read_single
 from lightcube.io._video import read_video
 from lightcube.io.pictures_folder import PICTURE_SUFFIXES, VIEWS_FILE, FolderViews, picture_files, read_views
@@ -36,6 +38,10 @@ class TransparentPictures(UserWarning):
     """Some pictures that were read are not opaque, and were put on white."""
 
 
+class ColouredPictures(UserWarning):
+    """Some pictures that were read have colours that are not sRGB; those that are known were turned into it."""
+
+
 @checked
 def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int = 2) -> Pictures:
     """Read pictures in linear light.
@@ -55,12 +61,15 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     Returns
     -------
     Pictures in float32, 1 = white, upright as their EXIF orientation says, with all the bits that the file has
-    (at most 16). Colour profiles are not applied: numbers are taken as sRGB.
+    (at most 16). Colours that an ICC profile of curves and a matrix, a PNG's cICP chunk or a camera's EXIF names are
+    turned into sRGB's; what sRGB has no colour for is clipped.
 
     Warns
     -----
     TransparentPictures
         Once, where pictures are not opaque: they are put on white, in linear light.
+    ColouredPictures
+        Once, where colours are not sRGB, with the names of their profiles, and which of these are not known.
 
     Raises
     ------
@@ -70,13 +79,9 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     """
     transfer = check_transfer(transfer)
     with fetched(place(path), _is_wanted) as local:
-        pictures, transparent = _read(local, transfer, least)
-    if transparent:
-        warnings.warn(
-            f"{transparent} of {len(pictures)} pictures in {path} are partly transparent: they were put on white",
-            TransparentPictures,
-            stacklevel=3,
-        )
+        pictures, taken = _read(local, transfer, least)
+    for note in taken.notes(f"{len(pictures)} pictures in {path}"):
+        warnings.warn(note, stacklevel=3)
     return pictures
 
 
@@ -85,21 +90,43 @@ def _is_wanted(name: str) -> bool:
     return name == VIEWS_FILE or (Path(name).suffix.lower() in PICTURE_SUFFIXES and not name.startswith("."))
 
 
-def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
-    """Pictures, and how many of them are not opaque."""
+class _Taken:
+    """Pictures in linear light as they come from a reader, and what is to be said of them."""
+
+    def __init__(self, transfer: Transfer) -> None:
+        self.transfer = transfer
+        self.images: list[NDArray[np.float32]] = []
+        self.transparent = 0
+        self.spaces: list[Space] = []
+
+    def __call__(self, levels: Levels, space: Space | None = None) -> None:
+        """Take one picture. Where display values are light (`transfer` linear), `space` is of no meaning."""
+        space = space if self.transfer == "srgb" else None
+        image, opaque = _linear_light(levels, space.light if space else partial(decode, transfer=self.transfer))
+        self.images.append(locked(image))
+        self.transparent += not opaque
+        self.spaces += [space] if space else []
+
+    def notes(self, whole: str) -> Iterator[UserWarning]:
+        """Yield what is to be said, at most one of each kind."""
+        if self.transparent:
+            yield TransparentPictures(f"{self.transparent} of {whole} are partly transparent: they were put on white")
+        if self.spaces:
+            names = ", ".join(dict.fromkeys(space.name for space in self.spaces if space.is_known))
+            unknown = ", ".join(dict.fromkeys(space.name for space in self.spaces if not space.is_known))
+            done = [f"{names}: turned into sRGB"] if names else []
+            done += [f"{unknown}: not known here and taken as sRGB"] if unknown else []
+            yield ColouredPictures(f"{len(self.spaces)} of {whole} have colours that are not sRGB ({'; '.join(done)})")
+
+
+def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]:
+    """Pictures, and what is to be said of them."""
     with system_errors(path, "reading"):
         there, is_folder = path.exists(), path.is_dir()
     if not there:
         raise InputError(f"there is no {path}: give a folder of pictures, an animation or a video")
-    images: list[NDArray[np.float32]] = []
-    transparent = 0
-
-    def take(levels: Levels) -> None:
-        nonlocal transparent
-        image, opaque = _linear_light(levels, transfer)
-        images.append(locked(image))
-        transparent += not opaque
-
+    take = _Taken(transfer)
+    images = take.images
     views = FolderViews()
     if is_folder:
         files = picture_files(path)
@@ -115,17 +142,19 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int]:
         held = "one picture" if images else "no picture"
         needed = "a cube needs at least two: add more" if least > 1 else "one at least is needed: give another"
         raise InputError(f"{path} holds {held}, and {needed}")
-    return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), transparent
+    return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), take
 
 
-def _linear_light(levels: Levels, transfer: Transfer) -> tuple[NDArray[np.float32], bool]:
+def _linear_light(
+    levels: Levels, light_of: Callable[[NDArray[np.float32]], NDArray[np.floating]]
+) -> tuple[NDArray[np.float32], bool]:
     """Levels ``(row, column, 3 or 4)`` as linear light on white, and whether they were opaque."""
     full = np.float32(np.iinfo(levels.dtype).max)
     light = np.empty((*levels.shape[:2], 3), np.float32)
     opaque = True
     for first in range(0, len(light), _ROWS):
         part, rows = levels[first : first + _ROWS], light[first : first + _ROWS]
-        rows[:] = decode(part[..., :3].astype(np.float32) / full, transfer)
+        rows[:] = light_of(part[..., :3].astype(np.float32) / full)
         if levels.shape[2] == 4:
             opacity = part[..., 3:].astype(np.float32) / full
             rows[:] = opacity * rows + (1 - opacity)
