@@ -270,6 +270,15 @@ class TestWhatIsWrong:
         with pytest.raises(InputError, match="no picture of a known kind"):
             read(tmp_path)
 
+    @pytest.mark.parametrize("suffix", [".png", ".jpg", ".webp", ".gif", ".tif"])
+    def test_a_damaged_header(self, tmp_path: Path, suffix: str) -> None:
+        path = tmp_path / f"a{suffix}"
+        Image.fromarray(noise(channels=3)).save(path)
+        start = path.read_bytes()[:12]
+        path.write_bytes(start[:4] + b"\0\0\0\0" + start[8:] + bytes(200))
+        with pytest.raises(InputError, match=r"damaged|holds masks or nothing"):
+            read(path)
+
     def test_no_memory(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         def fail(*_: object) -> None:
             raise MemoryError

@@ -2,6 +2,7 @@
 
 import sys
 import warnings
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -301,4 +302,27 @@ class TestRefused:
         path = written(tmp_path / "a.tif", levels(3), photometric="rgb", **options)
         path.write_bytes(path.read_bytes()[:-100])
         with pytest.raises(InputError, match="damaged or cut short"):
+            read(path)
+
+    def test_masks_alone(self, tmp_path: Path) -> None:
+        for name in ("a.tif", "b.tif"):
+            written(tmp_path / name, np.ones((5, 7), bool), photometric="mask", subfiletype=4)
+        for path in (tmp_path, tmp_path / "a.tif"):
+            with pytest.raises(InputError, match=r"a\.tif holds masks"):
+                read(path)
+
+    @pytest.mark.parametrize(
+        "tag", ["ImageWidth", "BitsPerSample", "TileWidth", "Compression", "PhotometricInterpretation"]
+    )
+    @pytest.mark.parametrize(
+        "kind", [b"\x02\0", b"\x03\0", b"\x05\0", b"\x0c\0"], ids=["text", "short", "ratio", "real"]
+    )
+    def test_tags_of_the_wrong_kind(self, tmp_path: Path, tag: str, kind: bytes) -> None:
+        path = written(tmp_path / "a.tif", levels(1)[..., 0], photometric="minisblack", tile=(16, 16))
+        with tifffile.TiffFile(path) as file:
+            at = file.pages.first.tags[tag].offset
+        data = bytearray(path.read_bytes())
+        data[at + 2 : at + 4], data[at + 8 : at + 12] = kind, bytes(4)
+        path.write_bytes(data)
+        with suppress(InputError):  # some tags can be done without; no other exception is allowed
             read(path)

@@ -46,11 +46,12 @@ _WRONG = (
     SyntaxError,
     ValueError,
     LookupError,
-    OverflowError,
     struct.error,
     zlib.error,
     lzma.LZMAError,
 )
+#: How PNG, JPEG, GIF, WebP and TIFF start.
+_STARTS = (b"\x89PNG", b"\xff\xd8", b"GIF8", b"RIFF", b"II*\0", b"MM\0*")
 _DECODERS = ("PIL", "av", "tifffile", "imagecodecs")
 
 
@@ -71,7 +72,7 @@ def decoding(path: Path) -> Iterator[None]:
         except MemoryError as error:
             raise InputError(f"{path} does not fit into this machine's memory: make it smaller first") from error
         except UnidentifiedImageError as error:
-            raise InputError(f"{path} cannot be read, it is no picture of a known kind: mend or remove it") from error
+            raise _unidentified(path) from error
         except Exception as error:
             of_system = isinstance(error, OSError) and error.errno is not None and error.filename is not None
             if of_system or not _means_damage(error):
@@ -85,7 +86,8 @@ def _means_damage(error: Exception) -> bool:
         return True
     trace = list(traceback.walk_tb(error.__traceback__))
     # Over a tag of the wrong type decoders stumble so; the same of this program's own lines is a fault.
-    return isinstance(error, TypeError) and trace[-1][0].f_globals["__name__"].partition(".")[0] in _DECODERS
+    stumbled = isinstance(error, (TypeError, ArithmeticError))
+    return stumbled and trace[-1][0].f_globals["__name__"].partition(".")[0] in _DECODERS
 
 
 @contextmanager
@@ -102,6 +104,14 @@ def _large_pictures() -> Iterator[None]:
 def damaged(path: Path) -> InputError:
     """Return the exception for a file whose bytes are not what they should be."""
     return InputError(f"{path} cannot be read, it is damaged or cut short: mend or remove it")
+
+
+def _unidentified(path: Path) -> InputError:
+    """Return the exception for a file that Pillow does not know: a damaged header, or something else."""
+    with path.open("rb") as file:
+        if file.read(4).startswith(_STARTS):
+            return damaged(path)
+    return InputError(f"{path} cannot be read, it is no picture of a known kind: mend or remove it")
 
 
 def _too_large(path: Path) -> InputError:

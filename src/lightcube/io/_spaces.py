@@ -57,9 +57,10 @@ def space_of_profile(data: bytes | None) -> Space | None:
     if not data:
         return None
     try:
+        data = bytes(data)  # what a damaged tag holds may be anything
         name = ImageCms.ImageCmsProfile(BytesIO(data)).profile.profile_description or "no name"
         return _space_of_tags(name.strip(), data[16:20], _tags(data))
-    except (OSError, LookupError, ValueError, struct.error):
+    except (OSError, LookupError, ValueError, TypeError, struct.error):
         return Space("a damaged profile")
 
 

@@ -11,7 +11,7 @@ from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io._colours import Samples, full_of, of_inks, of_lab, spread, with_opacity
-from lightcube.io._decode import Budget, Levels, Take, refuse_cut_short, upright
+from lightcube.io._decode import Budget, Levels, Take, damaged, refuse_cut_short, upright
 from lightcube.io._spaces import space_of_profile
 
 if TYPE_CHECKING:
@@ -35,6 +35,11 @@ _SIMPLE = (1, 5, 8, 32946, 32773)
 _SIGNED, _FLOAT, _COMPLEX = 2, 3, (5, 6)
 _ASSOCIATED, _UNASSOCIATED = 1, 2
 _MOST_SAMPLES = 32
+#: What has to be one number in each page.
+_NUMBERS = (
+    *("imagewidth", "imagelength", "imagedepth", "samplesperpixel", "bitspersample", "sampleformat"),
+    *("photometric", "compression", "predictor", "planarconfig"),
+)
 _ROWS = 256
 
 
@@ -53,15 +58,17 @@ def read_tiff(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
         all_pages = cast("Iterable[TiffPage]", file.pages)
         pages = [page for page in all_pages if page.photometric != _TRANSPARENCY and not page.subfiletype & _MASK]
         pages = [page for page in pages if not page.subfiletype & _REDUCED] or pages
+        if not pages:
+            raise InputError(f"{path} holds masks or nothing at all, no picture: remove it")
         for page in pages[: 1 if single else None]:
+            _refuse_others(path, page)
             budget.spend(path, page.imagelength, page.imagewidth)
-            lab = page.photometric == _LAB
-            take(_levels(path, page), None if lab else space_of_profile(page.tags.valueof(_PROFILE)))
+            profile = None if page.photometric == _LAB else page.tags.valueof(_PROFILE)
+            take(_levels(path, page), space_of_profile(profile))
 
 
 def _levels(path: Path, page: "TiffPage") -> Levels:
     """Levels of one page, upright."""
-    _refuse_others(path, page)
     unpacked = _is_unpacked(page)
     for_pillow = page.compression in _OF_LIBTIFF or page.photometric == _YCBCR
     if page.bitspersample <= 8 and (for_pillow or (page.compression in _SIMPLE and not unpacked)):
@@ -77,8 +84,9 @@ def _levels(path: Path, page: "TiffPage") -> Levels:
 
 def _cannot_unpack(path: Path, page: "TiffPage") -> InputError:
     """Return the exception for a page whose samples are packed as nothing that is installed unpacks them."""
-    kind = f"{getattr(page.compression, 'name', page.compression)}, {page.bitspersample} bits"
-    if find_spec("imagecodecs") is None:
+    name = getattr(page.compression, "name", None)
+    kind = f"{name or page.compression}, {page.bitspersample} bits"
+    if name and find_spec("imagecodecs") is None:
         return InputError(
             f"{path}: reading this kind of TIFF ({kind}) needs one more package: pip install 'lightcube[tiff]'"
         )
@@ -87,6 +95,8 @@ def _cannot_unpack(path: Path, page: "TiffPage") -> InputError:
 
 def _refuse_others(path: Path, page: "TiffPage") -> None:
     """Raise `InputError` where the samples of `page` are not levels of colours that are known here."""
+    if not all(isinstance(getattr(page, name), int) for name in _NUMBERS):
+        raise damaged(path)
     bits = page.bitspersample
     unequal = len(set(np.atleast_1d(page.tags.valueof("BitsPerSample", default=1)))) > 1
     if unequal or page.samplesperpixel > _MOST_SAMPLES or page.imagedepth > 1:
