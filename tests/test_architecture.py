@@ -31,7 +31,7 @@ ALLOWED_IN_KERNELS = {
     *("contextlib", "os", "queue", "warnings"),
 }
 FILE_AND_SCREEN = {
-    *("pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "zarr", "matplotlib", "fsspec"),
+    *("pathlib", "os", "shutil", "tempfile", "rich", "typer", "av", "tifffile", "zarr", "matplotlib", "fsspec"),
     "pi_heif",
 }
 #: A plot is made without being shown or written; of the system, kernels want the environment, and to know of forks.
@@ -119,8 +119,8 @@ def test_every_module_has_a_room() -> None:
     assert rooms - {""} == {name for names in STOREYS for name in names} - {""}
     assert {name.split(".")[0] for file in MODULES for name in imports(file)} <= {
         *sys.stdlib_module_names,
-        *("lightcube", "numpy", "scipy", "numba", "skimage", "PIL", "av", "zarr", "typer", "click", "rich", "pydantic"),
-        *("pydantic_core", "matplotlib", "fsspec", "llvmlite", "torch", "astra", "dask", "distributed"),
+        *("lightcube", "numpy", "scipy", "numba", "skimage", "PIL", "av", "tifffile", "zarr", "typer", "click", "rich"),
+        *("pydantic", "pydantic_core", "matplotlib", "fsspec", "llvmlite", "torch", "astra", "dask", "distributed"),
         "pi_heif",
         *("anywidget", "traitlets"),
     }

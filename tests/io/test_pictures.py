@@ -419,16 +419,6 @@ class TestRefused:
         with pytest.raises(InputError, match=r"a\.webp is an animation inside a folder"):
             read_pictures(tmp_path)
 
-    def test_several_deep_pictures_in_one_file(self, tmp_path: Path) -> None:
-        tiff(tmp_path / "one.tif", noise(1, 3, np.uint16)[0])
-        data = (tmp_path / "one.tif").read_bytes()
-        # The first directory becomes its own successor's predecessor: a second one of the same pixels follows.
-        at = struct.unpack("<I", data[4:8])[0]
-        twice = data[:-4] + struct.pack("<I", len(data)) + data[at:]
-        (tmp_path / "two.tif").write_bytes(twice)
-        with pytest.raises(InputError, match=r"two\.tif holds several pictures of 16 bits"):
-            read_pictures(tmp_path / "two.tif")
-
     def test_a_sound_without_pictures(self, tmp_path: Path) -> None:
         with av.open(str(tmp_path / "a.mkv"), "w") as container:
             stream = container.add_stream("pcm_s16le", rate=8000)
@@ -463,8 +453,8 @@ class TestRefused:
         path = tmp_path / ("f" if suffix == ".png" else f"a{suffix}")
         if suffix != ".png":
             sample(path)
-        monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", limit)
-        with pytest.raises(InputError, match="more pixels"):
+        monkeypatch.setattr(_decode, "_MOST_PIXELS", limit)
+        with pytest.raises(InputError, match="megapixels, the most a picture can have"):
             read_pictures(path)
 
     @pytest.mark.parametrize("suffix", [".gif", ".mp4", ""])
@@ -479,7 +469,7 @@ class TestRefused:
         monkeypatch.setattr(_decode, "_memory", lambda: 3 * 35 * 12 * 2)
         assert len(read_pictures(path)) == 3
         monkeypatch.setattr(_decode, "_memory", lambda: 3 * 35 * 12 * 2 - 1)
-        with pytest.raises(InputError, match="more pixels"):
+        with pytest.raises(InputError, match=r"one too many.* half of this machine's memory"):
             read_pictures(path)
 
     def test_unknown_transfer(self, tmp_path: Path) -> None:
@@ -498,8 +488,7 @@ def test_containers_know_their_length(tmp_path: Path, suffix: str) -> None:
     assert len(read_pictures(whole)) == 3
     for kept in (len(content) - 1, len(content) * 3 // 4, len(content) // 2):
         cut.write_bytes(content[:kept])
-        # Of WebP its own decoder sees it first.
-        with pytest.raises(InputError, match="cut short" if suffix == ".webp" else "its end is missing"):
+        with pytest.raises(InputError, match="its end is missing"):
             read_pictures(cut)
 
 

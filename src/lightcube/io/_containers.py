@@ -1,6 +1,6 @@
 """Whether a file is as long as it says itself: decoders take what there is of a cut file and say nothing."""
 
-from typing import BinaryIO
+from typing import BinaryIO, Literal
 
 _EBML_SEGMENT = b"\x18\x53\x80\x67"
 _EBML_CLUSTER = b"\x1f\x43\xb6\x75"
@@ -14,7 +14,7 @@ _UNTOLD = 0xFFFFFFFF
 def is_cut_short(file: BinaryIO) -> bool:
     """Whether the container in `file` says that there should be more of it than there is.
 
-    Knows ISO media (MP4, MOV), RIFF (AVI, WebP), Matroska (MKV, WebM) and GIF; of others, and of an AVI that was
+    Knows ISO media (MP4, MOV), RIFF (AVI, WebP), Matroska (MKV, WebM), GIF and TIFF; of others, and of an AVI that was
     written through a pipe and does not know its length, it says False.
     """
     size = file.seek(0, 2)
@@ -28,6 +28,25 @@ def is_cut_short(file: BinaryIO) -> bool:
         return _riffs_cut(file, size)
     if start[:4] == b"\x1a\x45\xdf\xa3":
         return _elements_cut(file, size)
+    if start[:2] in (b"II", b"MM"):
+        return _page_missing(file, start, size)
+    return False
+
+
+def _page_missing(file: BinaryIO, start: bytes, size: int) -> bool:
+    """Whether the chain of a TIFF's directories leads beyond the file (TIFF 6.0, section 2; BigTIFF)."""
+    order: Literal["little", "big"] = "little" if start[:2] == b"II" else "big"
+    big = int.from_bytes(start[2:4], order) == 43
+    wide, counted, entry = (8, 8, 20) if big else (4, 2, 12)
+    seen = set()
+    file.seek(8 if big else 4)
+    while (at := int.from_bytes(file.read(wide), order)) and at not in seen:
+        seen.add(at)
+        file.seek(at)
+        end = at + counted + int.from_bytes(file.read(counted), order) * entry
+        if end + wide > size:
+            return True
+        file.seek(end)
     return False
 
 

@@ -1,54 +1,118 @@
-"""Levels of the pictures in one file, through Pillow, and through PyAV where Pillow would drop bits."""
+"""What all readers of pictures share: levels, the budget of pixels, and what is said of damaged files."""
 
+import lzma
 import os
+import struct
+import traceback
 import warnings
-from collections.abc import Callable, Iterator
+import zlib
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 
 from lightcube.errors import InputError
 from lightcube.io._containers import is_cut_short
 from lightcube.io._files import system_errors
-from lightcube.io._frames import Levels, levels_of
-from lightcube.io._newer import learn
+from lightcube.io._frames import Levels
+from lightcube.io._spaces import Space
 
-#: Called with each picture of a file in turn.
-Take = Callable[[Levels], None]
+
+class Take(Protocol):
+    """Called with each picture of a file in turn, and with its colours where they are not sRGB."""
+
+    def __call__(self, levels: Levels, space: Space | None = None) -> None: ...
+
 
 #: A picture in memory takes three float32 numbers per pixel.
 _BYTES_PER_PIXEL = 12
+#: No camera's picture has more; a file that says so would only fill the memory.
+_MOST_PIXELS = 250_000_000
 _ORIENTATION = 0x0112
-_BITS_PER_SAMPLE, _SAMPLES_PER_PIXEL = 258, 277
-_PNG_HEADER = 26
+
+#: What is raised over bytes that are not what they should be, beside what decoders raise of their own.
+_WRONG = (
+    OSError,
+    EOFError,
+    SyntaxError,
+    ValueError,
+    LookupError,
+    struct.error,
+    zlib.error,
+    lzma.LZMAError,
+)
+#: How PNG, JPEG, GIF, WebP and TIFF start.
+_STARTS = (b"\x89PNG", b"\xff\xd8", b"GIF8", b"RIFF", b"II*\0", b"MM\0*")
+_DECODERS = ("PIL", "av", "tifffile", "imagecodecs")
 
 
 @contextmanager
 def decoding(path: Path) -> Iterator[None]:
-    """Turn whatever a decoder raises over `path` into an `InputError` of one sentence."""
+    """Turn what a decoder raises over the bytes of `path` into an `InputError` of one sentence."""
     with system_errors(path, "reading"), warnings.catch_warnings():
         # Pillow warns of odd tags and metadata that no picture needs; broken pixels are an exception.
         warnings.filterwarnings("ignore", category=UserWarning, module="PIL")
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the budget refuses those
         try:
-            yield
+            with _large_pictures():
+                yield
         except InputError:
             raise
-        except (Image.DecompressionBombError, MemoryError) as error:
-            raise too_large(path) from error
-        except Exception as error:  # decoders raise whatever they trip over in damaged bytes
-            if isinstance(error, OSError) and error.errno is not None and error.filename is not None:
+        except Image.DecompressionBombError as error:
+            raise _too_large(path) from error
+        except MemoryError as error:
+            raise InputError(f"{path} does not fit into this machine's memory: make it smaller first") from error
+        except UnidentifiedImageError as error:
+            raise _unidentified(path) from error
+        except Exception as error:
+            of_system = isinstance(error, OSError) and error.errno is not None and error.filename is not None
+            if of_system or not _means_damage(error):
                 raise
-            raise InputError(f"{path} cannot be read, it is damaged, cut short or no picture: mend or remove it") from (
-                error
-            )
+            raise damaged(path) from error
 
 
-def too_large(path: Path) -> InputError:
-    """Return the exception for pictures that do not fit into memory."""
-    return InputError(f"{path} unpacks to more pixels than this machine can hold: make it smaller first")
+def _means_damage(error: Exception) -> bool:
+    """Whether `error` is about a file's bytes, not about a fault of this program."""
+    if isinstance(error, _WRONG) or type(error).__module__.partition(".")[0] in _DECODERS:
+        return True
+    trace = list(traceback.walk_tb(error.__traceback__))
+    # Over a tag of the wrong type decoders stumble so; the same of this program's own lines is a fault.
+    stumbled = isinstance(error, (TypeError, ArithmeticError))
+    return stumbled and trace[-1][0].f_globals["__name__"].partition(".")[0] in _DECODERS
+
+
+@contextmanager
+def _large_pictures() -> Iterator[None]:
+    """Let Pillow open what is not too large here: it refuses what has more than twice its own limit."""
+    before = Image.MAX_IMAGE_PIXELS
+    Image.MAX_IMAGE_PIXELS = _MOST_PIXELS // 2
+    try:
+        yield
+    finally:
+        Image.MAX_IMAGE_PIXELS = before
+
+
+def damaged(path: Path) -> InputError:
+    """Return the exception for a file whose bytes are not what they should be."""
+    return InputError(f"{path} cannot be read, it is damaged or cut short: mend or remove it")
+
+
+def _unidentified(path: Path) -> InputError:
+    """Return the exception for a file that Pillow does not know: a damaged header, or something else."""
+    with path.open("rb") as file:
+        if file.read(4).startswith(_STARTS):
+            return damaged(path)
+    return InputError(f"{path} cannot be read, it is no picture of a known kind: mend or remove it")
+
+
+def _too_large(path: Path) -> InputError:
+    """Return the exception for a picture that is larger than any may be."""
+    return InputError(
+        f"{path} has more than {_MOST_PIXELS / 1e6:g} megapixels, the most a picture can have: make it smaller first"
+    )
 
 
 def refuse_cut_short(path: Path) -> None:
@@ -64,11 +128,20 @@ class Budget:
     def __init__(self) -> None:
         self.pixels = _memory() // 2 // _BYTES_PER_PIXEL
 
+    def check(self, path: Path, rows: int, columns: int) -> None:
+        """Raise `InputError` where one more picture, whose header says its size, is too large or one too many."""
+        if rows * columns > _MOST_PIXELS:
+            raise _too_large(path)
+        if self.pixels < rows * columns:
+            raise InputError(
+                f"{path} is one too many: with it, pictures fill more than half of this machine's memory: "
+                "give fewer or smaller ones"
+            )
+
     def spend(self, path: Path, rows: int, columns: int) -> None:
-        """Take one picture's pixels off; `InputError` where there are not enough, or it is larger than any photo."""
+        """Take one picture's pixels off, after `check`."""
+        self.check(path, rows, columns)
         self.pixels -= rows * columns
-        if self.pixels < 0 or rows * columns > (Image.MAX_IMAGE_PIXELS or rows * columns):
-            raise too_large(path)
 
 
 def _memory() -> int:
@@ -79,82 +152,20 @@ def _memory() -> int:
         return 8 * 2**30
 
 
-def read_single(path: Path, budget: Budget, take: Take) -> None:
-    """Give the one picture of `path` to `take`; a TIFF's further pages are left out.
-
-    Raises
-    ------
-    InputError
-        Where the file cannot be read, or is an animation.
-    """
-    learn(path)
-    with decoding(path), Image.open(path) as image:
-        if image.format in ("PNG", "WEBP", "GIF", "AVIF") and getattr(image, "n_frames", 1) > 1:
-            raise InputError(f"{path} is an animation inside a folder of pictures: give that file itself, or move it")
-        budget.spend(path, image.height, image.width)
-        take(_deep(path, image) if _deep_colour(path, image) else _frame(path, image))
-
-
-def read_animation(path: Path, budget: Budget, take: Take) -> None:
-    """Give every picture of an animated GIF, WebP or APNG, or every page of a TIFF, to `take`."""
-    learn(path)
-    with decoding(path), Image.open(path) as image:
-        refuse_cut_short(path)
-        count = getattr(image, "n_frames", 1)
-        if _deep_colour(path, image):
-            if count > 1:
-                raise InputError(
-                    f"{path} holds several pictures of 16 bits per colour: save them as single files in a folder"
-                )
-            budget.spend(path, image.height, image.width)
-            take(_deep(path, image))
-            return
-        for index in range(count):
-            image.seek(index)
-            budget.spend(path, image.height, image.width)
-            if index or not getattr(image, "default_image", False):
-                take(_frame(path, image))
-
-
-def _frame(path: Path, image: Image.Image) -> Levels:
-    """Levels of the frame that `image` stands at, upright."""
+def levels_of_image(path: Path, image: Image.Image) -> Levels:
+    """Levels of the picture that `image` stands at, as it lies in the file."""
     image.load()
-    if image.mode.startswith("I;16"):
-        grey = np.asarray(image).astype(np.uint16)
-        levels: Levels = np.repeat(grey[:, :, None], 3, axis=2)
-    elif image.mode in ("I", "F"):
+    if image.mode[0] in "IF":
         raise InputError(f"{path} holds numbers instead of levels of 8 or 16 bits: save it as a PNG first")
-    else:
-        levels = np.asarray(image.convert("RGBA" if image.has_transparency_data else "RGB"))
-    # After loading: only then has Pillow read everything, and it turns a TIFF upright itself.
-    return _upright(levels, image.getexif().get(_ORIENTATION, 1))
+    return np.asarray(image.convert("RGBA" if image.has_transparency_data else "RGB"))
 
 
-def _deep_colour(path: Path, image: Image.Image) -> bool:
-    """Whether the file has 16 bits per channel in several channels, of which Pillow keeps only 8."""
-    if image.format == "PNG":
-        with path.open("rb") as file:
-            header = file.read(_PNG_HEADER)
-        return header[24] == 16 and header[25] != 0
-    if image.format == "TIFF":
-        tags = image.tag_v2  # type: ignore[attr-defined]
-        return tags.get(_SAMPLES_PER_PIXEL, 1) > 1 and max(tags.get(_BITS_PER_SAMPLE, (8,))) == 16
-    return False
+def orientation_of(image: Image.Image) -> int:
+    """Return the EXIF orientation of a picture that is loaded: only then has Pillow read everything."""
+    return image.getexif().get(_ORIENTATION, 1)
 
 
-def _deep(path: Path, image: Image.Image) -> Levels:
-    """Levels of a PNG or TIFF with 16 bits in several channels, upright."""
-    import av
-
-    image.load()  # for its checks of the whole file and its metadata; a TIFF loses its orientation here, so look again
-    with Image.open(path) as again:
-        orientation = again.getexif().get(_ORIENTATION) or image.getexif().get(_ORIENTATION, 1)
-    with path.open("rb") as file, av.open(file, "r", format=f"{(image.format or '').lower()}_pipe") as container:
-        frame = next(iter(container.decode(video=0)))
-    return _upright(levels_of(frame), orientation)
-
-
-def _upright(levels: Levels, orientation: int) -> Levels:
+def upright(levels: Levels, orientation: int) -> Levels:
     """`levels` turned and mirrored as an EXIF `orientation` (1 to 8) says."""
     if orientation in (5, 6, 7, 8):
         levels = levels.transpose(1, 0, 2)

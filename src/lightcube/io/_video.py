@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from lightcube.errors import InputError
-from lightcube.io._colours import converted, curve_of, ordinary
 from lightcube.io._decode import Budget, Take, decoding, refuse_cut_short
 from lightcube.io._frames import Levels, is_known, levels_of, matrix_of, square, upright
+from lightcube.io._hdr import converted, curve_of, ordinary
 
 if TYPE_CHECKING:
     import av
@@ -70,6 +70,8 @@ def _decoded(
     import av
 
     context = stream.codec_context
+    if context is None:
+        raise InputError(f"{path} cannot be read, its video is packed in an unknown way: make it H.264 first")
     says = {key.lower(): value for key, value in stream.metadata.items()}
     if says.get("alpha_mode") == "1" and context.name in _WITH_OPACITY:
         context = cast("av.VideoCodecContext", av.CodecContext.create(_WITH_OPACITY[context.name], "r"))

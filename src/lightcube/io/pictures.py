@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.io._decode import Budget, Take, read_animation, read_single
+from lightcube.io._decode import Budget, Take
 from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._frames import Levels
 from lightcube.io._places import fetched, place
+from lightcube.io._spaces import Space
+from lightcube.io._still import read_animation, read_single
 from lightcube.io._video import read_video
 from lightcube.io.pictures_folder import (
     PICTURE_SUFFIXES,
@@ -38,13 +41,16 @@ _READERS: dict[str, Callable[[Path, Budget, Take], Sequence[str] | None]] = {
     **dict.fromkeys((".mp4", ".webm", ".mkv", ".mov", ".avi"), read_video),
 }
 
+#: How many rows are decoded at a time: what a large picture takes beside itself.
+_ROWS = 256
+
 
 class TransparentPictures(UserWarning):
     """Some pictures that were read are not opaque, and were put on white."""
 
 
 class ChangedPictures(UserWarning):
-    """Pictures that were read are not of the kind that a cube shows, and were changed."""
+    """Pictures that were read are not of the kind that a cube shows, not sRGB for instance, and were changed."""
 
 
 class DoubtfulFolder(UserWarning):
@@ -60,8 +66,8 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     path
         A folder of PNG, JPEG, WebP, TIFF, AVIF or HEIC files, taken in natural order (2 before 10), whose `views.toml`,
         if there is one, gives angles, elevation and names; or an animated GIF, WebP, APNG or AVIF, or a TIFF of several
-        pages; or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken. HEIC takes the extra `heif`. It
-        may be a URL.
+        pages (thumbnails and masks are none); or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken.
+        HEIC takes the extra `heif`. It may be a URL.
     transfer
         How display values become linear light.
     least
@@ -70,7 +76,8 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     Returns
     -------
     Pictures in float32, 1 = white, upright as their EXIF orientation says, with all the bits that the file has
-    (8 or 16). Colour profiles are not applied: numbers are taken as sRGB. Of a film they are what a player shows: by
+    (at most 16). Colours that an ICC profile of curves and a matrix, a PNG's cICP chunk or a camera's EXIF names are
+    turned into sRGB's; what sRGB has no colour for is clipped. Of a film they are what a player shows: by
     its own matrix and range, turned and mirrored, and with square pixels.
 
     Warns
@@ -97,22 +104,16 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     """
     transfer = check_transfer(transfer)
     with fetched(place(path), _is_wanted) as local:
-        pictures, transparent, notes = _read(local, transfer, least)
+        pictures, taken = _read(local, transfer, least)
         others = left_out(local)
-    for note in notes:
-        warnings.warn(f"{path} {note}", ChangedPictures, stacklevel=3)
+    for note in taken.notes(path, len(pictures)):
+        warnings.warn(note, stacklevel=3)
     if others:
         warnings.warn(f"{path}: {others}", DoubtfulFolder, stacklevel=3)
     if may_be_radians(pictures.angles_deg):
         warnings.warn(
             f"{path}: all angles lie within a few degrees: if they are radians, multiply them by 57.2958",
             DoubtfulFolder,
-            stacklevel=3,
-        )
-    if transparent:
-        warnings.warn(
-            f"{transparent} of {len(pictures)} pictures in {path} are partly transparent: they were put on white",
-            TransparentPictures,
             stacklevel=3,
         )
     return pictures
@@ -123,22 +124,46 @@ def _is_wanted(name: str) -> bool:
     return name == VIEWS_FILE or is_picture(name)
 
 
-def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int, Sequence[str]]:
-    """Pictures, how many of them are not opaque, and what was changed in them."""
+class _Taken:
+    """Pictures in linear light as they come from a reader, and what is to be said of them."""
+
+    def __init__(self, transfer: Transfer) -> None:
+        self.transfer = transfer
+        self.images: list[NDArray[np.float32]] = []
+        self.transparent = 0
+        self.spaces: list[Space] = []
+        self.changed: Sequence[str] = ()
+
+    def __call__(self, levels: Levels, space: Space | None = None) -> None:
+        """Take one picture. Where display values are light (`transfer` linear), `space` is of no meaning."""
+        space = space if self.transfer == "srgb" else None
+        image, opaque = _linear_light(levels, space.light if space else partial(decode, transfer=self.transfer))
+        self.images.append(locked(image))
+        self.transparent += not opaque
+        self.spaces += [space] if space else []
+
+    def notes(self, path: str | Path, count: int) -> Iterator[UserWarning]:
+        """Yield what is to be said, at most once each."""
+        whole = f"{count} pictures in {path}"
+        yield from (ChangedPictures(f"{path} {what}") for what in self.changed)
+        if self.transparent:
+            yield TransparentPictures(f"{self.transparent} of {whole} are partly transparent: they were put on white")
+        if self.spaces:
+            names = ", ".join(dict.fromkeys(space.name for space in self.spaces if space.is_known))
+            unknown = ", ".join(dict.fromkeys(space.name for space in self.spaces if not space.is_known))
+            done = [f"{names}: turned into sRGB"] if names else []
+            done += [f"{unknown}: not known here and taken as sRGB"] if unknown else []
+            yield ChangedPictures(f"{len(self.spaces)} of {whole} have colours that are not sRGB ({'; '.join(done)})")
+
+
+def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]:
+    """Pictures, and what is to be said of them."""
     with system_errors(path, "reading"):
         there, is_folder = path.exists(), path.is_dir()
     if not there:
         raise InputError(f"there is no {path}: give a folder of pictures, an animation or a video")
-    images: list[NDArray[np.float32]] = []
-    transparent = 0
-    notes: Sequence[str] = ()
-
-    def take(levels: Levels) -> None:
-        nonlocal transparent
-        image, opaque = _linear_light(levels, transfer)
-        images.append(locked(image))
-        transparent += not opaque
-
+    take = _Taken(transfer)
+    images = take.images
     views = FolderViews()
     if is_folder:
         files = picture_files(path)
@@ -148,20 +173,27 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, int, Se
             read_single(file, budget, take)
         names = views.names or tuple(file.stem for file in files)
     else:
-        notes = suffix_entry(path, _READERS, "pictures")(path, Budget(), take) or ()
+        take.changed = suffix_entry(path, _READERS, "pictures")(path, Budget(), take) or ()
         names = tuple(str(index + 1) for index in range(len(images))) if len(images) > 1 else (path.stem,)
     if len(images) < least:
         held = "one picture" if images else "no picture"
         needed = "a cube needs at least two: add more" if least > 1 else "one at least is needed: give another"
         raise InputError(f"{path} holds {held}, and {needed}")
-    return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), transparent, notes
+    return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), take
 
 
-def _linear_light(levels: Levels, transfer: Transfer) -> tuple[NDArray[np.float32], bool]:
+def _linear_light(
+    levels: Levels, light_of: Callable[[NDArray[np.float32]], NDArray[np.floating]]
+) -> tuple[NDArray[np.float32], bool]:
     """Levels ``(row, column, 3 or 4)`` as linear light on white, and whether they were opaque."""
     full = np.float32(np.iinfo(levels.dtype).max)
-    light = decode(levels[..., :3].astype(np.float32) / full, transfer).astype(np.float32, copy=False)
-    if levels.shape[2] == 3:
-        return light, True
-    opacity = levels[..., 3:].astype(np.float32) / full
-    return opacity * light + (1 - opacity), bool(np.all(opacity == 1))
+    light = np.empty((*levels.shape[:2], 3), np.float32)
+    opaque = True
+    for first in range(0, len(light), _ROWS):
+        part, rows = levels[first : first + _ROWS], light[first : first + _ROWS]
+        rows[:] = light_of(part[..., :3].astype(np.float32) / full)
+        if levels.shape[2] == 4:
+            opacity = part[..., 3:].astype(np.float32) / full
+            rows[:] = opacity * rows + (1 - opacity)
+            opaque = opaque and bool(np.all(opacity == 1))
+    return light, opaque

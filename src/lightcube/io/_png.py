@@ -1,0 +1,152 @@
+"""PNG pictures with all their bits, and animated ones put together as the specification says."""
+
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from lightcube.errors import InputError
+from lightcube.io._decode import Budget, Take, damaged, levels_of_image, orientation_of, upright
+from lightcube.io._frames import Levels, levels_of
+from lightcube.io._samples import full_of, with_opacity
+from lightcube.io._spaces import space_of_cicp, space_of_profile
+
+PNG_START = b"\x89PNG\r\n\x1a\n"
+
+_BIT_DEPTH = 24  # bytes from the start
+#: What belongs to the file and not to one frame of an animation.
+_OF_THE_FILE = (b"acTL", b"IHDR", b"eXIf", b"IEND")
+_CLEARED, _AS_BEFORE = 1, 2
+_OVER = 1
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """One picture of an animation: a PNG of its own, and where and how it comes onto the canvas."""
+
+    png: bytes
+    rows: slice
+    columns: slice
+    disposal: int
+    blending: int
+
+
+def read_png(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
+    """Give the picture of a PNG, or every picture of an animated one, to `take`; `single` refuses animations.
+
+    Raises
+    ------
+    InputError
+        Where the file is damaged.
+    """
+    data = path.read_bytes()
+    with Image.open(BytesIO(data)) as image:
+        columns, rows = image.size
+        budget.check(path, rows, columns)
+        image.load()  # checks the whole file, and reads metadata behind the pixels
+        orientation = orientation_of(image)
+        before = dict(_chunks(path, data, until=b"IDAT"))
+        space = space_of_cicp(before[b"cICP"]) if b"cICP" in before else space_of_profile(image.info.get("icc_profile"))
+        if b"acTL" not in before:
+            budget.spend(path, rows, columns)
+            take(upright(_levels(path, data, image), orientation), space)
+            return
+    frames = list(_frames(path, data, rows, columns))
+    if single and len(frames) > 1:
+        raise InputError(f"{path} is an animation inside a folder of pictures: give that file itself, or move it")
+    for canvas in _composed(path, frames, rows, columns, budget):
+        take(upright(canvas, orientation), space)
+
+
+def _levels(path: Path, data: bytes, image: Image.Image) -> Levels:
+    """Levels of a PNG, through PyAV where Pillow would drop bits or what is transparent."""
+    if data[_BIT_DEPTH] < 16:
+        return levels_of_image(path, image)
+    import av
+
+    with av.open(BytesIO(data), "r", format="png_pipe") as container:
+        return levels_of(next(iter(container.decode(video=0))))
+
+
+def _chunks(path: Path, data: bytes, until: bytes = b"IEND") -> Iterator[tuple[bytes, bytes]]:
+    """Name and content of each chunk, up to the first that is called `until`."""
+    at, name = len(PNG_START), b""
+    while name != until:
+        length, name = struct.unpack(">I4s", data[at : at + 8].ljust(8, b"\0"))
+        content = data[at + 8 : at + 8 + length]
+        if len(data) < at + 12 + length:
+            raise InputError(f"{path} is cut short, its end is missing: copy it or make it again")
+        if zlib.crc32(name + content) != int.from_bytes(data[at + 8 + length : at + 12 + length], "big"):
+            raise damaged(path)
+        yield name, content
+        at += 12 + length
+
+
+def _frames(path: Path, data: bytes, rows: int, columns: int) -> Iterator[_Frame]:
+    """Yield the pictures of an animated PNG; the still one that stands for them elsewhere is left out."""
+    header, before, pixels, control, count = b"", b"", b"", b"", 0
+    for name, content in _chunks(path, data):
+        if name == b"IHDR":
+            header = content
+        elif name == b"acTL":
+            count = int.from_bytes(content[:4], "big")
+        elif name in (b"IDAT", b"fdAT"):
+            pixels += _chunk(b"IDAT", content if name == b"IDAT" else content[4:]) if control else b""
+        elif not control and name not in (*_OF_THE_FILE, b"fcTL"):
+            before += _chunk(name, content)
+        if control and pixels and name in (b"fcTL", b"IEND"):
+            yield _frame(path, header, before + pixels, control, (rows, columns))
+            pixels, count = b"", count - 1
+        if name == b"fcTL":
+            control = content
+    if count:
+        raise InputError(f"{path} lacks some of its pictures, it is damaged: copy it or make it again")
+
+
+def _frame(path: Path, header: bytes, body: bytes, control: bytes, size: tuple[int, int]) -> _Frame:
+    """Make one picture of an animation, of what its control chunk says."""
+    if len(control) != 26:
+        raise damaged(path)
+    _, columns, rows, left, top, _, _, disposal, blending = struct.unpack(">IIIIIHHBB", control)
+    if not rows or not columns or top + rows > size[0] or left + columns > size[1]:
+        raise damaged(path)
+    png = PNG_START + _chunk(b"IHDR", struct.pack(">II", columns, rows) + header[8:]) + body + _chunk(b"IEND", b"")
+    return _Frame(png, slice(top, top + rows), slice(left, left + columns), disposal, blending)
+
+
+def _chunk(name: bytes, content: bytes) -> bytes:
+    """Bytes of one chunk."""
+    return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+
+
+def _composed(path: Path, frames: list[_Frame], rows: int, columns: int, budget: Budget) -> Iterator[Levels]:
+    """Yield what the canvas shows after each of `frames`."""
+    canvas: Levels | None = None
+    for frame in frames:
+        budget.spend(path, rows, columns)
+        with Image.open(BytesIO(frame.png)) as image:
+            levels = _levels(path, frame.png, image)
+        if levels.shape[2] == 3:
+            levels = with_opacity(levels, np.full_like(levels[..., :1], full_of(levels)), multiplied=False)
+        if canvas is None:
+            canvas = np.zeros((rows, columns, 4), levels.dtype)
+        part = canvas[frame.rows, frame.columns]
+        before = part.copy() if frame.disposal == _AS_BEFORE else np.zeros_like(part)
+        part[:] = _over(part, levels) if frame.blending == _OVER else levels
+        yield canvas.copy()
+        if frame.disposal in (_CLEARED, _AS_BEFORE):
+            part[:] = before
+
+
+def _over(below: Levels, above: Levels) -> Levels:
+    """Levels with opacity laid over others, in display values as browsers do it."""
+    full = full_of(above)
+    covered, seen = above[..., 3:] / full, below[..., 3:] / full * (1 - above[..., 3:] / full)
+    opacity = covered + seen
+    colours = (above[..., :3] * covered + below[..., :3] * seen) / np.where(opacity, opacity, 1)
+    return np.rint(np.concatenate([colours, opacity * full], axis=2)).astype(above.dtype)

@@ -1,0 +1,165 @@
+"""Colours that are not sRGB: of ICC profiles made of curves and a matrix, of PNG's cICP, and of cameras' Adobe RGB."""
+
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from io import BytesIO
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import ImageCms
+
+from lightcube.io._samples import LIGHT_OF_XYZ
+from lightcube.optics.transfer import decode, encode
+
+_Light = NDArray[np.float32]
+_Curve = Callable[[_Light], _Light]
+
+#: Red, green, blue and white of ITU-T H.273, by number, as x and y; and what the curves of its numbers are.
+_WHITE_D65 = (0.3127, 0.3290)
+_PRIMARIES = {
+    1: ("BT.709", ((0.640, 0.330), (0.300, 0.600), (0.150, 0.060))),
+    9: ("BT.2020", ((0.708, 0.292), (0.170, 0.797), (0.131, 0.046))),
+    12: ("Display P3", ((0.680, 0.320), (0.265, 0.690), (0.150, 0.060))),
+}
+_ADOBE = ((0.640, 0.330), (0.210, 0.710), (0.150, 0.060))
+_ADOBE_GAMMA = 563 / 256
+_H273_LINEAR, _H273_SRGB, _H273_VIDEO = 8, 13, (1, 6, 14, 15)
+#: Less than one level of 8 bits from sRGB is sRGB.
+_SAME = 1 / 255
+
+
+@dataclass(frozen=True)
+class Space:
+    """How display values become linear light of sRGB's colours; without curves it is not known, and taken as sRGB."""
+
+    name: str
+    curves: tuple[_Curve, ...] | None = None
+    matrix: NDArray[np.float64] | None = None
+
+    @property
+    def is_known(self) -> bool:
+        """Whether these colours can be turned into sRGB."""
+        return self.curves is not None
+
+    def light(self, display: _Light) -> _Light:
+        """Linear light of display values ``(row, column, 3)``; what sRGB has no colour for is clipped."""
+        if self.curves is None:
+            return decode(display).astype(np.float32, copy=False)
+        light = np.stack([curve(display[..., at]) for at, curve in enumerate(self.curves)], axis=-1)
+        mixed = light if self.matrix is None else light @ self.matrix.T
+        return np.clip(mixed, 0, 1).astype(np.float32)
+
+
+def space_of_profile(data: bytes | None) -> Space | None:
+    """Return the colours of an ICC profile; None where there is none, or it is sRGB."""
+    if not data:
+        return None
+    try:
+        data = bytes(data)  # what a damaged tag holds may be anything
+        name = ImageCms.ImageCmsProfile(BytesIO(data)).profile.profile_description or "no name"
+        return _space_of_tags(name.strip(), data[16:20], _tags(data))
+    except (OSError, LookupError, ValueError, TypeError, struct.error):
+        return Space("a damaged profile")
+
+
+def _space_of_tags(name: str, kind: bytes, tags: dict[bytes, bytes]) -> Space | None:
+    """Return the colours of a profile's tags."""
+    if kind == b"GRAY" and b"kTRC" in tags:
+        return _unless_srgb(name, [_curve(tags[b"kTRC"])] * 3, None)
+    columns, curves = (b"rXYZ", b"gXYZ", b"bXYZ"), (b"rTRC", b"gTRC", b"bTRC")
+    if kind != b"RGB " or not {*columns, *curves} <= set(tags):
+        return Space(name)
+    xyz = np.array([struct.unpack(">3i", tags[column][8:20]) for column in columns]).T / 65536
+    return _unless_srgb(name, [_curve(tags[curve]) for curve in curves], LIGHT_OF_XYZ @ xyz)
+
+
+def space_of_cicp(data: bytes) -> Space | None:
+    """Return the colours that a PNG's cICP chunk names; None where they are sRGB."""
+    primaries, transfer, matrix, whole = data[:4].ljust(4, b"\0")
+    name, places = _PRIMARIES.get(primaries, ("", ()))
+    curves: dict[int, _Curve] = {_H273_LINEAR: _same, _H273_SRGB: decode, **dict.fromkeys(_H273_VIDEO, _video)}
+    if transfer not in curves or not name or matrix or whole != 1:
+        return Space(f"cICP {primaries}/{transfer}/{matrix}/{whole}")
+    return _unless_srgb(name, [curves[transfer]] * 3, _matrix(places))
+
+
+def adobe_rgb() -> Space:
+    """Return the colours of Adobe RGB (1998), which cameras name in EXIF without a profile."""
+    return Space("Adobe RGB", (partial(_power, _ADOBE_GAMMA),) * 3, _matrix(_ADOBE))
+
+
+def _unless_srgb(name: str, curves: list[_Curve], matrix: NDArray[np.float64] | None) -> Space | None:
+    """Return a space, or None where it is sRGB but for less than a level."""
+    space = Space(name, tuple(curves), matrix)
+    steps = np.linspace(0, 1, 9, dtype=np.float32)
+    red, green, blue = np.meshgrid(steps, steps, steps) if matrix is not None else (steps, steps, steps)
+    display = np.stack([red, green, blue], axis=-1)
+    return space if np.max(np.abs(encode(space.light(display)) - display)) > _SAME else None
+
+
+def _matrix(places: tuple[tuple[float, float], ...]) -> NDArray[np.float64]:
+    """Linear light of primaries at `places` ``(x, y)`` with the white of sRGB to linear light of sRGB."""
+
+    def to_xyz(places: tuple[tuple[float, float], ...]) -> NDArray[np.float64]:
+        columns = np.array([(x / y, 1, (1 - x - y) / y) for x, y in (*places, _WHITE_D65)]).T
+        shares: NDArray[np.float64] = np.linalg.solve(columns[:, :3], columns[:, 3])
+        return columns[:, :3] * shares
+
+    return np.asarray(np.linalg.solve(to_xyz(_PRIMARIES[1][1]), to_xyz(places)), np.float64)
+
+
+def _tags(data: bytes) -> dict[bytes, bytes]:
+    """Content of each tag of a profile (ICC.1:2022, 7.3)."""
+    count = int.from_bytes(data[128:132], "big")
+    entries = [struct.unpack_from(">4sII", data, 132 + 12 * at) for at in range(count)]
+    return {name: data[start : start + length] for name, start, length in entries}
+
+
+def _curve(tag: bytes) -> _Curve:
+    """Return the curve of a tag of the type `curv` or `para` (ICC.1:2022, 10.6 and 10.18)."""
+    if tag[:4] == b"para":
+        kind = int.from_bytes(tag[8:10], "big")
+        count = (1, 3, 4, 5, 7)[kind]
+        return partial(_parametric, kind, [value / 65536 for value in struct.unpack_from(f">{count}i", tag, 12)])
+    if tag[:4] != b"curv":
+        raise ValueError(tag[:4])
+    count = int.from_bytes(tag[8:12], "big")
+    table = np.frombuffer(tag, ">u2", count, 12).astype(np.float64)
+    if count == 0:
+        return _same
+    if count == 1:
+        return partial(_power, float(table[0]) / 256)
+    return partial(_from_table, table / 65535)
+
+
+def _same(display: _Light) -> _Light:
+    """Display values that are linear light."""
+    return display
+
+
+def _power(gamma: float, display: _Light) -> _Light:
+    """A pure power."""
+    return display**gamma
+
+
+def _from_table(table: NDArray[np.float64], display: _Light) -> _Light:
+    """Values of a table, straight between them."""
+    return np.interp(display, np.linspace(0, 1, len(table)), table).astype(np.float32)
+
+
+def _parametric(kind: int, numbers: list[float], display: _Light) -> _Light:
+    """A power of a straight line, and below some value another straight line."""
+    gamma, a, b, c, d, e, f = [*numbers, *(1.0, 0.0, 0.0, 0.0, 0.0, 0.0)[len(numbers) - 1 :]]
+    powered = np.maximum(a * display + b, 0) ** gamma
+    if kind in (0, 1):
+        return powered
+    if kind == 2:
+        return powered + c
+    return np.where(display >= d, powered + e, c * display + f).astype(np.float32)
+
+
+def _video(display: _Light) -> _Light:
+    """Light of the curve that ITU-R BT.709 and BT.2020 share."""
+    return np.where(display < 0.081, display / 4.5, (np.maximum(display + 0.099, 0) / 1.099) ** (1 / 0.45))

@@ -1,0 +1,207 @@
+"""Colours that are not sRGB: the same light as LittleCMS makes of their profiles, at any depth."""
+
+import io
+import struct
+import warnings
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tifffile
+from numpy.typing import NDArray
+from PIL import Image, ImageCms
+
+from lightcube.io import ChangedPictures, read_pictures
+from lightcube.optics.transfer import decode, encode
+from tests.io.test_still import chunk, png
+
+Array = NDArray[Any]
+
+RANDOM = np.random.default_rng(33)
+
+#: Colourants under D50, as profiles have them, each (X, Y, Z).
+SRGB = [(0.43607, 0.22249, 0.01392), (0.38515, 0.71687, 0.09708), (0.14307, 0.06061, 0.71410)]
+P3 = [(0.51512, 0.24120, -0.00105), (0.29198, 0.69225, 0.04189), (0.15710, 0.06657, 0.78407)]
+ADOBE = [(0.60974, 0.31111, 0.01947), (0.20528, 0.62567, 0.06087), (0.14919, 0.06322, 0.74457)]
+PROPHOTO = [(0.79767, 0.28804, 0.0), (0.13519, 0.71188, 0.0), (0.03134, 0.00009, 0.82491)]
+
+
+def fixed(*values: float) -> bytes:
+    return struct.pack(f">{len(values)}i", *[round(value * 65536) for value in values])
+
+
+def gamma(value: float) -> bytes:
+    return b"curv\0\0\0\0" + struct.pack(">IH", 1, round(value * 256))
+
+
+def table(values: Array) -> bytes:
+    return b"curv\0\0\0\0" + struct.pack(">I", len(values)) + np.rint(values * 65535).astype(">u2").tobytes()
+
+
+def formula(kind: int, *values: float) -> bytes:
+    return b"para\0\0\0\0" + struct.pack(">HH", kind, 0) + fixed(*values)
+
+
+LINEAR = b"curv\0\0\0\0" + struct.pack(">I", 0)
+TOE = formula(3, 2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045)
+CURVES = {
+    "linear": LINEAR,
+    "gamma": gamma(2.2),
+    "low gamma": gamma(1.8),
+    "table": table(np.linspace(0, 1, 1024) ** 2.0),
+    "power": formula(0, 1.9),
+    "line": formula(1, 2.0, 1.1, -0.1),
+    "lifted line": formula(2, 2.0, 0.93, 0.02, 0.05),
+    "toe": TOE,
+    "two lines": formula(4, 2.4, 0.9, 0.05, 0.1, 0.06, 0.02, 0.0),
+}
+
+
+def profile(curve: bytes, colourants: list[tuple[float, float, float]] | None = None, name: str = "Test") -> bytes:
+    """An ICC profile of version 4: RGB where there are colourants, else grey."""
+    text = name.encode("utf-16-be")
+    desc = b"mluc\0\0\0\0" + struct.pack(">II2s2sII", 1, 12, b"en", b"US", len(text), 28) + text
+    tags = {b"desc": desc, b"cprt": desc, b"wtpt": b"XYZ \0\0\0\0" + fixed(0.9642, 1, 0.8249)}
+    if colourants is None:
+        tags[b"kTRC"] = curve
+    for letter, colourant in zip(b"rgb", colourants or (), strict=False):
+        tags[bytes([letter]) + b"XYZ"] = b"XYZ \0\0\0\0" + fixed(*colourant)
+        tags[bytes([letter]) + b"TRC"] = curve
+    body, entries, start = b"", b"", 132 + 12 * len(tags)
+    for tag, content in tags.items():
+        entries += struct.pack(">4sII", tag, start + len(body), len(content))
+        body += content + b"\0" * (-len(content) % 4)
+    kind = b"RGB " if colourants else b"GRAY"
+    head = struct.pack(">I4sI4s4s4s", 0, b"\0" * 4, 0x04300000, b"mntr", kind, b"XYZ ")
+    head += struct.pack(">6H4s", 2026, 1, 1, 0, 0, 0, b"acsp") + b"\0" * 28 + fixed(0.9642, 1, 0.8249) + b"\0" * 48
+    return struct.pack(">I", start + len(body)) + head[4:] + struct.pack(">I", len(tags)) + entries + body
+
+
+def read(path: Path) -> Array:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ChangedPictures)
+        return read_pictures(path, least=1).images[0]
+
+
+def by_littlecms(picture: Array, icc: bytes) -> Array:
+    """8-bit levels as LittleCMS turns them into sRGB."""
+    image, grey = Image.fromarray(picture), picture.ndim == 2
+    turned = ImageCms.profileToProfile(
+        image,
+        ImageCms.ImageCmsProfile(io.BytesIO(icc)),
+        ImageCms.createProfile("sRGB"),
+        renderingIntent=ImageCms.Intent.RELATIVE_COLORIMETRIC,
+        outputMode="RGB" if grey else None,
+        flags=ImageCms.Flags.NOOPTIMIZE,
+    )
+    assert turned is not None
+    return np.asarray(turned)
+
+
+def noise(*shape: int, kind: type[Any] = np.uint8) -> Array:
+    return RANDOM.integers(0, np.iinfo(kind).max + 1, shape, dtype=kind)
+
+
+@pytest.mark.parametrize("curve", CURVES)
+@pytest.mark.parametrize(
+    "colourants", [SRGB, P3, ADOBE, PROPHOTO, None], ids=["srgb", "p3", "adobe", "prophoto", "grey"]
+)
+def test_the_same_colours_as_littlecms(tmp_path: Path, curve: str, colourants: Any) -> None:
+    icc = profile(CURVES[curve], colourants)
+    picture = noise(9, 13, 3) if colourants else noise(9, 13)
+    Image.fromarray(picture).save(tmp_path / "a.png", icc_profile=icc)
+    wanted = by_littlecms(picture, icc)
+    # Of 8 bits LittleCMS rounds; near black the steepest curves make more of that.
+    np.testing.assert_allclose(np.rint(encode(read(tmp_path / "a.png")) * 255), wanted, atol=2.1)
+
+
+@pytest.mark.parametrize("colourants", [P3, None], ids=["p3", "grey"])
+@pytest.mark.parametrize("suffix", [".png", ".jpg", ".webp", ".tif", "16.png", "16.tif"])
+def test_every_kind_of_file_can_have_a_profile(tmp_path: Path, suffix: str, colourants: Any) -> None:
+    icc = profile(gamma(1.8), colourants)
+    picture = np.full((9, 13, 3), (60, 130, 220), np.uint8) if colourants else np.full((9, 13), 130, np.uint8)
+    path = tmp_path / f"a{suffix}"
+    if suffix == "16.png":
+        deep = np.atleast_3d(picture).astype(np.uint16) * 257
+        png(path, deep, chunk(b"iCCP", b"x\0\0" + zlib.compress(icc)))
+    elif suffix == "16.tif":
+        kind = "rgb" if colourants else "minisblack"
+        tifffile.imwrite(path, picture.astype(np.uint16) * 257, photometric=kind, iccprofile=icc)
+    else:
+        lossless = {"lossless": True} if suffix == ".webp" else {"quality": 100} if suffix == ".jpg" else {}
+        Image.fromarray(picture).save(path, icc_profile=icc, **lossless)
+    with pytest.warns(ChangedPictures, match=r"^1 of 1 pictures in .* not sRGB \(Test: turned into sRGB\)$"):
+        image = read_pictures(path, least=1).images[0]
+    np.testing.assert_allclose(encode(image) * 255, np.broadcast_to(by_littlecms(picture, icc), image.shape), atol=2.1)
+
+
+def test_16_bits_keep_all_their_bits(tmp_path: Path) -> None:
+    picture = noise(9, 13, 3, kind=np.uint16)
+    tifffile.imwrite(tmp_path / "a.tif", picture, photometric="rgb", iccprofile=profile(LINEAR, SRGB))
+    np.testing.assert_allclose(read(tmp_path / "a.tif"), picture / 65535, atol=3e-5)
+
+
+@pytest.mark.parametrize(
+    "icc", [profile(TOE, SRGB), ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()]
+)
+def test_srgb_is_not_told(tmp_path: Path, icc: bytes) -> None:
+    picture = noise(9, 13, 3)
+    Image.fromarray(picture).save(tmp_path / "a.png", icc_profile=icc)
+    np.testing.assert_array_equal(read_pictures(tmp_path, least=1).images[0], decode(picture / np.float32(255)))
+
+
+def test_linear_transfer_means_the_numbers(tmp_path: Path) -> None:
+    picture = noise(9, 13, 3)
+    Image.fromarray(picture).save(tmp_path / "a.png", icc_profile=profile(gamma(1.8), P3))
+    image = read_pictures(tmp_path, transfer="linear", least=1).images[0]
+    np.testing.assert_array_equal(image, picture / np.float32(255))
+
+
+@pytest.mark.parametrize("icc", [b"nonsense", profile(LINEAR, P3)[:300], profile(b"unkn" + bytes(8), P3)])
+def test_what_is_not_known_is_told_and_taken_as_srgb(tmp_path: Path, icc: bytes) -> None:
+    picture = noise(9, 13, 3)
+    Image.fromarray(picture).save(tmp_path / "0.png", icc_profile=icc)
+    Image.fromarray(picture).save(tmp_path / "1.png", icc_profile=profile(gamma(1.8), P3, "Wide"))
+    with pytest.warns(
+        ChangedPictures, match=r"^2 of 2 .*Wide: turned into sRGB; .*: not known here and taken as sRGB"
+    ) as caught:
+        image = read_pictures(tmp_path).images[0]
+    assert len(caught) == 1
+    np.testing.assert_array_equal(image, decode(picture / np.float32(255)))
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16])
+@pytest.mark.parametrize(
+    ("numbers", "curve", "colourants"),
+    [((12, 13), TOE, P3), ((12, 8), LINEAR, P3), ((1, 8), LINEAR, SRGB), ((9, 13), TOE, None)],
+)
+def test_cicp_of_a_png(
+    tmp_path: Path, numbers: tuple[int, int], curve: bytes, colourants: Any, kind: type[Any]
+) -> None:
+    colours = [(0.67349, 0.27904, -0.00193), (0.16567, 0.67534, 0.02998), (0.12507, 0.04562, 0.79686)]  # BT.2020
+    icc = profile(curve, colourants or colours)
+    picture = noise(9, 13, 3)
+    deep = picture.astype(kind) * (257 if kind is np.uint16 else 1)
+    path = png(tmp_path / "a.png", deep, chunk(b"cICP", bytes([*numbers, 0, 1])))
+    np.testing.assert_allclose(encode(read(path)) * 255, by_littlecms(picture, icc), atol=2.1)
+
+
+@pytest.mark.parametrize("numbers", [(9, 16, 0, 1), (9, 18, 0, 1), (12, 13, 1, 1), (12, 13, 0, 0), (77, 13, 0, 1)])
+def test_cicp_that_is_not_known_is_told(tmp_path: Path, numbers: tuple[int, ...]) -> None:
+    png(tmp_path / "a.png", noise(9, 13, 3), chunk(b"cICP", bytes(numbers)))
+    with pytest.warns(ChangedPictures, match="cICP .* taken as sRGB"):
+        read_pictures(tmp_path, least=1)
+
+
+def test_a_camera_names_adobe_rgb_in_its_exif(tmp_path: Path) -> None:
+    exif = Image.Exif()
+    exif.get_ifd(0x8769)[0xA001] = 65535
+    exif.get_ifd(0x8769)[0xA005] = {1: "R03"}
+    picture = np.full((8, 8, 3), (60, 130, 200), np.uint8)
+    Image.fromarray(picture).save(tmp_path / "a.jpg", quality=100, exif=exif)
+    with pytest.warns(ChangedPictures, match="Adobe RGB"):
+        image = read_pictures(tmp_path, least=1).images[0]
+    wanted = by_littlecms(picture, profile(gamma(563 / 256), ADOBE))
+    np.testing.assert_allclose(encode(image) * 255, wanted, atol=3)
