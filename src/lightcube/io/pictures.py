@@ -84,7 +84,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     -----
     ChangedPictures
         Where a film is of high dynamic range (PQ, HLG) or wide colours, which are brought into sRGB with white at 203
-        nits; and where it is interlaced, of which one field is kept.
+        nits, or a picture has other colours than sRGB; and where a film is interlaced, of which one field is kept.
     TransparentPictures
         Once, where pictures are not opaque: they are put on white, in linear light.
     DoubtfulFolder
