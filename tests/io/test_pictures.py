@@ -168,14 +168,14 @@ def test_what_is_left_out_of_a_folder_is_said_once(tmp_path: Path) -> None:
     for name in (".DS_Store", "Thumbs.db", "desktop.ini", "Desktop.INI", "._0.png", ".hidden"):
         (tmp_path / name).write_bytes(b"x")
     assert len(read_pictures(tmp_path)) == 2
-    for name in ("a.heic", "b.gif", "notes.txt"):
+    for name in ("a.cr2", "b.gif", "notes.txt"):
         (tmp_path / name).write_bytes(b"x")
-    with pytest.warns(DoubtfulFolder, match=r": 3 of what is .* left out: a\.heic, b\.gif, notes\.txt$") as caught:
+    with pytest.warns(DoubtfulFolder, match=r": 3 of what is .* left out: a\.cr2, b\.gif, notes\.txt$") as caught:
         assert len(read_pictures(tmp_path)) == 2
     assert len(caught) == 1
     (tmp_path / "z.png").mkdir()
     (tmp_path / "z.tiff.part").write_bytes(b"x")
-    with pytest.warns(DoubtfulFolder, match=r": 5 of what is .* a\.heic, b\.gif, notes\.txt and 2 more$"):
+    with pytest.warns(DoubtfulFolder, match=r": 5 of what is .* a\.cr2, b\.gif, notes\.txt and 2 more$"):
         read_pictures(tmp_path)
 
 

@@ -166,8 +166,8 @@ def test_equal_names_are_told_apart(folder: Path) -> None:
 
 
 def test_pictures_are_looked_up_beside_the_file(folder: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    inner = folder / "photos" / "inner"
-    inner.mkdir(exist_ok=True)
+    inner = folder / "far" / "inner"
+    inner.mkdir(parents=True, exist_ok=True)
     file = stage_file(inner, MINIMAL | {"picture": [{"file": "../../alone/me.png", "screen": "wall"}]})
     monkeypatch.chdir(inner)
     for path in (file, "stage.toml"):
