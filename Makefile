@@ -2,6 +2,7 @@
 # make test   set everything up and run the tests, compiled, and those of the rooms that compute interpreted too
 #             (one thread for each of the processes that run side by side; tests of threads take more)
 # make check  lint, format and types
+# make fuzz   26,000 harmed files of all kinds, of which the tests take a few hundred
 # Use another Python with: make demo PYTHON=python3.12
 
 PYTHON ?= python3
@@ -10,7 +11,7 @@ EXTRAS ?= dev,heif,plot,notebook,remote,cluster
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 
-.PHONY: demo test check coverage clean
+.PHONY: demo test check coverage fuzz clean
 
 demo: .venv/.ready
 	$(BIN)/lightcube demo
@@ -27,6 +28,9 @@ check: .venv/.ready-$(EXTRAS)
 coverage: .venv/.ready-$(EXTRAS)
 	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -q
 	$(BIN)/coverage report --skip-covered --show-missing
+
+fuzz: .venv/.ready-$(EXTRAS)
+	LIGHTCUBE_FUZZ=2000 $(BIN)/python -m pytest -q -n auto tests/hostile
 
 clean:
 	rm -rf .venv out .mypy_cache .ruff_cache .pytest_cache .hypothesis

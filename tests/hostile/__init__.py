@@ -1,0 +1,1 @@
+"""What means harm, or was harmed."""
