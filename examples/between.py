@@ -100,7 +100,10 @@ def main(folder: Path) -> None:
                 strips.append(strip(cube, found.period_deg / len(targets)))
     print("\n| set-up | " + " | ".join(left) + " |")
     print("|---" * (1 + len(left)) + "|")
+    everywhere = set.intersection(*map(set, left.values()))  # not all can be tried of every cube
     for kind, disturbance in DISTURBANCES.items():
+        if kind not in everywhere:
+            continue
         words = "all of these at once" if kind == "all" else disturbance
         print(f"| {words} | " + " | ".join(f"{each[kind]['psnr_mean']:.1f}" for each in left.values()) + " |")
     print("| *the wanted picture half a pixel to the right* | " + " | ".join(f"{each:.1f}" for each in moved) + " |")
