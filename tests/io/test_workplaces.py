@@ -1,5 +1,6 @@
 """What is written is there as a whole and lasts, whatever ends the program that writes it."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -186,3 +187,20 @@ def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="there is no folder"):
         write(tmp_path / "file" / "x.txt")
+
+
+@pytest.mark.parametrize(("number", "fails"), [(errno.EINVAL, False), (errno.ENOTSUP, False), (errno.EIO, True)])
+def test_disks_that_cannot_be_asked_to_settle_are_written_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int, fails: bool
+) -> None:
+    def fsync(_: int) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    if fails:
+        with pytest.raises(InputError, match="writing .* failed"):
+            write(tmp_path / "x.txt")
+    else:
+        write(tmp_path / "x.txt")
+    assert (tmp_path / "x.txt").exists() is not fails
+    assert hidden(tmp_path) == []

@@ -91,7 +91,7 @@ def square(frame: "av.VideoFrame", aspect: Fraction | None) -> tuple[int, int]:
     return round(frame.height * max(1.0, 1 / ratio)), round(frame.width * max(1.0, ratio))
 
 
-def upright(levels: Levels, frame: "av.VideoFrame") -> Levels:
+def turned(levels: Levels, frame: "av.VideoFrame") -> Levels:
     """`levels` turned by quarters and mirrored as the frame's display matrix says."""
     matrix = frame.side_data.get("DISPLAYMATRIX")
     if matrix is None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 from lightcube.errors import InputError
 from lightcube.io._decode import Budget, Take, decoding, refuse_cut_short
-from lightcube.io._frames import Levels, is_known, levels_of, matrix_of, square, upright
+from lightcube.io._frames import Levels, is_known, levels_of, matrix_of, square, turned
 from lightcube.io._hdr import converted, curve_of, ordinary
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def read_video(path: Path, budget: Budget, take: Take) -> list[str]:
                 budget.spend(path, *shape)
                 if not is_known(frame):
                     raise InputError(f"{path} has colours of a kind that is not read (YCgCo, ICtCp): convert it first")
-                take(upright(_levels(frame, shape, notes), frame))
+                take(turned(_levels(frame, shape, notes), frame))
     return list(notes)
 
 

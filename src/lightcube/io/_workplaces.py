@@ -5,6 +5,7 @@ takes the lock away however a program ends, so the next one that writes there kn
 """
 
 import ctypes
+import errno
 import os
 import re
 import shutil
@@ -110,6 +111,9 @@ def settle(path: Path) -> None:
     opened = os.open(path, os.O_RDONLY)
     try:
         os.fsync(opened)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP):  # some network disks cannot be asked, and need not be
+            raise
     finally:
         os.close(opened)
 

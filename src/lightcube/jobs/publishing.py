@@ -11,9 +11,9 @@ from lightcube.backward.job import Job
 from lightcube.backward.solution import Solution, merged
 from lightcube.errors import InputError
 from lightcube.io._places import Place, place
+from lightcube.io.cubes import read_cube
 from lightcube.io.outputs import Output
 from lightcube.jobs.partial import DiskStore, begun_store, discard_partial, is_finished, load_job, published_path
-from lightcube.jobs.reading import load
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.scoring import metrics
@@ -90,7 +90,7 @@ def finish(job: Job, store: DiskStore, out: str | Path, *, overwrite: bool = Fal
 def _is_there(path: Place, cube: Cube) -> bool:
     """Whether this very cube stands there already."""
     try:
-        found = load(path)
+        found = read_cube(path)
     except InputError:
         return False
     return np.array_equal(found.extinction, cube.extinction) and np.array_equal(found.powers, cube.powers)
