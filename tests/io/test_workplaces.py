@@ -198,7 +198,7 @@ def test_disks_that_cannot_be_asked_to_settle_are_written_all_the_same(
 
     monkeypatch.setattr(os, "fsync", fsync)
     if fails:
-        with pytest.raises(InputError, match="writing .* failed"):
+        with pytest.raises(InputError, match=r"writing .* failed"):
             write(tmp_path / "x.txt")
     else:
         write(tmp_path / "x.txt")
