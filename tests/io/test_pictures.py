@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 from lightcube.errors import InputError
-from lightcube.io import DoubtfulFolder, TransparentPictures, _decode, read_pictures, save
+from lightcube.io import DoubtfulFolder, TransparentPictures, _bounds, read_pictures, save
 from lightcube.optics.transfer import Transfer, decode, from_levels, to_uint8
 from lightcube.optics.views import spread_angles
 
@@ -453,7 +453,7 @@ class TestRefused:
         path = tmp_path / ("f" if suffix == ".png" else f"a{suffix}")
         if suffix != ".png":
             sample(path)
-        monkeypatch.setattr(_decode, "_MOST_PIXELS", limit)
+        monkeypatch.setattr(_bounds, "MOST_PIXELS", limit)
         with pytest.raises(InputError, match="megapixels, the most a picture can have"):
             read_pictures(path)
 
@@ -466,9 +466,9 @@ class TestRefused:
             sample(path)
         else:
             folder_of(path, [Image.fromarray(picture) for picture in noise()])
-        monkeypatch.setattr(_decode, "_memory", lambda: 3 * 35 * 12 * 2)
+        monkeypatch.setattr(_bounds, "memory", lambda: 3 * 35 * 12 * 2)
         assert len(read_pictures(path)) == 3
-        monkeypatch.setattr(_decode, "_memory", lambda: 3 * 35 * 12 * 2 - 1)
+        monkeypatch.setattr(_bounds, "memory", lambda: 3 * 35 * 12 * 2 - 1)
         with pytest.raises(InputError, match=r"one too many.* half of this machine's memory"):
             read_pictures(path)
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io import TransparentPictures, _decode, _png, _still, read_pictures
+from lightcube.io import TransparentPictures, _bounds, _png, _still, read_pictures
 
 Array = NDArray[Any]
 
@@ -250,9 +250,9 @@ class TestLarge:
     def test_the_header_alone_tells(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str) -> None:
         path = tmp_path / f"a{suffix}"
         Image.fromarray(noise(40, 50, 3)).save(path)
-        monkeypatch.setattr(_decode, "_MOST_PIXELS", 2000)
+        monkeypatch.setattr(_bounds, "MOST_PIXELS", 2000)
         assert len(read(path)) == 1
-        monkeypatch.setattr(_decode, "_MOST_PIXELS", 1998)
+        monkeypatch.setattr(_bounds, "MOST_PIXELS", 1998)
         monkeypatch.setattr(Image.Image, "load", lambda *_: pytest.fail("it was unpacked"))
         with pytest.raises(InputError, match=r"has more than 0\.001998 megapixels"):
             read(path)

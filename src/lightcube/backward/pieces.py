@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.backward.job import Job, level_name
+from lightcube.backward.kept import EARLIER, HISTORY, LOOKS, POWERS, VOXELS, result_of, shape_of, state_of
 from lightcube.backward.problem import Problem, pose, volume_from_unknowns
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.reckoning import Reckoning, is_look, is_look_ahead
@@ -27,13 +28,6 @@ _SPARE_DB = 0.5
 #: The solver ends where the mean squared difference was never so much smaller than it has been for so many passes, and
 #: for so large a part of all of them: some turns take long.
 _BETTER, _IN_VAIN, _PART_IN_VAIN = 0.99, 30, 1 / 3
-#: What is kept of a finished piece, beside its figures: voxels ``(channel, z, y, x)``, and its lamps' powers. Those are
-#: in a checkpoint too, beside the solver's own arrays, none of which is called so.
-VOXELS, POWERS = "extinction", "lamp-powers"
-#: In a checkpoint: the least mean squared difference that was seen, and after how many passes.
-_LOOKS = "looks"
-#: And the history of the phases that are finished.
-_EARLIER = "earlier-history"
 
 Floats = NDArray[np.floating[Any]]
 
@@ -93,7 +87,7 @@ def solve_piece(
     if name in store.names():
         return True
     watch = _Watch(job, name, store, callback, checkpoints=checkpoints)
-    state = store.state(name)
+    state = state_of(job, store, name)
     earlier = watch.go_on_from(state)
     start, phases = None if state else _start(job, name, store), job.phases(name)
     for number in range(1 if len(earlier) else 0, len(phases)):
@@ -141,7 +135,7 @@ def _posed(job: Job, name: str, store: Store, recipe: Recipe) -> tuple[Problem, 
     problem = pose(targets, grid, recipe, part)
     bounds = job.lamp_bounds
     if kind == "unit" and job.frozen:
-        powers = _finished(store, level_name(1))[POWERS]
+        powers = _finished(job, store, level_name(1))[POWERS]
         bounds = (powers, powers)
     low, high = (bound[:, problem.part.colours] for bound in bounds)
     return problem, (low, high)
@@ -156,26 +150,21 @@ def start_of(job: Job, store: Store, level: int, part: Part) -> Floats | None:
         return np.clip(job.start[part.colours, part.slices], 0, job.max_extinction)
     if level >= job.levels:
         return None
-    whole = _finished(store, level_name(level + 1))[VOXELS]
+    whole = _finished(job, store, level_name(level + 1))[VOXELS]
     return enlarged(whole[part.colours], coarse_shape(job.grid.shape, level), part.slices)
 
 
 def known(job: Job, store: Store, name: str) -> Arrays | None:
     """What there is of a piece: its result, else voxels, powers and history of its checkpoint, else None."""
-    found = store.finished(name)
+    found = result_of(job, store, name)
     if found is not None:
         return found
-    state = store.state(name)
+    state = state_of(job, store, name)
     if state is None:
         return None
-    kind, number = name.split("-")
-    shape, channels = coarse_shape(job.grid.shape, int(number)), job.channels
-    if kind == "unit":
-        part = job.parts[int(number)]
-        shape = (part.slices.stop - part.slices.start, *job.grid.shape[1:])
-        channels = part.colours.stop - part.colours.start
-    voxels = volume_from_unknowns(state["x"], shape, channels)
-    return {VOXELS: voxels, POWERS: state[POWERS], "history": np.concatenate([state[_EARLIER], state["history"]])}
+    channels, *shape = shape_of(job, name)
+    voxels = volume_from_unknowns(state["x"], (shape[0], shape[1], shape[2]), channels)
+    return {VOXELS: voxels, POWERS: state[POWERS], HISTORY: np.concatenate([state[EARLIER], state[HISTORY]])}
 
 
 def _handed(arrays: Arrays | None) -> Mapping[str, NDArray[Any]] | None:
@@ -201,8 +190,8 @@ class _Handed(Mapping[str, NDArray[Any]]):
         return len(self._arrays)
 
 
-def _finished(store: Store, name: str) -> Arrays:
-    found = store.finished(name)
+def _finished(job: Job, store: Store, name: str) -> Arrays:
+    found = result_of(job, store, name)
     if found is None:
         raise KeyError(f"{name} is needed and not finished")
     return found
@@ -213,7 +202,7 @@ def _bundle(problem: Problem, result: Result, history: Reals, stop_reason: str) 
     bundle: dict[str, NDArray[Any]] = {
         VOXELS: problem.extinction(result.x),
         POWERS: result.lamp_powers,
-        "history": history,
+        HISTORY: history,
         "rejected": problem.pixels(result.rejected),
         "undetermined": np.array(0 if result.undetermined is None else np.sum(result.undetermined)),
         "stop_reason": np.array(stop_reason),
@@ -246,8 +235,8 @@ class _Watch:
         """Take up what was known where the solver stopped; return the history of the phases before."""
         if state is None:
             return np.empty(0)
-        self._least, self._best_at = (float(each) for each in state[_LOOKS])
-        return state[_EARLIER]
+        self._least, self._best_at = (float(each) for each in state[LOOKS])
+        return state[EARLIER]
 
     def begin(self, problem: Problem, number: int, earlier: Reals) -> None:
         """Watch the phase of such a number, after others of such a history; at what the last one casts it looks."""
@@ -287,7 +276,7 @@ class _Watch:
 
     def _keep(self, progress: Progress) -> None:
         began = time.monotonic()
-        kept = {POWERS: progress.lamp_powers, _LOOKS: np.array([self._least, self._best_at]), _EARLIER: self._earlier}
+        kept = {POWERS: progress.lamp_powers, LOOKS: np.array([self._least, self._best_at]), EARLIER: self._earlier}
         self._store.keep(self._name, {**progress.state(), **kept})
         self._last = time.monotonic()
         self._gap = min(max(min(2 * self._gap, CHECKPOINT_S), _PATIENCE * (self._last - began)), _LATEST_S)

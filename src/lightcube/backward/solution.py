@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from lightcube.backward.job import Job, level_name
-from lightcube.backward.pieces import POWERS, VOXELS, known, start_of
+from lightcube.backward.kept import POWERS, VOXELS
+from lightcube.backward.pieces import known, start_of
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
 from lightcube.backward.wishes import held

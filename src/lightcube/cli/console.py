@@ -14,14 +14,25 @@ from types import FrameType
 from typing import Any
 
 from rich.console import Console
+from rich.text import Text
 
 from lightcube import events
+from lightcube.errors import shown
 from lightcube.events import Said, Tell
 
-#: Results go to standard output, all else to standard error.
-out: Console = Console(soft_wrap=True, highlight=False, markup=False, emoji=False)
 
-err: Console = Console(soft_wrap=True, highlight=False, markup=False, emoji=False, stderr=True)
+class Plain(Console):
+    """A console whose texts can hold names of files: nothing in them moves its cursor or turns its letters round."""
+
+    def render_str(self, text: str, **how: Any) -> Text:
+        """The text as it is printed, line by line."""
+        return super().render_str("\n".join(map(shown, text.split("\n"))), **how)
+
+
+#: Results go to standard output, all else to standard error.
+out: Console = Plain(soft_wrap=True, highlight=False, markup=False, emoji=False)
+
+err: Console = Plain(soft_wrap=True, highlight=False, markup=False, emoji=False, stderr=True)
 
 #: Seconds between two lines of progress.
 _BEAT = 0.5

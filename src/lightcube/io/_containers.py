@@ -1,5 +1,8 @@
 """Whether a file is as long as it says itself: decoders take what there is of a cut file and say nothing."""
 
+from collections import deque
+from collections.abc import Iterator
+from itertools import islice
 from typing import BinaryIO, Literal
 
 _EBML_SEGMENT = b"\x18\x53\x80\x67"
@@ -33,8 +36,23 @@ def is_cut_short(file: BinaryIO) -> bool:
     return False
 
 
-def _page_missing(file: BinaryIO, start: bytes, size: int) -> bool:
-    """Whether the chain of a TIFF's directories leads beyond the file (TIFF 6.0, section 2; BigTIFF)."""
+def count_of_pictures(file: BinaryIO, most: int) -> int:
+    """How many pictures a GIF or a TIFF holds, by its blocks or directories, counted to one more than `most`.
+
+    Of others, which say so themselves, and of damaged ones, there is the number that was found.
+    """
+    file.seek(0)
+    start = file.read(8)
+    if start[:4] == b"GIF8":
+        blocks = _gif_blocks(file)
+        return sum(1 for _ in islice((block for block in blocks if block == b","), most + 1))
+    if start[:2] in (b"II", b"MM"):
+        return sum(1 for _ in islice(_directories(file, start), most + 1))
+    return 0
+
+
+def _directories(file: BinaryIO, start: bytes) -> Iterator[int]:
+    """Yield where each directory of a TIFF ends, one after the other, also beyond the file (TIFF 6.0, 2; BigTIFF)."""
     order: Literal["little", "big"] = "little" if start[:2] == b"II" else "big"
     big = int.from_bytes(start[2:4], order) == 43
     wide, counted, entry = (8, 8, 20) if big else (4, 2, 12)
@@ -44,29 +62,36 @@ def _page_missing(file: BinaryIO, start: bytes, size: int) -> bool:
         seen.add(at)
         file.seek(at)
         end = at + counted + int.from_bytes(file.read(counted), order) * entry
-        if end + wide > size:
-            return True
+        yield end + wide
         file.seek(end)
-    return False
+
+
+def _page_missing(file: BinaryIO, start: bytes, size: int) -> bool:
+    """Whether the chain of a TIFF's directories leads beyond the file."""
+    return any(end > size for end in _directories(file, start))
 
 
 def _gif_end_missing(file: BinaryIO) -> bool:
-    """Whether a GIF ends before the block that says it is over (GIF89a specification, 17 to 27)."""
+    """Whether a GIF ends before the block that says it is over."""
+    last = deque(_gif_blocks(file), maxlen=1)
+    return not last or last[0] in b",!"  # any other that is not ";" is damaged: for the decoder to refuse
+
+
+def _gif_blocks(file: BinaryIO) -> Iterator[bytes]:
+    """Yield what each block of a GIF begins with, to the first that is no picture and no extension (GIF89a, 17-27)."""
     file.seek(10)
     _skip_palette(file, behind=2)
     while block := file.read(1):
-        if block == b";":
-            return False
+        yield block
         if block == b",":
             file.seek(8, 1)
             _skip_palette(file, behind=1)
         elif block == b"!":
             file.seek(1, 1)
-        else:  # damaged: for the decoder to refuse
-            return False
+        else:
+            return
         while (length := int.from_bytes(file.read(1), "little")) > 0:
             file.seek(length, 1)
-    return True
 
 
 def _skip_palette(file: BinaryIO, behind: int) -> None:

@@ -1,20 +1,22 @@
-"""What all readers of pictures share: levels, the budget of pixels, and what is said of damaged files."""
+"""What all readers of pictures share: levels, Pillow's settings, and what is said of damaged files."""
 
 import lzma
-import os
 import struct
 import traceback
 import warnings
 import zlib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from threading import Lock
 from typing import Protocol
 
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from lightcube.errors import InputError
+from lightcube.io import _bounds
+from lightcube.io._bounds import too_large
 from lightcube.io._containers import is_cut_short
 from lightcube.io._files import system_errors
 from lightcube.io._frames import Levels
@@ -27,10 +29,6 @@ class Take(Protocol):
     def __call__(self, levels: Levels, space: Space | None = None) -> None: ...
 
 
-#: A picture in memory takes three float32 numbers per pixel.
-_BYTES_PER_PIXEL = 12
-#: No camera's picture has more; a file that says so would only fill the memory.
-_MOST_PIXELS = 250_000_000
 _ORIENTATION = 0x0112
 
 #: What is raised over bytes that are not what they should be, beside what decoders raise of their own.
@@ -52,17 +50,13 @@ _DECODERS = ("PIL", "av", "tifffile", "imagecodecs")
 @contextmanager
 def decoding(path: Path) -> Iterator[None]:
     """Turn what a decoder raises over the bytes of `path` into an `InputError` of one sentence."""
-    with system_errors(path, "reading"), warnings.catch_warnings():
-        # Pillow warns of odd tags and metadata that no picture needs; broken pixels are an exception.
-        warnings.filterwarnings("ignore", category=UserWarning, module="PIL")
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the budget refuses those
+    with system_errors(path, "reading"), _OF_PILLOW:
         try:
-            with _large_pictures():
-                yield
+            yield
         except InputError:
             raise
         except Image.DecompressionBombError as error:
-            raise _too_large(path) from error
+            raise too_large(path) from error
         except MemoryError as error:
             raise InputError(f"{path} does not fit into this machine's memory: make it smaller first") from error
         except UnidentifiedImageError as error:
@@ -84,15 +78,37 @@ def _means_damage(error: Exception) -> bool:
     return stumbled and trace[-1][0].f_globals["__name__"].partition(".")[0] in _DECODERS
 
 
-@contextmanager
-def _large_pictures() -> Iterator[None]:
-    """Let Pillow open what is not too large here: it refuses what has more than twice its own limit."""
-    before = Image.MAX_IMAGE_PIXELS
-    Image.MAX_IMAGE_PIXELS = _MOST_PIXELS // 2
-    try:
-        yield
-    finally:
-        Image.MAX_IMAGE_PIXELS = before
+class _OfPillow:
+    """What is set in Pillow and of warnings while pictures are read: by the first reader of several, until the last.
+
+    Both are the whole program's. Readers in threads that each put back what they found would leave another's behind.
+    """
+
+    def __init__(self) -> None:
+        self._lock, self._readers, self._settings = Lock(), 0, ExitStack()
+
+    def __enter__(self) -> None:
+        with self._lock:
+            self._readers += 1
+            if self._readers == 1:
+                self._set()
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._readers -= 1
+            if not self._readers:
+                self._settings.close()
+
+    def _set(self) -> None:
+        self._settings.enter_context(warnings.catch_warnings())
+        # Pillow warns of odd tags and metadata that no picture needs; broken pixels are an exception.
+        warnings.filterwarnings("ignore", category=UserWarning, module="PIL")
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the budget refuses those
+        self._settings.callback(setattr, Image, "MAX_IMAGE_PIXELS", Image.MAX_IMAGE_PIXELS)
+        Image.MAX_IMAGE_PIXELS = _bounds.MOST_PIXELS // 2  # it refuses what has more than twice as many
+
+
+_OF_PILLOW = _OfPillow()
 
 
 def damaged(path: Path) -> InputError:
@@ -108,48 +124,11 @@ def _unidentified(path: Path) -> InputError:
     return InputError(f"{path} cannot be read, it is no picture of a known kind: mend or remove it")
 
 
-def _too_large(path: Path) -> InputError:
-    """Return the exception for a picture that is larger than any may be."""
-    return InputError(
-        f"{path} has more than {_MOST_PIXELS / 1e6:g} megapixels, the most a picture can have: make it smaller first"
-    )
-
-
 def refuse_cut_short(path: Path) -> None:
     """Raise `InputError` where the container in `path` says that there should be more of it."""
     with path.open("rb") as file:
         if is_cut_short(file):
             raise InputError(f"{path} is cut short, its end is missing: copy it or make it again")
-
-
-class Budget:
-    """Pixels that may still be unpacked, so that no file fills the machine's memory: half of it, at most."""
-
-    def __init__(self) -> None:
-        self.pixels = _memory() // 2 // _BYTES_PER_PIXEL
-
-    def check(self, path: Path, rows: int, columns: int) -> None:
-        """Raise `InputError` where one more picture, whose header says its size, is too large or one too many."""
-        if rows * columns > _MOST_PIXELS:
-            raise _too_large(path)
-        if self.pixels < rows * columns:
-            raise InputError(
-                f"{path} is one too many: with it, pictures fill more than half of this machine's memory: "
-                "give fewer or smaller ones"
-            )
-
-    def spend(self, path: Path, rows: int, columns: int) -> None:
-        """Take one picture's pixels off, after `check`."""
-        self.check(path, rows, columns)
-        self.pixels -= rows * columns
-
-
-def _memory() -> int:
-    """Bytes of memory that the machine has; 8 GiB where the system does not tell."""
-    try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):
-        return 8 * 2**30
 
 
 def levels_of_image(path: Path, image: Image.Image) -> Levels:

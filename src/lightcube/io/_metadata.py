@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from lightcube.errors import InputError
+from lightcube.errors import InputError, encodable
 from lightcube.io import _older
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.arrays import locked
@@ -55,7 +55,7 @@ def to_json(cube: Cube) -> dict[str, Any]:
         **({} if cube.grid.tall == 1 else {"tall": cube.grid.tall}),
         "rig": rig_to_json(cube.rig),
         "lamp_powers": cube.powers.tolist(),
-        "names": list(cube.names),
+        "names": plain(cube.names),
         "transfer": cube.transfer,
         "status": cube.status,
         "hold_deg": float(cube.hold_deg),
@@ -67,14 +67,14 @@ def to_json(cube: Cube) -> dict[str, Any]:
 def plain(value: Any) -> Any:
     """`value` in JSON's own types; NaN and infinities, which JSON has not, become null."""
     if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {encodable(str(key)): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray | np.generic):
         return plain(value.tolist())
     if isinstance(value, list | tuple | set):
         return [plain(item) for item in value]
     if isinstance(value, float):
         return float(value) if math.isfinite(value) else None
-    return value if value is None or isinstance(value, bool | int | str) else str(value)
+    return value if value is None or isinstance(value, bool | int) else encodable(str(value))
 
 
 def from_json(path: Path, document: object, extinction: NDArray[Any], targets: NDArray[Any] | None) -> Cube:

@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib.npyio import NpzFile
 
 from lightcube.io import _metadata
 from lightcube.io._archives import archive
+from lightcube.io._bounds import MOST_TEXT
 from lightcube.io._files import system_errors
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
@@ -23,6 +25,13 @@ def write_npz(path: Path, cube: Cube) -> None:
         np.savez(file, **arrays)
 
 
+def _document(path: Path, arrays: NpzFile) -> Any:
+    """What the archive says in JSON."""
+    if arrays.zip and arrays.zip.getinfo("lightcube.npy").file_size > 4 * MOST_TEXT:  # text takes four bytes a letter
+        raise _metadata.damaged(path, "what it says is larger than it can be")
+    return json.loads(str(arrays["lightcube"]))
+
+
 def read_npz(path: Path) -> Cube:
     """Read a cube from NumPy's archive."""
     with (
@@ -30,7 +39,7 @@ def read_npz(path: Path) -> Cube:
         path.open("rb") as file,
         archive(file, path, partial(_metadata.damaged, path)) as arrays,
     ):
-        document = json.loads(str(arrays["lightcube"])) if "lightcube" in arrays else None
+        document = _document(path, arrays) if "lightcube" in arrays else None
         _metadata.check_version(path, document)
         if "extinction" not in arrays:
             raise _metadata.damaged(path, "its array 'extinction' is missing")

@@ -18,6 +18,7 @@ from typing import IO, Any
 from uuid import uuid4
 
 from lightcube.errors import InputError
+from lightcube.io._bounds import check_file
 from lightcube.io._workplaces import settle
 
 #: A file on this disk, or a URL.
@@ -113,7 +114,7 @@ def read_bytes(at: Place) -> bytes | None:
     """Return what is in a file, or None where there is none."""
     if isinstance(at, Path):
         with suppress(FileNotFoundError):
-            return at.read_bytes()
+            return check_file(at).read_bytes()
         return None
     with _reaching(at, "reading") as (store, path), suppress(FileNotFoundError):
         return bytes(store.cat_file(path))

@@ -2,7 +2,7 @@
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -11,7 +11,8 @@ import numpy as np
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io._decode import Budget, Take, damaged, levels_of_image, orientation_of, upright
+from lightcube.io._bounds import MOST_PICTURES, Budget, crowded, unpacks_beyond
+from lightcube.io._decode import Take, damaged, levels_of_image, orientation_of, upright
 from lightcube.io._frames import Levels, levels_of
 from lightcube.io._samples import full_of, with_opacity
 from lightcube.io._spaces import space_of_cicp, space_of_profile
@@ -19,8 +20,12 @@ from lightcube.io._spaces import space_of_cicp, space_of_profile
 PNG_START = b"\x89PNG\r\n\x1a\n"
 
 _BIT_DEPTH = 24  # bytes from the start
-#: What belongs to the file and not to one frame of an animation.
-_OF_THE_FILE = (b"acTL", b"IHDR", b"eXIf", b"IEND")
+#: What the pixels of each frame of an animation are made with.
+_OF_EACH_FRAME = (b"PLTE", b"tRNS")
+#: So many chunks are always read, and one more for so many bytes: encoders write some thousands of bytes into each.
+_CHUNKS, _BYTES_PER_CHUNK = 4 * MOST_PICTURES, 512
+#: Samples of a pixel by the kind of its colours; and what encoders may leave behind the last row.
+_SAMPLES, _SLACK = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}, 1 << 16
 _CLEARED, _AS_BEFORE = 1, 2
 _OVER = 1
 
@@ -45,9 +50,10 @@ def read_png(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
         Where the file is damaged.
     """
     data = path.read_bytes()
+    _refuse_crumbs(path, data)
     with Image.open(BytesIO(data)) as image:
         columns, rows = image.size
-        budget.check(path, rows, columns)
+        budget.check(path, (rows, columns))
         image.load()  # checks the whole file, and reads metadata behind the pixels
         orientation = orientation_of(image)
         before = dict(_chunks(path, data, until=b"IDAT"))
@@ -56,10 +62,13 @@ def read_png(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
             budget.spend(path, rows, columns)
             take(upright(_levels(path, data, image), orientation), space)
             return
-    frames = list(_frames(path, data, rows, columns))
-    if single and len(frames) > 1:
+    stated = int.from_bytes(before[b"acTL"][:4], "big")
+    if single and stated > 1:
         raise InputError(f"{path} is an animation inside a folder of pictures: give that file itself, or move it")
-    for canvas in _composed(path, frames, rows, columns, budget):
+    if stated > MOST_PICTURES:
+        raise crowded(path)
+    budget.check(path, *[(rows, columns)] * stated)
+    for canvas in _composed(path, _frames(path, data, rows, columns), rows, columns, budget):
         take(upright(canvas, orientation), space)
 
 
@@ -67,10 +76,25 @@ def _levels(path: Path, data: bytes, image: Image.Image) -> Levels:
     """Levels of a PNG, through PyAV where Pillow would drop bits or what is transparent."""
     if data[_BIT_DEPTH] < 16:
         return levels_of_image(path, image)
+    packed = b"".join(content for name, content in _chunks(path, data) if name == b"IDAT")
+    columns, rows = image.size
+    row = 2 * columns * _SAMPLES.get(data[_BIT_DEPTH + 1], 4) + 1
+    if unpacks_beyond(packed, row * rows + 8 * (rows + columns) + _SLACK):  # FFmpeg would unpack it to its end
+        raise damaged(path)
     import av
 
     with av.open(BytesIO(data), "r", format="png_pipe") as container:
         return levels_of(next(iter(container.decode(video=0))))
+
+
+def _refuse_crumbs(path: Path, data: bytes) -> None:
+    """Raise `InputError` where a file is made of more chunks than any encoder makes: each takes time to read."""
+    at, left = len(PNG_START), _CHUNKS + len(data) // _BYTES_PER_CHUNK
+    while at < len(data) and left:
+        at += 12 + int.from_bytes(data[at : at + 4], "big")
+        left -= 1
+    if not left:
+        raise damaged(path)
 
 
 def _chunks(path: Path, data: bytes, until: bytes = b"IEND") -> Iterator[tuple[bytes, bytes]]:
@@ -89,7 +113,7 @@ def _chunks(path: Path, data: bytes, until: bytes = b"IEND") -> Iterator[tuple[b
 
 def _frames(path: Path, data: bytes, rows: int, columns: int) -> Iterator[_Frame]:
     """Yield the pictures of an animated PNG; the still one that stands for them elsewhere is left out."""
-    header, before, pixels, control, count = b"", b"", b"", b"", 0
+    header, before, pixels, control, count = b"", b"", bytearray(), b"", 0
     for name, content in _chunks(path, data):
         if name == b"IHDR":
             header = content
@@ -97,11 +121,11 @@ def _frames(path: Path, data: bytes, rows: int, columns: int) -> Iterator[_Frame
             count = int.from_bytes(content[:4], "big")
         elif name in (b"IDAT", b"fdAT"):
             pixels += _chunk(b"IDAT", content if name == b"IDAT" else content[4:]) if control else b""
-        elif not control and name not in (*_OF_THE_FILE, b"fcTL"):
+        elif not control and name in _OF_EACH_FRAME:
             before += _chunk(name, content)
         if control and pixels and name in (b"fcTL", b"IEND"):
-            yield _frame(path, header, before + pixels, control, (rows, columns))
-            pixels, count = b"", count - 1
+            yield _frame(path, header, before + bytes(pixels), control, (rows, columns))
+            pixels, count = bytearray(), count - 1
         if name == b"fcTL":
             control = content
     if count:
@@ -124,7 +148,7 @@ def _chunk(name: bytes, content: bytes) -> bytes:
     return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
 
 
-def _composed(path: Path, frames: list[_Frame], rows: int, columns: int, budget: Budget) -> Iterator[Levels]:
+def _composed(path: Path, frames: Iterable[_Frame], rows: int, columns: int, budget: Budget) -> Iterator[Levels]:
     """Yield what the canvas shows after each of `frames`."""
     canvas: Levels | None = None
     for frame in frames:

@@ -5,9 +5,11 @@ from pathlib import Path
 from PIL import Image
 
 from lightcube.errors import InputError
+from lightcube.io._bounds import MOST_PICTURES, Budget, check_file, crowded
+from lightcube.io._containers import count_of_pictures
 from lightcube.io._decode import (
-    Budget,
     Take,
+    damaged,
     decoding,
     levels_of_image,
     orientation_of,
@@ -21,6 +23,10 @@ from lightcube.io._tiff import TIFF_STARTS, read_tiff
 
 #: How the kinds of pictures of a multi-picture JPEG begin that are views of their own: panorama, disparity, angles.
 _VIEW_OF_MPO = "Multi-Frame"
+#: A JPEG takes one bit at least for each 8 x 8 pixels; what is missing would be filled up with grey.
+_PIXELS_PER_BYTE = 512
+#: How each pass over a JPEG's pixels begins; encoders make about ten.
+_SCAN, _MOST_SCANS = b"\xff\xda", 500
 _MP_ENTRIES = 0xB002
 _INTEROPERABILITY = 0xA005
 
@@ -45,8 +51,10 @@ def _read(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
     """Give the pictures of `path` to `take`, by the reader of what the file starts with."""
     learn(path)
     with decoding(path):
-        with path.open("rb") as file:
+        with check_file(path).open("rb") as file:
             start = file.read(8)
+            if count_of_pictures(file, MOST_PICTURES) > MOST_PICTURES:
+                raise crowded(path)
         if start.startswith(TIFF_STARTS):
             read_tiff(path, budget, take, single=single)
         elif start == PNG_START:
@@ -60,7 +68,13 @@ def _read(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
 def _read_others(path: Path, image: Image.Image, budget: Budget, take: Take, *, single: bool) -> None:
     """Give the pictures of a GIF, WebP, JPEG, AVIF or HEIC to `take`, all of the size of the first."""
     columns, rows = image.size
-    for index in _views(image):
+    if image.format in ("JPEG", "MPO"):
+        data = path.read_bytes()
+        if rows * columns > _PIXELS_PER_BYTE * len(data) or data.count(_SCAN) > _MOST_SCANS:
+            raise damaged(path)
+    views = _views(image)
+    budget.check(path, *[(rows, columns)] * (1 if single else len(views)))
+    for index in views:
         if single and index:
             if image.format in ("GIF", "WEBP", "AVIF"):
                 raise InputError(

@@ -1,6 +1,8 @@
 """Pages of TIFF files, through tifffile; through Pillow what its libtiff unpacks and tifffile does not."""
 
 import logging
+import math
+import zlib
 from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
@@ -10,7 +12,8 @@ import numpy as np
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io._decode import Budget, Take, damaged, refuse_cut_short, upright
+from lightcube.io._bounds import Budget, unpacks_beyond
+from lightcube.io._decode import Take, damaged, refuse_cut_short, upright
 from lightcube.io._frames import Levels
 from lightcube.io._samples import Samples, full_of, of_inks, of_lab, spread, with_opacity
 from lightcube.io._spaces import space_of_profile
@@ -42,6 +45,9 @@ _NUMBERS = (
     *("photometric", "compression", "predictor", "planarconfig"),
 )
 _ROWS = 256
+_DEFLATE, _OLD_DEFLATE, _LZMA = 8, 32946, 34925
+#: What packers may leave behind the last pixel of a strip.
+_SLACK = 1 << 16
 
 
 def read_tiff(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
@@ -61,8 +67,11 @@ def read_tiff(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
         pages = [page for page in pages if not page.subfiletype & _REDUCED] or pages
         if not pages:
             raise InputError(f"{path} holds masks or nothing at all, no picture: remove it")
-        for page in pages[: 1 if single else None]:
+        pages = pages[: 1 if single else None]
+        for page in pages:
             _refuse_others(path, page)
+        budget.check(path, *((page.imagelength, page.imagewidth) for page in pages))
+        for page in pages:
             budget.spend(path, page.imagelength, page.imagewidth)
             profile = None if page.photometric == _LAB else page.tags.valueof(_PROFILE)
             take(_levels(path, page), space_of_profile(profile))
@@ -140,6 +149,7 @@ def _samples(path: Path, page: "TiffPage") -> Samples:
     pieces = int(np.prod(page.chunked))
     if len(places) < (1 if page.is_contiguous else pieces) or not all(at and length for at, length in places):
         raise InputError(f"{path} lacks some of its pixels, it is damaged: copy it or make it again")
+    _refuse_swollen(path, page, places)
     try:
         samples = page.asarray(squeeze=False, maxworkers=1)
     except ImportError as error:  # Zstandard and LZMA stand in the tables of tifffile wherever they might be
@@ -150,6 +160,19 @@ def _samples(path: Path, page: "TiffPage") -> Samples:
     if samples.shape != wanted:
         raise InputError(f"{path} unpacks to {samples.shape} samples, not to {wanted}: copy it or make it again")
     return cast("Samples", samples.astype(np.uint8 if page.bitspersample <= 8 else np.uint16, copy=False))
+
+
+def _refuse_swollen(path: Path, page: "TiffPage", places: Iterable[tuple[int, int]]) -> None:
+    """Raise `InputError` where a strip or a tile unpacks to more than its pixels: what Python has unpacks it all."""
+    wbits = {_DEFLATE: zlib.MAX_WBITS, _OLD_DEFLATE: zlib.MAX_WBITS, _LZMA: 0}.get(page.compression)
+    if wbits is None:
+        return
+    most = math.prod(page.chunks) * max(1, page.bitspersample // 8) + _SLACK
+    with path.open("rb") as file:
+        for at, length in places:
+            file.seek(at)
+            if unpacks_beyond(file.read(length), most, wbits=wbits):
+                raise damaged(path)
 
 
 def _colours(page: "TiffPage", samples: Samples) -> Levels:

@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from lightcube.errors import InputError
+from lightcube.io._bounds import check_file
 from lightcube.io._files import system_errors
 
 #: More than a file that people write ever has; and tables in tables, where reading a key takes time with their square.
-_MOST_BYTES, _MOST_PARTS = 4 << 20, 32
+_MOST_BYTES, _MOST_PARTS = 1 << 20, 32
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _DEEP_KEY = re.compile(rf"(?:^|[{{,\[])[ \t]*+{_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS},}}", re.MULTILINE)
@@ -23,7 +24,7 @@ def read_tables(file: Path, called: str) -> dict[str, Any]:
     InputError
         Where the file cannot be read, is too large, or is not TOML.
     """
-    with system_errors(file, "reading"), file.open("rb") as opened:
+    with system_errors(file, "reading"), check_file(file).open("rb") as opened:
         data = opened.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
         raise InputError(f"{called} is larger than {_MOST_BYTES >> 20} MiB: make it shorter")

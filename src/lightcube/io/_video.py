@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from lightcube.errors import InputError
-from lightcube.io._decode import Budget, Take, decoding, refuse_cut_short
+from lightcube.io._bounds import MOST_PICTURES, Budget, check_file
+from lightcube.io._decode import Take, decoding, refuse_cut_short
 from lightcube.io._frames import Levels, is_known, levels_of, matrix_of, square, turned
 from lightcube.io._hdr import converted, curve_of, ordinary
 
@@ -40,9 +41,12 @@ def read_video(path: Path, budget: Budget, take: Take) -> list[str]:
 
     notes: dict[str, None] = {}
     with decoding(path):
-        refuse_cut_short(path)
+        refuse_cut_short(check_file(path))
         with path.open("rb") as file, av.open(file, "r", options={"format_whitelist": _FORMATS}) as container:
             stream = _film(path, container)
+            context = stream.codec_context
+            size = (context.height, context.width) if context else (0, 0)
+            budget.check(path, *[size] * min(stream.frames, MOST_PICTURES + 1))
             for frame in _unwoven(_decoded(path, container, stream), notes):
                 shape = square(frame, stream.sample_aspect_ratio)
                 budget.spend(path, *shape)

@@ -7,7 +7,8 @@ import asyncio
 import concurrent.futures
 import math
 import zipfile
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Iterable
+from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import Any, TypeVar
 
@@ -19,7 +20,10 @@ from zarr.storage import LocalStore, StorePath, ZipStore
 
 from lightcube.errors import InputError
 from lightcube.io import _metadata
+from lightcube.io._archives import is_crowded
+from lightcube.io._bounds import check_file, memory
 from lightcube.io._files import system_errors
+from lightcube.io._guarded import Guarded
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 
@@ -42,7 +46,13 @@ def read_zarr(path: Path) -> Cube:
     """Read a cube from a Zarr folder."""
     if not (path / _ROOT).is_file():
         raise InputError(f"{path} is no light cube: there is no zarr.json in it, give a folder that lightcube wrote")
-    return _metadata.from_json(path, *_reading(path, lambda: _read(path, LocalStore(path, read_only=True))))
+
+    def size(key: str) -> int:
+        """Bytes of a file in the folder, none where there is none."""
+        member = check_file(path / key)
+        return member.stat().st_size if member.is_file() else 0
+
+    return _metadata.from_json(path, *_reading(path, lambda: _read(path, LocalStore(path, read_only=True), size)))
 
 
 def write_zarr_zip(file: Path, cube: Cube) -> None:
@@ -63,16 +73,24 @@ def zip_folder(folder: Path, file: Path) -> None:
 
 def read_zarr_zip(path: Path) -> Cube:
     """Read a cube from a Zarr group in a zip archive, or from the one folder in it that holds such a group."""
-    return _metadata.from_json(path, *_reading(path, lambda: _read(path, ZipStore(path, mode="r"), _inside(path))))
+
+    async def read() -> Parts:
+        with path.open("rb") as file:
+            if is_crowded(file):
+                raise _metadata.damaged(path, "it lists too many members")
+            with zipfile.ZipFile(file) as archive:
+                sizes = {member.filename: member.file_size for member in archive.infolist()}
+        return await _read(path, ZipStore(path, mode="r"), lambda key: sizes.get(key, 0), _inside(path, sizes))
+
+    return _metadata.from_json(path, *_reading(path, read))
 
 
-def _inside(path: Path) -> str:
+def _inside(path: Path, names: Iterable[str]) -> str:
     """The folder in a zip archive that is the Zarr group: none, or that which was packed as a whole.
 
     What systems pack beside it counts for nothing; `InputError` where there are two groups or none.
     """
-    with zipfile.ZipFile(path) as archive:
-        roots = [name.removesuffix(_ROOT) for name in archive.namelist() if PurePosixPath(name).name == _ROOT]
+    roots = [name.removesuffix(_ROOT) for name in names if PurePosixPath(name).name == _ROOT]
     roots = [root for root in roots if not root.startswith("__MACOSX/")]
     outer = [root for root in roots if not any(root != other and root.startswith(other) for other in roots)]
     if len(outer) != 1:
@@ -143,29 +161,36 @@ def _ome(cube: Cube) -> dict[str, Any]:
     }
 
 
-async def _read(path: Path, store: LocalStore | ZipStore, inside: str = "") -> Parts:
+async def _read(path: Path, opened: LocalStore | ZipStore, size: Callable[[str], int], inside: str = "") -> Parts:
     """Metadata, extinction and targets of the group in a store, or in a folder inside it."""
+    store = Guarded(opened, size, partial(_metadata.damaged, path))
     try:
         group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
         document = group.attrs.get(_ATTRIBUTE)
         _metadata.check_version(path, document)
-        extinction = await _array(path, group, _IMAGE)
+        extinction = await _array(path, store, group, _IMAGE)
         if extinction is None:
             raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await _array(path, group, _TARGETS)
+        return document, extinction, await _array(path, store, group, _TARGETS)
     finally:
         store.close()
 
 
-async def _array(path: Path, group: zarr.AsyncGroup, name: str) -> NDArray[Any] | None:
+async def _array(path: Path, store: Guarded, group: zarr.AsyncGroup, name: str) -> NDArray[Any] | None:
     """All of an array, or None where there is none; `InputError` where chunks are missing."""
     if not await group.contains(name):
         return None
     array = await group.getitem(name)
     if not isinstance(array, zarr.AsyncArray) or array.ndim != 4:
         raise _metadata.damaged(path, f"{name!r} is not an array with 4 axes")
-    wanted = math.prod(-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True))
-    if await array.nchunks_initialized() != wanted:
+    chunk_bytes = math.prod(array.chunks) * array.dtype.itemsize
+    if max(array.nbytes, chunk_bytes) > memory() // 2:
+        raise InputError(f"{path} states more than half of this machine's memory: open it on a larger one")
+    store.expect(array.metadata.codecs, chunk_bytes)
+    counts = [-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True)]
+    there = {key async for key in store.list_prefix(array.path)}
+    few = 0 < math.prod(counts) <= len(there)
+    if not few or not all(f"{array.path}/{array.metadata.encode_chunk_key(at)}" in there for at in np.ndindex(*counts)):
         raise _metadata.damaged(path, f"parts of its array {name!r} are missing")
     return locked(np.asarray(await array.getitem(...)))
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from lightcube.errors import InputError
+from lightcube.io._bounds import check_file
 from lightcube.io._files import PARTIAL_SUFFIX, Writer, suffix_entry, system_errors
 from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
 from lightcube.optics.cube import Cube
@@ -42,7 +43,7 @@ def _read(path: Path) -> Cube:
     """The cube of a file or folder on this disk."""
     suffix = _suffix(path)
     with system_errors(path, "reading"):
-        there, is_folder = path.exists(), path.is_dir()
+        there, is_folder = check_file(path).exists(), path.is_dir()
     if not there:
         raise InputError(f"there is no {path}: give the file of a light cube")
     if is_folder != (suffix == ".zarr"):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from lightcube.errors import encodable
 from lightcube.io._encoders import png
 from lightcube.io._files import Writer
 
@@ -19,12 +20,12 @@ if TYPE_CHECKING:
 
 def write_text(path: Path, text: str) -> None:
     """Write the text of a page or of a drawing."""
-    path.write_text(text, encoding="utf-8")
+    path.write_text(encodable(text), encoding="utf-8")
 
 
 def write_json(path: Path, document: Mapping[str, Any]) -> None:
     """Write a document as JSON, indented."""
-    path.write_text(json.dumps(document, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    write_text(path, json.dumps(document, indent=2, ensure_ascii=False) + "\n")
 
 
 def _plot(kind: str) -> Writer:

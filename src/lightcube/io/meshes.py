@@ -14,6 +14,8 @@ from lightcube.io._stl import read_stl
 from lightcube.scene.meshes import DoubtfulMesh
 from lightcube.scene.polygons import cut_faces
 
+#: Of a file: five million triangles.
+_MOST_BYTES = 256 << 20
 #: By suffix what makes faces of a file's bytes: ``(faces, corners, 3)`` for each number of corners, and what was left
 #: out, if anything. `ValueError` says what is wrong.
 _READERS: dict[str, Callable[[bytes], tuple[list[NDArray[np.float64]], str]]] = {".stl": read_stl, ".obj": read_obj}
@@ -39,6 +41,8 @@ def read_mesh(path: Path, where: str) -> NDArray[np.float64]:
         raise InputError(f"{where}: there is no file {path}")
     try:
         with system_errors(path, "reading"):
+            if path.stat().st_size > _MOST_BYTES:
+                raise InputError(f"{where}: {path.name} is larger than {_MOST_BYTES >> 20} MiB: make the mesh coarser")
             faces, left_out = read(path.read_bytes())
         triangles = np.concatenate([cut_faces(each) for each in faces]) if faces else np.zeros((0, 3, 3))
     except ValueError as error:

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.errors import InputError
-from lightcube.io._decode import Budget, Take
+from lightcube.errors import InputError, encodable
+from lightcube.io._bounds import Budget, check_file
+from lightcube.io._decode import Take
 from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._frames import Levels
 from lightcube.io._places import fetched, place
@@ -159,7 +160,7 @@ class _Taken:
 def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]:
     """Pictures, and what is to be said of them."""
     with system_errors(path, "reading"):
-        there, is_folder = path.exists(), path.is_dir()
+        there, is_folder = check_file(path).exists(), path.is_dir()
     if not there:
         raise InputError(f"there is no {path}: give a folder of pictures, an animation or a video")
     take = _Taken(transfer)
@@ -171,10 +172,10 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]
         budget = Budget()
         for file in files:
             read_single(file, budget, take)
-        names = views.names or tuple(file.stem for file in files)
+        names = views.names or tuple(encodable(file.stem) for file in files)
     else:
         take.changed = suffix_entry(path, _READERS, "pictures")(path, Budget(), take) or ()
-        names = tuple(str(index + 1) for index in range(len(images))) if len(images) > 1 else (path.stem,)
+        names = tuple(str(index + 1) for index in range(len(images))) if len(images) > 1 else (encodable(path.stem),)
     if len(images) < least:
         held = "one picture" if images else "no picture"
         needed = "a cube needs at least two: add more" if least > 1 else "one at least is needed: give another"

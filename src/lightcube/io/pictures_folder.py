@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from lightcube.errors import InputError
+from lightcube.errors import InputError, encodable
 from lightcube.io._files import system_errors
 from lightcube.io._newer import SUFFIXES
 from lightcube.io._toml import read_tables
@@ -176,4 +176,4 @@ def views_text(views: Views | None, names: Sequence[str] | None) -> str:
 
 def _toml_text(text: str) -> str:
     """`text` as a TOML basic string: JSON's escapes, and DEL, which only TOML wants escaped."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return json.dumps(encodable(text), ensure_ascii=False).replace("\x7f", "\\u007f")

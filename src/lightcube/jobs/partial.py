@@ -25,6 +25,7 @@ from lightcube.backward.recipe import from_plain
 from lightcube.backward.store import Arrays
 from lightcube.errors import InputError
 from lightcube.io._archives import archive
+from lightcube.io._bounds import MOST_TEXT, check_file
 from lightcube.io._files import PARTIAL_SUFFIX, system_errors
 from lightcube.io._metadata import plain
 from lightcube.io._places import (
@@ -49,14 +50,14 @@ from lightcube.pictures.targets import Targets
 from lightcube.solvers import check_lasting, find_method
 
 #: Of the folders that this version writes and reads.
-FORMAT_VERSION = 4
+FORMAT_VERSION = 5
 
 _JOB, _TARGETS = "job.json", "targets.npz"
 _PIECE = re.compile(r"((?:level|unit)-[0-9]+)(\.state)?\.npz")
 _HIDDEN = re.compile(r"\..+\.npz-[0-9a-f]{32}|\.job\.json-[0-9a-f]{32}")
 #: A hidden file that nobody has written to for so many seconds is of a run that was killed.
 _STALE_S = 600.0
-#: Which job a file belongs to; no array of a piece is called so.
+#: Which job and piece a file belongs to, and what it holds; no array of a piece is called so.
 _OWNER = "job-key"
 
 
@@ -65,7 +66,7 @@ class _JobJson(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
 
-    format_version: Literal[4]
+    format_version: Literal[5]
     written_by: str
     fingerprint: dict[str, str | int | float | None]
     shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=3, max_length=3)]
@@ -100,7 +101,7 @@ class DiskStore:
 
     def __init__(self, partial: str | Path) -> None:
         self.folder = place(partial)
-        self._key = np.array(_key(_read_job(self.folder).fingerprint))
+        self._key = _key(_read_job(self.folder).fingerprint)
 
     def names(self) -> frozenset[str]:
         """Names of the pieces that are finished."""
@@ -133,15 +134,28 @@ class DiskStore:
             return [match for name in names_in(self.folder) if (match := _PIECE.fullmatch(name))]
 
     def _write(self, name: str, arrays: Arrays) -> None:
-        _write_arrays(child(self.folder, name), {_OWNER: self._key, **arrays})
+        _write_arrays(child(self.folder, name), {_OWNER: np.array(self._owner(name, arrays)), **arrays})
+
+    def _owner(self, name: str, arrays: Arrays) -> str:
+        """What a file says of which job and which piece it is of, and of what is in it."""
+        said = hashlib.blake2b(f"{self._key} {name}".encode(), digest_size=32)
+        for key, array in sorted(arrays.items()):
+            said.update(f"{key} {array.dtype.str} {array.shape}".encode())
+            # Files keep the order of these two kinds; what is neither is written as the first.
+            flat = (array.T if array.flags.f_contiguous else np.ascontiguousarray(array)).reshape(-1)
+            said.update(flat.view(np.uint8).data if flat.itemsize else b"")
+        return said.hexdigest()
 
     def _read(self, name: str) -> Arrays | None:
         path = child(self.folder, name)
         arrays = _read_arrays(path)
         if arrays is None:
             return None
-        if not np.array_equal(arrays.pop(_OWNER, np.array("")), self._key):
-            raise InputError(f"{path} belongs to another cube: remove it, and that piece is computed again")
+        owner = arrays.pop(_OWNER, None)
+        if owner is None or str(owner) != self._owner(name, arrays):
+            raise InputError(
+                f"{path} belongs to another cube, or was changed: remove it, and that piece is computed again"
+            )
         return arrays
 
 
@@ -322,6 +336,8 @@ def _read_job(folder: Place) -> _JobJson:
     try:
         with system_errors(path, "reading"):
             data = read_bytes(path)
+        if data is not None and len(data) > MOST_TEXT:
+            raise _damaged(path, "it is larger than it can be")
         document = None if data is None else json.loads(data)
         if document is None:
             raise InputError(f"{folder} has nothing of a cube in it yet: start again without it")
@@ -374,7 +390,7 @@ def _read_arrays(path: Place) -> dict[str, NDArray[Any]] | None:
 def _opened(path: Place) -> IO[bytes]:
     """Open a file; what is at a URL is fetched first."""
     if isinstance(path, Path):
-        return path.open("rb")
+        return check_file(path).open("rb")
     data = read_bytes(path)
     if data is None:
         raise FileNotFoundError

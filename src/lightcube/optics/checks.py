@@ -43,7 +43,11 @@ _NUMBERS: tuple[tuple[type, str, str], ...] = (
 
 
 def _is_number(value: Any, kind: type) -> bool:
-    return isinstance(value, kind) and not isinstance(value, bool)
+    """Whether something is a number of a kind that is not beyond all that machines reckon with."""
+    most: Any = sys.float_info.max if kind is Real else 2**63 - 1
+    if not isinstance(value, kind) or isinstance(value, bool):
+        return False
+    return isinstance(value, float | np.floating) or -most <= value <= most
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ class _Kind:
 _ANYTHING = _Kind("anything", lambda value: True)
 _SIMPLE = {
     bool: _Kind("True or False", lambda value: isinstance(value, bool | np.bool_)),
-    int: _Kind("a whole number", lambda value: type(value) is int or _is_number(value, Integral)),
+    int: _Kind("a whole number", lambda value: _is_number(value, Integral)),
     float: _Kind("a number", lambda value: type(value) is float or _is_number(value, Real)),
     str: _Kind("a text", lambda value: isinstance(value, str)),
     Any: _ANYTHING,
