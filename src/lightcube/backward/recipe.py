@@ -15,6 +15,7 @@ from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
+from lightcube.optics.told import remembered
 from lightcube.solvers import find_method
 from lightcube.solvers.contract import Solver
 from lightcube.solvers.method import Method
@@ -199,4 +200,4 @@ def from_plain(said: Mapping[str, Any]) -> Recipe:
 
 def recipe_of(cube: Cube) -> Recipe:
     """How a cube was made, from what it remembers; as usual where that says nothing."""
-    return replace(from_plain(cube.provenance), hold_deg=cube.hold_deg)
+    return replace(from_plain(remembered(cube)), hold_deg=cube.hold_deg)

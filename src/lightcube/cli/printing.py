@@ -7,6 +7,7 @@ from typing import Any
 from lightcube.backward.solution import Solution
 from lightcube.cli.console import out
 from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.told import remembered
 from lightcube.scoring.metrics import grain_word
 
 
@@ -19,7 +20,7 @@ def facts(solution: Solution) -> dict[str, Any]:
         "stop_reason": solution.stop_reason,
         "rejected": solution.rejected.tolist(),
         "undetermined": solution.undetermined,
-        "predicted": solution.cube.provenance.get("predicted"),
+        "predicted": remembered(solution.cube).get("predicted"),
         **solution.cube.scores,
     }
 

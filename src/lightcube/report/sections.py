@@ -11,6 +11,7 @@ from lightcube.drawing import charts
 from lightcube.drawing.stage import drawing
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.told import remembered
 from lightcube.planning.feasibility import facts
 from lightcube.planning.prediction import MOST_DB
 from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
@@ -70,7 +71,7 @@ def head(found: Findings, compared: str) -> str:
 
 def _predicted(cube: Cube, name: str) -> str:
     """What was predicted, if it was."""
-    predicted = cube.provenance.get("predicted")
+    predicted = remembered(cube).get("predicted")
     if predicted is None:
         return "mean over the pictures" if name == "psnr_mean" else ""
     return f"predicted: {number(predicted[name], 1)} dB" + " or more" * (predicted[name] >= MOST_DB)
@@ -89,7 +90,7 @@ def _range(values: NDArray[Any], form: str = "g") -> str:
 
 def settings(found: Findings) -> str:
     """What cube, lamp and solver were set to."""
-    cube, made = found.cube, found.cube.provenance
+    cube, made = found.cube, remembered(found.cube)
     kinds = {"per-picture": "one per picture and colour", "shared": "one per colour"}
     kinds |= {"coarse": "one per picture and colour, found at half the size"}
     lamps = cube.rig.lamps
@@ -200,7 +201,7 @@ def _rows(found: Findings, expected: list[float] | None) -> Iterator[list[object
 
 def _expected(cube: Cube) -> list[float] | None:
     """What was predicted of each picture."""
-    views = cube.provenance.get("predicted", {}).get("pictures", [])
+    views = remembered(cube).get("predicted", {}).get("pictures", [])
     return [float(each) for each in views] if len(views) == len(cube.names) else None
 
 
@@ -295,7 +296,7 @@ def before(found: Findings) -> str:
 
 def _told(found: Findings) -> Iterator[str]:
     """Predicted and reached."""
-    predicted = found.cube.provenance.get("predicted")
+    predicted = remembered(found.cube).get("predicted")
     if predicted is None:
         yield text("p", "What to expect was not predicted for this cube.")
         return

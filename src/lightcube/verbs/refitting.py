@@ -7,6 +7,7 @@ import numpy as np
 from lightcube import io
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
+from lightcube.optics.told import remembered
 from lightcube.pictures.fitting import check_fit, fit, targets_of
 from lightcube.pictures.targets import Targets
 
@@ -33,7 +34,7 @@ def refitted(cube: Cube, source: str) -> Targets:
     if not np.all(cube.rig.screens.endless):
         raise InputError(f"the cube was made on a stage: give its file instead of {source}, or nothing")
     pictures = io.read_pictures(source, transfer=cube.transfer)
-    order = cube.provenance.get("order", range(len(pictures)))
+    order = remembered(cube).get("order", range(len(pictures)))
     if len(order) == len(pictures):
         images, names = (tuple(each[picture] for picture in order) for each in (pictures.images, pictures.names))
         pictures = replace(pictures, images=images, names=names)
@@ -43,4 +44,4 @@ def refitted(cube: Cube, source: str) -> Targets:
             raise InputError(
                 f"{source} says other angles than the cube was made for: give the pictures it was made from"
             )
-    return fit(pictures, cube.rig, check_fit(cube.provenance.get("fit", "crop")))
+    return fit(pictures, cube.rig, check_fit(remembered(cube).get("fit", "crop")))

@@ -22,6 +22,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.tables import POWER_MAX
+from lightcube.optics.told import remembered
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import spread_angles, swept_mm
 from lightcube.pictures.targets import Targets
@@ -45,7 +46,7 @@ def reproducing(cube: Cube, targets: Targets, source: str | None, target: str) -
     source, target
         What the command reads and writes; without a source there is a word in its place.
     """
-    command, provenance = Command(), cube.provenance
+    command, provenance = Command(), remembered(cube)
     place = _turntable_options(cube, command) if _is_planned(cube) else _stage_options(cube)
     words = [*place, *_solver_options(cube, command)]
     if cube.transfer != "srgb":
@@ -69,7 +70,7 @@ def _is_planned(cube: Cube) -> bool:
 
 def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
     """Cube, pictures, angles and lamp's elevation of a turntable."""
-    views, provenance, pixel = cube.rig.views, cube.provenance, _pixel(cube)
+    views, provenance, pixel = cube.rig.views, remembered(cube), _pixel(cube)
     yield from ("--shape", ",".join(map(str, cube.grid.shape)))
     tall = cube.grid.tall
     if tall != 1 and tall == round(tall):
@@ -132,10 +133,10 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
     if made.bounded_by != usual.bounded_by:
         yield from ("--max-extinction", _number(made.bounded_by.most(cube.grid)))
     yield from _mat(made, command)
-    quality = _quality(made) if "passes" in cube.provenance else None
+    quality = _quality(made) if "passes" in remembered(cube) else None
     yield from _light(made.beams, quality, command)
     if quality is None:
-        yield from _passes(cube.provenance, command)
+        yield from _passes(remembered(cube), command)
     elif quality != "normal":
         yield from ("--quality", quality)
 
@@ -202,7 +203,7 @@ def _passes(made: Mapping[str, Any], command: Command) -> Iterator[str]:
 
 def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
     """Say what stands between the command and the same cube, beside its options."""
-    made, doubts = cube.provenance, command.doubts
+    made, doubts = remembered(cube), command.doubts
     if source is None:
         doubts.insert(0, "The pictures are not recorded with the cube: put the name of theirs into the command.")
     if _is_planned(cube) and "fit" not in made:
@@ -275,7 +276,7 @@ def _same(cube: Cube, made: Rig) -> bool:
     views = cube.rig.views
     if not np.array_equal(made.sums.disc_deg, cube.rig.sums.disc_deg):
         return False
-    if "shift" in cube.provenance:
+    if "shift" in remembered(cube):
         off = views.origins_mm - made.views.origins_mm
         steps = views.column_steps_mm, views.row_steps_mm
         offsets = [np.rint(np.sum(off * each, axis=1) / np.sum(each**2, axis=1)).astype(int) for each in steps]

@@ -1,0 +1,51 @@
+"""What a cube remembers of how it was made, checked before it is used: its file may be anybody's."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from lightcube.optics.cube import Cube
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e15
+
+
+def _is_count(value: Any) -> bool:
+    return isinstance(value, int) and _is_number(value) and value >= 0
+
+
+def _is_word(value: Any) -> bool:
+    return isinstance(value, str) and len(value) <= 200
+
+
+def _is_order(value: Any) -> bool:
+    return isinstance(value, list | tuple) and all(map(_is_count, value)) and sorted(value) == list(range(len(value)))
+
+
+def _is_prediction(value: Any) -> bool:
+    if not isinstance(value, Mapping) or not all(_is_number(value.get(name)) for name in ("psnr_mean", "psnr_min")):
+        return False
+    pictures = value.get("pictures", [])
+    return isinstance(pictures, list | tuple) and all(map(_is_number, pictures))
+
+
+#: What is used of it, and what each must be.
+_KINDS: Mapping[str, Callable[[Any], bool]] = {
+    **dict.fromkeys(("units", "passes"), lambda value: _is_count(value) and value >= 1),
+    **dict.fromkeys(("iterations", "shift"), _is_count),
+    **dict.fromkeys(("fit", "stop_reason", "dtype", "lightcube", "powers"), _is_word),
+    "method": _is_word,
+    "enough_db": lambda value: _is_number(value) or value == math.inf,
+    "order": _is_order,
+    "predicted": _is_prediction,
+}
+
+
+def remembered(cube: Cube) -> dict[str, Any]:
+    """How a cube was made, as far as it can have been so: what is None or of another kind is left out."""
+    return {
+        name: value
+        for name, value in cube.provenance.items()
+        if value is not None and (name not in _KINDS or _KINDS[name](value))
+    }
