@@ -1,5 +1,6 @@
 """TIFF files of every kind give the picture that was meant, with and without the extra, or a sentence."""
 
+import random
 import sys
 import warnings
 from contextlib import suppress
@@ -326,3 +327,23 @@ class TestRefused:
         path.write_bytes(data)
         with suppress(InputError):  # some tags can be done without; no other exception is allowed
             read(path)
+
+
+def test_libtiff_prints_nothing(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """What it would say of damage is a sentence of the reader's."""
+    path = tmp_path / "a.tif"
+    Image.effect_noise((40, 40), 90).convert("1").save(path, compression="group4")
+    honest = path.read_bytes()
+    refused = 0
+    for number in range(60):
+        chance = random.Random(number)  # noqa: S311 - the same each time
+        data = bytearray(honest)
+        for _ in range(4):
+            data[chance.randrange(8, len(data))] = chance.randrange(256)
+        path.write_bytes(data)
+        try:
+            read_pictures(path, least=1)
+        except InputError:
+            refused += 1
+    assert refused > 10
+    assert capfd.readouterr() == ("", "")

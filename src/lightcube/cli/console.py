@@ -67,7 +67,7 @@ def plain_warnings() -> Iterator[None]:
     def show(message: Warning | str, *_: Any, **__: Any) -> None:
         if str(message) not in said:
             said.add(str(message))
-            err.print(f"note: {message}")
+            err.print(f"note: {shown(str(message))}")
 
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)

@@ -1,9 +1,12 @@
 """Pages of TIFF files, through tifffile; through Pillow what its libtiff unpacks and tifffile does not."""
 
+import ctypes
 import logging
 import math
 import zlib
 from collections.abc import Iterable
+from contextlib import suppress
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -48,6 +51,16 @@ _ROWS = 256
 _DEFLATE, _OLD_DEFLATE, _LZMA = 8, 32946, 34925
 #: What packers may leave behind the last pixel of a strip.
 _SLACK = 1 << 16
+
+
+@cache
+def _hush_libtiff() -> None:
+    """Let Pillow's libtiff print nothing of damaged files, where it can be told so: readers say what is wrong."""
+    library = ctypes.CDLL(Image.core.__file__)  # type: ignore[attr-defined]
+    with suppress(AttributeError):
+        for handler in (library.TIFFSetErrorHandler, library.TIFFSetWarningHandler):
+            handler.argtypes, handler.restype = [ctypes.c_void_p], ctypes.c_void_p
+            handler(None)
 
 
 def read_tiff(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
@@ -134,6 +147,7 @@ def _is_unpacked(page: "TiffPage") -> bool:
 
 def _levels_of_pillow(path: Path, index: int) -> Levels | None:
     """Levels of page `index` through Pillow, which turns them upright; None where it keeps them as no colours."""
+    _hush_libtiff()
     # Not by its name: Pillow maps such files into memory, and then turns them wrongly.
     with path.open("rb") as file, Image.open(file) as image:
         image.seek(index)

@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
-from lightcube.errors import InputError
+from lightcube.errors import InputError, encodable
 from lightcube.io._bounds import check_file
 from lightcube.io._files import PARTIAL_SUFFIX, Writer, suffix_entry, system_errors
 from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
@@ -22,7 +22,7 @@ def bare_name(path: str | Path) -> str:
     if not name:
         raise InputError(f"{str(path)!r} names no cube: give a file or folder that ends with {', '.join(_SUFFIXES)}")
     found = [suffix for suffix in (*_SUFFIXES, PARTIAL_SUFFIX) if name.lower().endswith(suffix)]
-    return bare_name(name[: -len(max(found, key=len))]) if found and name.lower() not in found else name
+    return bare_name(name[: -len(max(found, key=len))]) if found and name.lower() not in found else encodable(name)
 
 
 def read_cube(path: str | Path) -> Cube:
