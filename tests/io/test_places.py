@@ -406,3 +406,10 @@ def test_paths_are_no_urls(tmp_path: Path) -> None:
     assert _places.place("file:///tmp/a%20b.zarr") == Path("/tmp/a b.zarr")  # noqa: S108 - no file
     assert _places.place("S3://Bucket/a/") == "s3://Bucket/a"
     assert _places.name_of("https://host/a.npz?signed=a/b") == "a.npz"
+
+
+@pytest.mark.parametrize("given", ["zip://a.npz::memory://x.zip", "simplecache::memory://a.npz", "a::b::s3://c/d.zarr"])
+def test_chains_of_urls_are_told(given: str) -> None:
+    with pytest.raises(InputError, match="is a chain of URLs"):
+        place(given)
+    assert place("a::b.zarr") == Path("a::b.zarr")

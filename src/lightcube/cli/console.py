@@ -3,12 +3,13 @@
 import io
 import json
 import math
+import os
 import signal
 import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 from functools import cache
 from types import FrameType
 from typing import Any
@@ -29,10 +30,22 @@ class Plain(Console):
         return super().render_str("\n".join(map(shown, text.split("\n"))), **how)
 
 
-#: Results go to standard output, all else to standard error.
-out: Console = Plain(soft_wrap=True, highlight=False, markup=False, emoji=False)
+class _Aside(Plain):
+    """A console for what is no result: where it cannot be written it is lost, and the command goes on."""
 
-err: Console = Plain(soft_wrap=True, highlight=False, markup=False, emoji=False, stderr=True)
+    def print(self, *objects: Any, **how: Any) -> None:
+        """Print, if that can be."""
+        with suppress(OSError):
+            super().print(*objects, **how)
+
+
+#: A terminal without columns would show nothing.
+_ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "COLUMNS" or value.strip("0")}
+
+#: Results go to standard output, all else to standard error.
+out: Console = Plain(soft_wrap=True, highlight=False, markup=False, emoji=False, _environ=_ENVIRONMENT)
+
+err: Console = _Aside(soft_wrap=True, highlight=False, markup=False, emoji=False, stderr=True, _environ=_ENVIRONMENT)
 
 #: Seconds between two lines of progress.
 _BEAT = 0.5

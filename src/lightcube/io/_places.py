@@ -34,6 +34,8 @@ _AT_ONCE = 16
 
 #: Two letters at least: one is a drive.
 _URL = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+)://(.*)", re.DOTALL)
+#: What fsspec calls chained: one store inside of another.
+_CHAIN = re.compile(r"::[A-Za-z][A-Za-z0-9+.-]+://")
 _OF_THE_EXTRA = ("s3", "s3a", "http", "https")
 
 
@@ -48,6 +50,8 @@ def place(given: str | Path) -> Place:
     """
     if str(given) == "-":
         raise InputError("- is no name: nothing is read from a pipe or written to one, give a file or a folder")
+    if isinstance(given, str) and _CHAIN.search(given):
+        raise InputError(f"{given} is a chain of URLs, of which one at a time is read or written: give one")
     match = _URL.fullmatch(given) if isinstance(given, str) else None
     if match is None:
         return Path(given)
