@@ -22,6 +22,7 @@ from lightcube.io import (
     read_pictures,
     save,
 )
+from lightcube.io._places import place
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
