@@ -32,20 +32,17 @@ def _is_prediction(value: Any) -> bool:
 
 #: What is used of it, and what each must be.
 _KINDS: Mapping[str, Callable[[Any], bool]] = {
-    **dict.fromkeys(("units", "passes"), lambda value: _is_count(value) and value >= 1),
+    "units": lambda value: _is_count(value) and value >= 1,
+    "passes": lambda value: value is None or (_is_count(value) and value >= 1),
     **dict.fromkeys(("iterations", "shift"), _is_count),
     **dict.fromkeys(("fit", "stop_reason", "dtype", "lightcube", "powers"), _is_word),
     "method": _is_word,
-    "enough_db": lambda value: _is_number(value) or value == math.inf,
+    "enough_db": lambda value: value in (None, math.inf) or _is_number(value),
     "order": _is_order,
     "predicted": _is_prediction,
 }
 
 
 def remembered(cube: Cube) -> dict[str, Any]:
-    """How a cube was made, as far as it can have been so: what is None or of another kind is left out."""
-    return {
-        name: value
-        for name, value in cube.provenance.items()
-        if value is not None and (name not in _KINDS or _KINDS[name](value))
-    }
+    """How a cube was made, as far as it can have been so: what is of another kind is left out."""
+    return {name: value for name, value in cube.provenance.items() if name not in _KINDS or _KINDS[name](value)}
