@@ -53,12 +53,14 @@ def write_zarr_zip(file: Path, cube: Cube) -> None:
 
 
 def zip_folder(folder: Path, file: Path) -> None:
-    """Put a Zarr folder into a zip archive, its root metadata first."""
+    """Put a Zarr folder into a zip archive, its root metadata first; the same folder gives the same archive."""
     members = sorted(member for member in folder.rglob("*") if member.is_file())
     members.sort(key=lambda member: (member.name != _ROOT, len(member.parts)))
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for member in members:
-            archive.write(member, member.relative_to(folder).as_posix())
+            entry = zipfile.ZipInfo(member.relative_to(folder).as_posix())  # of no date
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, member.read_bytes())
 
 
 def read_zarr_zip(path: Path) -> Cube:
