@@ -131,7 +131,8 @@ CALLED = """Array.from(document.querySelectorAll("button, [role=button]"))
 #: Notes every canvas that comes into a page without a name.
 NAMELESS = """window.nameless = [];
 new MutationObserver(() => {
-  for (const each of document.querySelectorAll("canvas[role=img]:not([aria-label])")) window.nameless.push(each.className);
+  const found = document.querySelectorAll("canvas[role=img]:not([aria-label])");
+  for (const each of found) window.nameless.push(each.className);
 }).observe(document, { childList: true, subtree: true });"""
 
 

@@ -30,6 +30,9 @@ Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
 _CHUNK_BYTES = 8 << 20
 _ROOT = "zarr.json"
 _IMAGE, _TARGETS, _ATTRIBUTE = "0", "targets", "lightcube"
+#: Where a display's white is, among the voxels that are not empty, in per cent: a twentieth of them or more are as dark
+#: as the material can be, ten times as dark as most, and a display that ends there shows a cube as black.
+_WHITE = 90
 _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
 
 
@@ -116,6 +119,8 @@ def _ome(cube: Cube) -> dict[str, Any]:
     channels = len(cube.extinction)
     colours = _COLOURS if channels == len(_COLOURS) else [(str(index + 1), "FFFFFF") for index in range(channels)]
     most = float(cube.extinction.max()) or 1.0
+    some = cube.extinction.ravel()[:: -(-cube.extinction.size // 1_000_000)]
+    white = float(np.percentile(some[some > 0], _WHITE)) if np.any(some > 0) else most
     space = [{"name": axis, "type": "space", "unit": "millimeter"} for axis in "zyx"]
     return {
         "version": "0.5",
@@ -137,7 +142,7 @@ def _ome(cube: Cube) -> dict[str, Any]:
                     "label": f"extinction {label}",
                     "color": colour,
                     "active": True,
-                    "window": {"min": 0.0, "max": most, "start": 0.0, "end": most},
+                    "window": {"min": 0.0, "max": most, "start": 0.0, "end": white},
                 }
                 for label, colour in colours
             ]
@@ -160,16 +165,24 @@ async def _read(path: Path, store: LocalStore | ZipStore, inside: str = "") -> P
 
 
 async def _array(path: Path, group: zarr.AsyncGroup, name: str) -> NDArray[Any] | None:
-    """All of an array, or None where there is none; `InputError` where chunks are missing."""
+    """All of an array, or None where there is none; `InputError` where chunks are missing.
+
+    Other programs leave out chunks that hold nothing but zeros.
+    """
     if not await group.contains(name):
         return None
     array = await group.getitem(name)
     if not isinstance(array, zarr.AsyncArray) or array.ndim != 4:
         raise _metadata.damaged(path, f"{name!r} is not an array with 4 axes")
     wanted = math.prod(-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True))
-    if await array.nchunks_initialized() != wanted:
+    if _is_as_written(array) and await array.nchunks_initialized() != wanted:
         raise _metadata.damaged(path, f"parts of its array {name!r} are missing")
     return locked(np.asarray(await array.getitem(...)))
+
+
+def _is_as_written(array: zarr.AsyncArray) -> bool:
+    """Whether an array is packed as `_write` does it, all chunks there, not as another program wrote it anew."""
+    return any(isinstance(codec, ZstdCodec) and codec.checksum for codec in array.metadata.codecs)
 
 
 def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:
