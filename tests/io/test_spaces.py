@@ -195,6 +195,71 @@ def test_cicp_that_is_not_known_is_told(tmp_path: Path, numbers: tuple[int, ...]
         read_pictures(tmp_path, least=1)
 
 
+def gama(value: float) -> bytes:
+    return chunk(b"gAMA", struct.pack(">I", round(value * 100_000)))
+
+
+def chrm(*places: float) -> bytes:
+    """White, red, green and blue, each as x and y."""
+    return chunk(b"cHRM", struct.pack(">8I", *[round(each * 100_000) for each in places]))
+
+
+D65, D50 = (0.3127, 0.3290), (0.3457, 0.3585)
+OF_SRGB = chrm(*D65, 0.64, 0.33, 0.30, 0.60, 0.15, 0.06)
+OF_P3 = chrm(*D65, 0.68, 0.32, 0.265, 0.69, 0.15, 0.06)
+OF_PROPHOTO = chrm(*D50, 0.7347, 0.2653, 0.1596, 0.8404, 0.0366, 0.0001)
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16])
+@pytest.mark.parametrize(
+    ("said", "curve", "colourants"),
+    [
+        (gama(1 / 1.8), gamma(1.8), SRGB),
+        (gama(1), LINEAR, SRGB),
+        (gama(1 / 2.2) + OF_P3, TOE, P3),
+        (gama(1 / 1.8) + OF_P3, gamma(1.8), P3),
+        (OF_P3, TOE, P3),
+        (gama(1 / 1.8) + OF_PROPHOTO, gamma(1.8), PROPHOTO),
+    ],
+)
+def test_gamma_and_primaries_of_a_png(
+    tmp_path: Path, said: bytes, curve: bytes, colourants: Any, kind: type[Any]
+) -> None:
+    picture = noise(9, 13, 3)
+    deep = picture.astype(kind) * (257 if kind is np.uint16 else 1)
+    image = read(png(tmp_path / "a.png", deep, said))
+    np.testing.assert_allclose(encode(image) * 255, by_littlecms(picture, profile(curve, colourants)), atol=2.1)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        gama(1 / 2.2),
+        gama(0.455),
+        OF_SRGB,
+        gama(1 / 2.2) + OF_SRGB,
+        gama(1) + OF_P3 + chunk(b"sRGB", b"\0"),
+        gama(1) + OF_P3 + chunk(b"cICP", bytes((1, 13, 0, 1))),
+        gama(1) + chunk(b"iCCP", b"x\0\0" + zlib.compress(profile(TOE, SRGB))),
+    ],
+)
+def test_gamma_and_primaries_of_srgb_are_not_told(tmp_path: Path, said: bytes) -> None:
+    """Nor those beside a chunk that goes before them."""
+    picture = noise(9, 13, 3)
+    image = read_pictures(png(tmp_path / "a.png", picture, said), least=1).images[0]
+    np.testing.assert_array_equal(image, decode(picture / np.float32(255)))
+
+
+@pytest.mark.parametrize(
+    "said",
+    [gama(0), chunk(b"gAMA", bytes(5)), chrm(*[0] * 8), chrm(*D65, *[0.3] * 6), chunk(b"cHRM", bytes(33))],
+)
+def test_damaged_gamma_and_primaries_are_told(tmp_path: Path, said: bytes) -> None:
+    path = png(tmp_path / "a.png", noise(9, 13, 3), said)
+    with pytest.warns(ChangedPictures, match="a damaged (gAMA|cHRM).* taken as sRGB"):
+        read_pictures(path, least=1)
+
+
 def test_a_camera_names_adobe_rgb_in_its_exif(tmp_path: Path) -> None:
     exif = Image.Exif()
     exif.get_ifd(0x8769)[0xA001] = 65535
