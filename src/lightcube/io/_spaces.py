@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import ImageCms
 
+from lightcube.io._hdr import HDR_CURVES, light_of
 from lightcube.io._samples import LIGHT_OF_XYZ
 from lightcube.optics.transfer import decode, encode
 
@@ -31,6 +32,8 @@ _GAMMA_SRGB, _GAMMA_OFF = 45455, 1000
 #: From X, Y, Z to how eyes see them under another white (Bradford).
 _CONES = np.array([(0.8951, 0.2664, -0.1614), (-0.7502, 1.7135, 0.0367), (0.0389, -0.0685, 1.0296)])
 _H273_LINEAR, _H273_SRGB, _H273_VIDEO = 8, 13, (1, 6, 14, 15)
+#: What stands before the numbers in a container of pictures (ISO 14496-12, 12.1.5).
+_NUMBERS = b"colrnclx"
 #: Less than one level of 8 bits from sRGB is sRGB.
 _SAME = 1 / 255
 
@@ -42,14 +45,17 @@ class Space:
     name: str
     curves: tuple[_Curve, ...] | None = None
     matrix: NDArray[np.float64] | None = None
+    hdr: _Curve | None = None
 
     @property
     def is_known(self) -> bool:
         """Whether these colours can be turned into sRGB."""
-        return self.curves is not None
+        return self.curves is not None or self.hdr is not None
 
     def light(self, display: _Light) -> _Light:
         """Linear light of display values ``(row, column, 3)``; what sRGB has no colour for is clipped."""
+        if self.hdr is not None:
+            return self.hdr(display).astype(np.float32)
         if self.curves is None:
             return decode(display).astype(np.float32, copy=False)
         light = np.stack([curve(display[..., at]) for at, curve in enumerate(self.curves)], axis=-1)
@@ -81,13 +87,32 @@ def _space_of_tags(name: str, kind: bytes, tags: dict[bytes, bytes]) -> Space | 
 
 
 def space_of_cicp(data: bytes) -> Space | None:
-    """Return the colours that a PNG's cICP chunk names; None where they are sRGB."""
+    """Return the colours that a PNG's cICP chunk names; None where they are sRGB.
+
+    High dynamic range is dimmed as that of films is.
+    """
     primaries, transfer, matrix, whole = data[:4].ljust(4, b"\0")
     name, places = _PRIMARIES.get(primaries, ("", ()))
     curves: dict[int, _Curve] = {_H273_LINEAR: _same, _H273_SRGB: decode, **dict.fromkeys(_H273_VIDEO, _video)}
+    if transfer in HDR_CURVES and name and not matrix and whole == 1:
+        return Space(f"{name} {HDR_CURVES[transfer]}", hdr=partial(light_of, curve=transfer, primaries=primaries))
     if transfer not in curves or not name or matrix or whole != 1:
         return Space(f"cICP {primaries}/{transfer}/{matrix}/{whole}")
     return _unless_srgb(name, [curves[transfer]] * 3, _matrix(places))
+
+
+def space_of_container(data: bytes) -> Space | None:
+    """Return the colours that an AVIF or HEIC picture names by numbers; None where they are sRGB or not named.
+
+    What such files say of ordinary curves means that of sRGB.
+    """
+    at = data.find(_NUMBERS)
+    if at < 0 or len(data) < at + len(_NUMBERS) + 6:
+        return None
+    primaries, transfer, _ = struct.unpack_from(">3H", data, at + len(_NUMBERS))
+    if primaries not in _PRIMARIES:
+        return None
+    return space_of_cicp(bytes((primaries, transfer if transfer in HDR_CURVES else _H273_SRGB, 0, 1)))
 
 
 def space_of_gamma(gamma: bytes | None, places: bytes | None) -> Space | None:
