@@ -231,7 +231,7 @@ def with_cover(path: Path, pictures: Levels) -> Path:
         stream.width, stream.height, stream.pix_fmt = pictures.shape[2], pictures.shape[1], "rgb24"
         shown = container.add_stream("mjpeg")
         shown.width, shown.height, shown.pix_fmt = 24, 16, "yuvj420p"
-        shown.disposition = Disposition.attached_pic
+        shown.disposition = Disposition.attached_pic.value  # PyAV 17 takes numbers only
         packet = av.Packet(cover.getvalue())
         packet.stream, packet.pts, packet.dts, packet.is_keyframe = shown, 0, 0, True
         container.mux(packet)
@@ -350,7 +350,7 @@ def piped(path: Path, pictures: Levels) -> Path:
 
 
 #: Numbers of an MP4's tables by box and word, and what damage makes of them; the pictures themselves are whole.
-TABLES = {
+TABLES: dict[str, tuple[str, int, Callable[[int], int]]] = {
     "sizes": ("stsz", 2, lambda count: count - 4),
     "sizes of one": ("stsz", 2, lambda count: 1),
     "chunks": ("stsc", 3, lambda count: count // 2),
