@@ -41,6 +41,13 @@ class Firefox:
         """What an expression is in the page."""
         return self._call("WebDriver:ExecuteScript", script=f"return {expression};", args=[])["value"]
 
+    def until(self, expression: str) -> None:
+        """Wait until an expression is true in the page."""
+        last = time.monotonic() + PATIENCE_S
+        while not self.evaluate(expression):
+            assert time.monotonic() < last, expression
+            time.sleep(0.1)
+
     def _call(self, name: str, **given: Any) -> Any:
         self._count += 1
         said = json.dumps([0, self._count, name, given]).encode()

@@ -1,6 +1,6 @@
 """Names that are code: in no browser do they run or become a part of a page, whatever page it is."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,8 @@ from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from tests.conftest import INTERPRETED
 from tests.helpers.browser import opened
 from tests.helpers.marionette import firefox
-from tests.helpers.visiting import GRID, glass, turning
+from tests.helpers.visiting import GRID, turning, until
+from tests.viewer.test_shadows import glass
 
 pytestmark = pytest.mark.skipif(INTERPRETED, reason="a page is the same whether kernels are compiled or not")
 
@@ -36,13 +37,19 @@ COUNT = """(() => {
   for (const each of document.querySelectorAll("*")) found[each.localName] = (found[each.localName] || 0) + 1;
   return { found, harmed: Object.keys(document.documentElement.dataset).includes("harmed") };
 })()"""
+#: Whether a page shows its cube; a report does so at once.
+READY = "document.querySelector('main:not(#lightcube), #lightcube[data-drawn]')"
 ROOMS = ("turntable", "stage")
 PAGES = tuple((room, kind) for room in ROOMS for kind in ("view", "report"))
 
 
-def cube(room: str, say: Callable[[int], str]) -> lc.Cube:
-    """A cube whose every text is one of those that `say` has."""
-    said = {say(number): say(number + 1) for number in range(len(EVIL))}
+def cube(room: str, texts: Sequence[str]) -> lc.Cube:
+    """A cube whose every text is one of these."""
+
+    def say(number: int) -> str:
+        return texts[number % len(texts)]
+
+    said = {say(number): say(number + 1) for number in range(len(texts))}
     provenance: dict[str, Any] = {"lightcube": say(2), "method": "display", "pictures": say(4), "order": say(5), **said}
     if room == "turntable":
         made = turning()
@@ -62,10 +69,10 @@ def cube(room: str, say: Callable[[int], str]) -> lc.Cube:
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Pages of all kinds with evil texts, and the same ones with harmless texts."""
     folder = tmp_path_factory.mktemp("pages")
-    for kind, say in (("evil", EVIL.__getitem__), ("harmless", "name {}".format)):
+    kinds = {"evil": EVIL, "harmless": tuple(f"name {number}" for number in range(len(EVIL)))}
+    for kind, texts in kinds.items():
         for room in ROOMS:
-            made = cube(room, lambda number, say=say: say(number % len(EVIL)))
-            lc.save(made, folder / f"{room}.npz", overwrite=True)
+            lc.save(cube(room, texts), folder / f"{room}.npz", overwrite=True)
             for verb in ("view", "report"):
                 arguments = [verb, str(folder / f"{room}.npz"), "-o", str(folder / f"{room}-{verb}-{kind}.html")]
                 assert main.run(arguments) == 0
@@ -83,7 +90,7 @@ def test_in_chromium_names_stay_names(browser: Any, written: Path, room: str, ki
     found = {}
     for which in ("evil", "harmless"):
         tab, heard = opened(browser, written / f"{room}-{kind}-{which}.html")
-        tab.wait_for_timeout(500)
+        until(tab, READY)
         found[which] = tab.evaluate(COUNT)
         assert [each for each in heard if not each.startswith("file:")] == []
         tab.context.close()
@@ -96,6 +103,7 @@ def test_in_firefox_names_stay_names(second: Any, written: Path, room: str, kind
     found = {}
     for which in ("evil", "harmless"):
         second.open(written / f"{room}-{kind}-{which}.html")
+        second.until(READY)
         found[which] = second.evaluate(COUNT)
     assert found["evil"] == found["harmless"]
     assert not found["evil"]["harmed"]

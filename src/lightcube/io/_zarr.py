@@ -180,7 +180,7 @@ async def _array(path: Path, group: zarr.AsyncGroup, name: str) -> NDArray[Any] 
     return locked(np.asarray(await array.getitem(...)))
 
 
-def _is_as_written(array: zarr.AsyncArray) -> bool:
+def _is_as_written(array: zarr.AsyncArray[Any]) -> bool:
     """Whether an array is packed as `_write` does it, all chunks there, not as another program wrote it anew."""
     return any(isinstance(codec, ZstdCodec) and codec.checksum for codec in array.metadata.codecs)
 
