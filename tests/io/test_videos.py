@@ -231,7 +231,8 @@ def with_cover(path: Path, pictures: Levels) -> Path:
         stream.width, stream.height, stream.pix_fmt = pictures.shape[2], pictures.shape[1], "rgb24"
         shown = container.add_stream("mjpeg")
         shown.width, shown.height, shown.pix_fmt = 24, 16, "yuvj420p"
-        shown.disposition = Disposition.attached_pic.value  # PyAV 17 takes numbers only
+        value = Disposition.attached_pic.value
+        setattr(shown, "disposition", value)  # noqa: B010 - PyAV 17 takes numbers, as types do not have it
         packet = av.Packet(cover.getvalue())
         packet.stream, packet.pts, packet.dts, packet.is_keyframe = shown, 0, 0, True
         container.mux(packet)
