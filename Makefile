@@ -2,7 +2,10 @@
 # make test   set everything up and run the tests, compiled, and those of the rooms that compute interpreted too
 #             (one thread for each of the processes that run side by side; tests of threads take more)
 # make check  lint, format and types
+# make test-lowest, make test-newest
+#             the tests with the lowest versions that pyproject.toml allows, and with the newest that there are
 # make fuzz   26,000 harmed files of all kinds, of which the tests take a few hundred
+# make kills  commands killed at every event of the file system and at 300 moments, of which the tests take a few
 # Use another Python with: make demo PYTHON=python3.12
 
 PYTHON ?= python3
@@ -11,7 +14,7 @@ EXTRAS ?= dev,heif,plot,notebook,remote,cluster
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 
-.PHONY: demo test check coverage fuzz clean
+.PHONY: demo test test-lowest test-newest check coverage fuzz kills clean
 
 demo: .venv/.ready
 	$(BIN)/lightcube demo
@@ -20,10 +23,16 @@ test: .venv/.ready-$(EXTRAS)
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -q -n auto
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n auto $(addprefix tests/,$(COMPUTING))
 
+test-lowest test-newest: test-%: .venv-%
+	NUMBA_CACHE_DIR=.venv-$*/numba NUMBA_NUM_THREADS=1 .venv-$*/bin/python -m pytest -q -n auto $(TESTS)
+
 check: .venv/.ready-$(EXTRAS)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+kills: .venv/.ready-$(EXTRAS)
+	LIGHTCUBE_KILLS=all $(BIN)/python -m pytest -q -n auto tests/hostile/test_kills.py
 
 coverage: .venv/.ready-$(EXTRAS)
 	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -q
@@ -33,7 +42,7 @@ fuzz: .venv/.ready-$(EXTRAS)
 	LIGHTCUBE_FUZZ=2000 $(BIN)/python -m pytest -q -n auto tests/hostile
 
 clean:
-	rm -rf .venv out .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv .venv-lowest .venv-newest out .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 .venv/.made:
@@ -53,3 +62,8 @@ clean:
 .venv/.ready-$(EXTRAS): .venv/.ready
 	@$(PIP) --editable '.[$(EXTRAS)]'
 	@touch $@
+
+.venv-lowest .venv-newest: .venv-%: pyproject.toml
+	$(PYTHON) -m venv --clear $@
+	$(if $(filter lowest,$*),.ci/lowest >$@/constraints.txt,touch $@/constraints.txt)
+	PIP_CONSTRAINT=$(CURDIR)/$@/constraints.txt $@/bin/python -m pip install -q --editable '.[$(EXTRAS)]' || { rm -r $@; exit 1; }

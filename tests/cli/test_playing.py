@@ -26,6 +26,15 @@ def test_play_writes_by_suffix(run, cube: Path, tmp_path: Path, suffix: str) -> 
         assert np.array_equal(shown, casting.play(load(cube), [0, 12.5, 90]))
 
 
+def test_angles_that_may_be_radians_are_told(run, cube: Path, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    shown = run("play", cube, "-o", tmp_path / "a.npy", "--angles-deg", "0,1.5708,3.1416")
+    assert (shown.code, shown.err.count("radians")) == (0, 1)
+    solved = run(
+        "solve", pictures, "-o", tmp_path / "a.zarr", "--n", 6, "--dry-run", "--angles-deg", "0,1.5708,3.1416,4.7124"
+    )
+    assert (solved.code, solved.err.count("radians")) == (0, 1)
+
+
 @pytest.fixture
 def played(run, pictures: Path, tmp_path: Path):  # type: ignore[no-untyped-def]
     """A cube of four pictures of 6 x 6, and what `play` shows of it."""

@@ -16,6 +16,7 @@ import zarr
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as st_numpy
+from zarr.codecs import BloscCodec, GzipCodec
 
 from lightcube.backward.job import Job
 from lightcube.backward.pieces import solve_piece
@@ -188,6 +189,48 @@ def test_the_folder_is_an_ome_zarr_image(tmp_path: Path) -> None:
     assert colours == ["FF0000", "00FF00", "0000FF"]
     assert all(set(channel["window"]) == {"min", "max", "start", "end"} for channel in ome["omero"]["channels"])
     assert zarr.open_array(tmp_path / "a.zarr", path="targets", mode="r").dtype == np.uint16
+
+
+def test_a_display_shows_most_of_a_cube(tmp_path: Path) -> None:
+    """A few voxels that are as dark as can be do not make all others black, and an empty cube has a window too."""
+    made = make()
+    for factor in (0.0, 1.0):
+        extinction = factor * made.extinction
+        extinction[0, 0, 0, 0] = 100 * factor
+        save(replace(made, extinction=extinction), tmp_path / f"{factor}.zarr")
+        ome = json.loads((tmp_path / f"{factor}.zarr" / "zarr.json").read_text())["attributes"]["ome"]
+        for channel in ome["omero"]["channels"]:
+            window = channel["window"]
+            assert window["max"] == (100 if factor else 1)
+            assert 0 == window["min"] == window["start"] < window["end"] <= window["max"]
+            assert window["end"] <= 1
+
+
+@pytest.mark.parametrize("suffix", [".zarr", ".zarr.zip"])
+@pytest.mark.parametrize(
+    "packed",
+    [
+        {"chunks": (1, 1, 2, 3)},
+        {"chunks": (3, 3, 5, 7), "compressors": None},
+        {"chunks": (2, 2, 2, 2), "compressors": BloscCodec(cname="lz4")},
+        {"chunks": (1, 3, 5, 7), "compressors": GzipCodec(level=1)},
+        {"chunks": (3, 1, 5, 7), "dtype": np.float64},
+        {"chunks": (3, 1, 1, 1), "dtype": ">f4"},
+    ],
+)
+def test_what_other_programs_packed_anew_is_read(tmp_path: Path, packed: dict[str, Any], suffix: str) -> None:
+    """Chunks of nothing but zeros are left out by most."""
+    made = make()
+    extinction = made.extinction.copy()
+    extinction[:, 1:] = 0
+    made = replace(made, extinction=extinction)
+    save(made, tmp_path / "a.zarr")
+    shutil.rmtree(tmp_path / "a.zarr" / "0")
+    array = zarr.create_array(tmp_path / "a.zarr", name="0", shape=extinction.shape, **{"dtype": np.float32, **packed})
+    array[...] = extinction
+    if suffix == ".zarr.zip":
+        shutil.make_archive(str(tmp_path / "a.zarr"), "zip", tmp_path / "a.zarr")
+    assert_same(load(tmp_path / f"a{suffix}"), made)
 
 
 def test_the_archive_begins_with_the_metadata_and_is_not_packed_twice(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from PIL import Image, ImageOps
 from lightcube.errors import InputError
 from lightcube.io import DoubtfulFolder, TransparentPictures, _bounds, read_pictures, save
 from lightcube.optics.transfer import Transfer, decode, from_levels, to_uint8
-from lightcube.optics.views import spread_angles
+from lightcube.optics.views import DoubtfulAngles, spread_angles
 
 Array = NDArray[np.uint8] | NDArray[np.uint16]
 
@@ -184,7 +184,7 @@ def test_angles_that_may_be_radians_are_told(tmp_path: Path) -> None:
         Image.new("RGB", (3, 2)).save(tmp_path / f"{index}.png")
     for said in ("[0, 1.5708, 3.1416, 4.7124]", "[-1.5, -0.5, 0.5, 1.5]", "[361, 362, 363, 364]"):
         (tmp_path / "views.toml").write_text(f"angles_deg = {said}")
-        with pytest.warns(DoubtfulFolder, match=r"all angles lie within a few degrees: if they are radians"):
+        with pytest.warns(DoubtfulAngles, match=r"all angles lie within a few degrees: if they are radians"):
             read_pictures(tmp_path)
     for said in ("angles_deg = [0, 3, 6, 9]", "span_deg = 10", "angles_deg = [0, 45, 90, 135]"):
         (tmp_path / "views.toml").write_text(said)

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 import tifffile
 from numpy.typing import NDArray
-from PIL import Image, ImageCms
+from PIL import Image, ImageCms, features
 
 from lightcube.io import ChangedPictures, read_pictures
 from lightcube.optics.transfer import decode, encode
 from tests.io.test_still import chunk, png
+from tests.io.test_videos import hlg, in_2020, pq
 
 Array = NDArray[Any]
 
@@ -188,11 +189,120 @@ def test_cicp_of_a_png(
     np.testing.assert_allclose(encode(read(path)) * 255, by_littlecms(picture, icc), atol=2.1)
 
 
-@pytest.mark.parametrize("numbers", [(9, 16, 0, 1), (9, 18, 0, 1), (12, 13, 1, 1), (12, 13, 0, 0), (77, 13, 0, 1)])
+@pytest.mark.parametrize(
+    "numbers", [(9, 17, 0, 1), (9, 16, 9, 1), (9, 18, 0, 0), (12, 13, 1, 1), (12, 13, 0, 0), (77, 13, 0, 1)]
+)
 def test_cicp_that_is_not_known_is_told(tmp_path: Path, numbers: tuple[int, ...]) -> None:
     png(tmp_path / "a.png", noise(9, 13, 3), chunk(b"cICP", bytes(numbers)))
     with pytest.warns(ChangedPictures, match="cICP .* taken as sRGB"):
         read_pictures(tmp_path, least=1)
+
+
+def gama(value: float) -> bytes:
+    return chunk(b"gAMA", struct.pack(">I", round(value * 100_000)))
+
+
+def chrm(*places: float) -> bytes:
+    """White, red, green and blue, each as x and y."""
+    return chunk(b"cHRM", struct.pack(">8I", *[round(each * 100_000) for each in places]))
+
+
+D65, D50 = (0.3127, 0.3290), (0.3457, 0.3585)
+OF_SRGB = chrm(*D65, 0.64, 0.33, 0.30, 0.60, 0.15, 0.06)
+OF_P3 = chrm(*D65, 0.68, 0.32, 0.265, 0.69, 0.15, 0.06)
+OF_PROPHOTO = chrm(*D50, 0.7347, 0.2653, 0.1596, 0.8404, 0.0366, 0.0001)
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16])
+@pytest.mark.parametrize(
+    ("said", "curve", "colourants"),
+    [
+        (gama(1 / 1.8), gamma(1.8), SRGB),
+        (gama(1), LINEAR, SRGB),
+        (gama(1 / 2.2) + OF_P3, TOE, P3),
+        (gama(1 / 1.8) + OF_P3, gamma(1.8), P3),
+        (OF_P3, TOE, P3),
+        (gama(1 / 1.8) + OF_PROPHOTO, gamma(1.8), PROPHOTO),
+    ],
+)
+def test_gamma_and_primaries_of_a_png(
+    tmp_path: Path, said: bytes, curve: bytes, colourants: Any, kind: type[Any]
+) -> None:
+    picture = noise(9, 13, 3)
+    deep = picture.astype(kind) * (257 if kind is np.uint16 else 1)
+    image = read(png(tmp_path / "a.png", deep, said))
+    np.testing.assert_allclose(encode(image) * 255, by_littlecms(picture, profile(curve, colourants)), atol=2.1)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        gama(1 / 2.2),
+        gama(0.455),
+        OF_SRGB,
+        gama(1 / 2.2) + OF_SRGB,
+        gama(1) + OF_P3 + chunk(b"sRGB", b"\0"),
+        gama(1) + OF_P3 + chunk(b"cICP", bytes((1, 13, 0, 1))),
+        gama(1) + chunk(b"iCCP", b"x\0\0" + zlib.compress(profile(TOE, SRGB))),
+    ],
+)
+def test_gamma_and_primaries_of_srgb_are_not_told(tmp_path: Path, said: bytes) -> None:
+    """Nor those beside a chunk that goes before them."""
+    picture = noise(9, 13, 3)
+    image = read_pictures(png(tmp_path / "a.png", picture, said), least=1).images[0]
+    np.testing.assert_array_equal(image, decode(picture / np.float32(255)))
+
+
+@pytest.mark.parametrize(
+    "said",
+    [gama(0), chunk(b"gAMA", bytes(5)), chrm(*[0] * 8), chrm(*D65, *[0.3] * 6), chunk(b"cHRM", bytes(33))],
+)
+def test_damaged_gamma_and_primaries_are_told(tmp_path: Path, said: bytes) -> None:
+    path = png(tmp_path / "a.png", noise(9, 13, 3), said)
+    with pytest.warns(ChangedPictures, match="a damaged (gAMA|cHRM).* taken as sRGB"):
+        read_pictures(path, least=1)
+
+
+@pytest.mark.parametrize(("curve", "code"), [(pq, 16), (hlg, 18)])
+@pytest.mark.parametrize("suffix", [".png", ".avif"])
+def test_high_dynamic_range_is_dimmed_as_that_of_films(tmp_path: Path, curve: Any, code: int, suffix: str) -> None:
+    """Light up to white comes back; what is brighter keeps its hue."""
+    if suffix == ".avif" and not features.check("avif"):
+        pytest.skip("this Pillow has no AVIF")
+    light = np.ones((16, 32, 1)) * np.array([0.7, 0.3, 0.15])
+    light[:, 16:] = (3.0, 1.5, 0.75)
+    display, path = curve(in_2020(light)), tmp_path / f"a{suffix}"
+    if suffix == ".png":
+        png(path, np.rint(display * 65535).astype(np.uint16), chunk(b"cICP", bytes((9, code, 0, 1))))
+    else:
+        Image.fromarray(np.rint(display * 255).astype(np.uint8)).save(path, quality=100, subsampling="4:4:4")
+        renumbered(path, 9, code)
+    with pytest.warns(ChangedPictures, match=r"BT\.2020 (PQ|HLG).*: turned into sRGB"):
+        shown = read_pictures(path, least=1).images[0]
+    close = 0.01 if suffix == ".png" else 0.2  # a level of PQ in 8 bits is one part in 40
+    np.testing.assert_allclose(shown[4:12, 4:12], light[4:12, 4:12], rtol=close)
+    np.testing.assert_allclose(shown[4:12, 20:28], light[4:12, 20:28] / 3, rtol=close)
+
+
+def renumbered(path: Path, primaries: int, curve: int) -> None:
+    """Let a container of pictures name other colours."""
+    data = bytearray(path.read_bytes())
+    struct.pack_into(">2H", data, data.index(b"colrnclx") + 8, primaries, curve)
+    path.write_bytes(data)
+
+
+@pytest.mark.skipif(not features.check("avif"), reason="this Pillow has no AVIF")
+@pytest.mark.parametrize(
+    ("primaries", "curve", "colourants"),
+    [(12, 13, P3), (12, 1, P3), (12, 2, P3), (1, 13, None), (1, 1, None), (2, 2, None), (77, 13, None)],
+)
+def test_numbers_of_an_avif(tmp_path: Path, primaries: int, curve: int, colourants: Any) -> None:
+    path, picture = tmp_path / "a.avif", np.full((16, 16, 3), (200, 120, 60), np.uint8)
+    Image.fromarray(picture).save(path, quality=100, subsampling="4:4:4")
+    renumbered(path, primaries, curve)
+    wanted = by_littlecms(picture, profile(TOE, colourants)) if colourants else picture
+    image = read(path) if colourants else read_pictures(path, least=1).images[0]
+    np.testing.assert_allclose(encode(image) * 255, wanted, atol=4)
 
 
 def test_a_camera_names_adobe_rgb_in_its_exif(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from lightcube.errors import InputError
 from lightcube.io import TransparentPictures, is_stage, read_stage, read_stage_targets
 from lightcube.optics.stage import Lamp, Screen
 from lightcube.optics.transfer import from_levels
-from lightcube.optics.views import spread_angles
+from lightcube.optics.views import DoubtfulAngles, spread_angles
 from lightcube.pictures.fitting import fit
 from lightcube.pictures.pictures import Pictures
 
@@ -127,6 +127,13 @@ def test_every_key_is_heard(folder: Path) -> None:
 def test_stops_are_counted_over_the_whole_turn(folder: Path) -> None:
     stage, _, _ = read_stage(stage_file(folder, MINIMAL | {"turntable": {"count": 7}}))
     np.testing.assert_array_equal(stage.stops_deg, spread_angles(7, 360.0))
+
+
+def test_stops_that_may_be_radians_are_told(folder: Path) -> None:
+    said = MINIMAL | {"turntable": {"stops_deg": [0, 2.0944, 4.1888]}}
+    with pytest.warns(DoubtfulAngles, match=r"^stage\.toml: turntable: stops_deg: .* if they are radians, multiply"):
+        read_stage(stage_file(folder, said))
+    read_stage(stage_file(folder, said | {"turntable": {"stops_deg": [0, 120, 240]}}))
 
 
 def test_pictures_of_a_folder_go_to_stop_after_stop(folder: Path) -> None:

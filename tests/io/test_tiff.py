@@ -190,7 +190,10 @@ def test_odd_numbers_of_bits_fill_the_range(tmp_path: Path, bits: int, channels:
     most = 2**bits - 1
     picture = RANDOM.integers(0, most + 1, (19, 37, channels), dtype=np.uint16 if bits > 8 else np.uint8)
     data, photometric = (picture[..., 0], "minisblack") if channels == 1 else (picture, "rgb")
-    path = written(tmp_path / "a.tif", data, photometric=photometric, bitspersample=bits)
+    try:
+        path = written(tmp_path / "a.tif", data, photometric=photometric, bitspersample=bits)
+    except NotImplementedError:
+        pytest.skip("this imagecodecs reads such bits and cannot write them")
     np.testing.assert_allclose(
         read(path), np.broadcast_to(picture / most, (19, 37, 3)), atol=0.5 / (255 if bits < 8 else 65535) + 1e-7
     )

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io import ChangedPictures, TransparentPictures, read_pictures
+from lightcube.io import ChangedPictures, TransparentPictures, read_pictures, save
 from lightcube.optics.transfer import from_levels, to_uint8
 
 Levels = NDArray[np.uint8]
@@ -231,7 +231,8 @@ def with_cover(path: Path, pictures: Levels) -> Path:
         stream.width, stream.height, stream.pix_fmt = pictures.shape[2], pictures.shape[1], "rgb24"
         shown = container.add_stream("mjpeg")
         shown.width, shown.height, shown.pix_fmt = 24, 16, "yuvj420p"
-        shown.disposition = Disposition.attached_pic
+        value = Disposition.attached_pic.value
+        setattr(shown, "disposition", value)  # noqa: B010 - PyAV 17 takes numbers, as types do not have it
         packet = av.Packet(cover.getvalue())
         packet.stream, packet.pts, packet.dts, packet.is_keyframe = shown, 0, 0, True
         container.mux(packet)
@@ -347,3 +348,29 @@ def piped(path: Path, pictures: Levels) -> Path:
         container.mux(stream.encode())
     path.write_bytes(pipe.written)
     return path
+
+
+#: Numbers of an MP4's tables by box and word, and what damage makes of them; the pictures themselves are whole.
+TABLES: dict[str, tuple[str, int, Callable[[int], int]]] = {
+    "sizes": ("stsz", 2, lambda count: count - 4),
+    "sizes of one": ("stsz", 2, lambda count: 1),
+    "chunks": ("stsc", 3, lambda count: count // 2),
+    "shown at": ("ctts", 2, lambda count: 1),
+    "clock": ("mdhd", 3, lambda ticks: ticks // 2),
+    "edit": ("elst", 2, lambda length: length // 2),
+    "beginning": ("elst", 3, lambda begin: begin // 2),
+}
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_pictures_that_a_film_counts_and_does_not_show_are_told(tmp_path: Path, table: str) -> None:
+    path = tmp_path / "a.mp4"
+    save(RANDOM.random((12, 16, 16, 3)).astype(np.float32), path)
+    assert len(read(path)) == 12  # and nothing is said of it
+    box, word, harmed = TABLES[table]
+    data = bytearray(path.read_bytes())
+    at = data.index(box.encode()) + 4 + 4 * word
+    data[at : at + 4] = struct.pack(">I", harmed(struct.unpack_from(">I", data, at)[0]))
+    path.write_bytes(data)
+    with pytest.warns(ChangedPictures, match=r"a\.mp4 counts 12 pictures and shows [1-9]\d?: it was trimmed, or"):
+        assert 0 < len(read_pictures(path, least=1).images) < 12

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +59,33 @@ def test_what_a_killed_program_left_goes_with_the_next_that_writes_there(tmp_pat
     assert not (tmp_path / "one.txt").exists()
     write(tmp_path / "other.txt")
     assert sorted(found.name for found in tmp_path.iterdir()) == ["other.txt"]
+
+
+@pytest.mark.parametrize("after", range(10))
+def test_killed_while_it_tidied_the_next_one_tidies(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, after: int
+) -> None:
+    """The mark that says whose a workplace was goes last."""
+    left = after
+
+    def killed(remove: Any) -> Any:
+        def removed(*what: Any, **where: Any) -> None:
+            nonlocal left
+            left -= 1
+            if left < 0:
+                raise KeyboardInterrupt
+            remove(*what, **where)
+
+        return removed
+
+    with monkeypatch.context() as patch, suppress(KeyboardInterrupt), workplace(tmp_path / "one") as made:
+        for name in ("a", "z", "folder"):
+            folder_of(made / name, "old")
+        (made / "file").write_text("old")
+        for name in ("unlink", "rmdir"):
+            patch.setattr(os, name, killed(getattr(os, name)))
+    write(tmp_path / "other.txt")
+    assert [found.name for found in tmp_path.iterdir()] == ["other.txt"]
 
 
 def test_what_another_program_is_writing_stays(tmp_path: Path) -> None:

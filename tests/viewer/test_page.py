@@ -124,6 +124,37 @@ def test_nobody_is_shut_out(visit: Open, theme: str, size: tuple[int, int]) -> N
             assert found.violations_count == 0, found.generate_report()
 
 
+#: Of all that can be pressed: what is read out, and what is seen.
+CALLED = """Array.from(document.querySelectorAll("button, [role=button]"))
+  .filter((each) => each.checkVisibility() && each.textContent.trim() && each.hasAttribute("aria-label"))
+  .map((each) => [each.getAttribute("aria-label"), each.innerText.split(/\\s+/).filter(Boolean).join(" ")])"""
+#: Notes every canvas that comes into a page without a name.
+NAMELESS = """window.nameless = [];
+new MutationObserver(() => {
+  const found = document.querySelectorAll("canvas[role=img]:not([aria-label])");
+  for (const each of found) window.nameless.push(each.className);
+}).observe(document, { childList: true, subtree: true });"""
+
+
+def test_what_is_read_out_begins_with_what_is_seen(visit: Open) -> None:
+    """Else who speaks to a browser says what it does not know."""
+    for name in CUBES:
+        called = visit(name).evaluate(CALLED)
+        assert called
+        for label, seen in called:
+            assert label.startswith(seen), (label, seen)
+
+
+def test_the_room_has_a_name_from_the_start(browser: Any, pages: dict[str, Path]) -> None:
+    for path in pages.values():
+        tab = browser.new_context().new_page()
+        tab.add_init_script(NAMELESS)
+        tab.goto(path.as_uri())
+        until(tab, CUBE)
+        assert "room" not in tab.evaluate("window.nameless")
+        tab.context.close()
+
+
 #: Words of the code, and what a flipped bit makes of them: one is met when data is read, one as the cards are drawn.
 GARBLED = {"return scene;": "return scEne;", "powers = lampPowers(": "powers = lampPowdrs("}
 

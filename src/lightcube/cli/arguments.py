@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lightcube.errors import InputError
 from lightcube.forward import turning
 from lightcube.optics.cube import Cube
-from lightcube.optics.views import check_angles
+from lightcube.optics.views import check_angles, doubt_angles
 
 
 def numbers(text: str, option: str) -> tuple[float, ...]:
@@ -75,7 +75,9 @@ def play_angles(
     if stops:
         return cube.angles_deg
     if angles_deg is not None:
-        return check_angles(numbers(angles_deg, "--angles-deg"))
+        said = check_angles(numbers(angles_deg, "--angles-deg"))
+        doubt_angles(said, "--angles-deg", stacklevel=1)
+        return said
     if not turn and not np.any(cube.rig.turning.turns):
         return cube.angles_deg[:1]  # nothing turns: all angles look alike
     first, last, pictures = (

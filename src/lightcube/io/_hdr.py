@@ -1,4 +1,4 @@
-"""Films of high dynamic range and of wide colours, made ordinary: to sRGB with white at 203 nits."""
+"""Films and pictures of high dynamic range and of wide colours, made ordinary: to sRGB with white at 203 nits."""
 
 from collections.abc import Callable
 
@@ -40,6 +40,21 @@ def _hlg(values: Light) -> Light:
 
 _CURVES: dict[int, tuple[str, Callable[[Light], Light]]] = {_PQ: ("PQ", _pq), _HLG: ("HLG", _hlg)}
 
+#: Names of the curves of high dynamic range, by their codes.
+HDR_CURVES = {code: name for code, (name, _) in _CURVES.items()}
+
+
+def light_of(shown: Light, curve: int, primaries: int) -> Light:
+    """Linear light of sRGB's colours, 1 = white, of display values ``(row, column, 3)`` with such a curve.
+
+    Light up to white is as it was; what is brighter keeps its hue and is as bright as a screen can be.
+    """
+    light = _CURVES[curve][1](shown) if curve in _CURVES else decode(shown)
+    wide = BT2020 if curve in _CURVES and primaries not in (1, *_TO_SRGB) else primaries
+    if wide in _TO_SRGB:
+        light = np.maximum(light @ np.array(_TO_SRGB[wide]).T, 0)
+    return light / np.maximum(light.max(axis=2, keepdims=True), 1)
+
 
 def curve_of(tagged: int, matrix: int | None, primaries: int, *, deep: bool) -> int:
     """The code of a film's curve, as it is `tagged`.
@@ -62,16 +77,8 @@ def converted(curve: int, primaries: int) -> str:
 
 
 def ordinary(levels: Levels, curve: int, primaries: int) -> NDArray[np.uint16]:
-    """Levels of a film of which `converted` has something to say, as levels of sRGB.
-
-    Light up to white is as it was; what is brighter keeps its hue and is as bright as a screen can be.
-    """
+    """Levels of a film of which `converted` has something to say, as levels of sRGB."""
     full = np.iinfo(levels.dtype).max
-    shown = levels[..., :3] / np.float32(full)
-    light = _CURVES[curve][1](shown) if curve in _CURVES else decode(shown)
-    wide = BT2020 if curve in _CURVES and primaries not in (1, *_TO_SRGB) else primaries
-    if wide in _TO_SRGB:
-        light = np.maximum(light @ np.array(_TO_SRGB[wide]).T, 0)
-    colours = to_uint16(light / np.maximum(light.max(axis=2, keepdims=True), 1))
+    colours = to_uint16(light_of(levels[..., :3] / np.float32(full), curve, primaries))
     opacity = np.rint(levels[..., 3:] * (65535 / full)).astype(np.uint16)
     return np.concatenate([colours, opacity], axis=2)

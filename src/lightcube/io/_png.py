@@ -15,7 +15,7 @@ from lightcube.io._bounds import MOST_PICTURES, Budget, crowded, unpacks_beyond
 from lightcube.io._decode import Take, damaged, levels_of_image, orientation_of, upright
 from lightcube.io._frames import Levels, levels_of
 from lightcube.io._samples import full_of, with_opacity
-from lightcube.io._spaces import space_of_cicp, space_of_profile
+from lightcube.io._spaces import Space, space_of_cicp, space_of_gamma, space_of_profile
 
 PNG_START = b"\x89PNG\r\n\x1a\n"
 
@@ -57,7 +57,7 @@ def read_png(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
         image.load()  # checks the whole file, and reads metadata behind the pixels
         orientation = orientation_of(image)
         before = dict(_chunks(path, data, until=b"IDAT"))
-        space = space_of_cicp(before[b"cICP"]) if b"cICP" in before else space_of_profile(image.info.get("icc_profile"))
+        space = _space(before, image.info.get("icc_profile"))
         if b"acTL" not in before:
             budget.spend(path, rows, columns)
             take(upright(_levels(path, data, image), orientation), space)
@@ -70,6 +70,15 @@ def read_png(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
     budget.check(path, *[(rows, columns)] * stated)
     for canvas in _composed(path, _frames(path, data, rows, columns), rows, columns, budget):
         take(upright(canvas, orientation), space)
+
+
+def _space(before: dict[bytes, bytes], profile: bytes | None) -> Space | None:
+    """Colours of a PNG by the chunk before its pixels that goes before the others (third edition, 4.3)."""
+    if b"cICP" in before:
+        return space_of_cicp(before[b"cICP"])
+    if profile or b"sRGB" in before:
+        return space_of_profile(profile)
+    return space_of_gamma(before.get(b"gAMA"), before.get(b"cHRM"))
 
 
 def _levels(path: Path, data: bytes, image: Image.Image) -> Levels:

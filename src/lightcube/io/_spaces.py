@@ -1,4 +1,4 @@
-"""Colours that are not sRGB: of ICC profiles made of curves and a matrix, of PNG's cICP, and of cameras' Adobe RGB."""
+"""Colours that are not sRGB: of ICC profiles of curves and a matrix, of PNG's chunks, and of cameras' Adobe RGB."""
 
 import struct
 from collections.abc import Callable
@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import ImageCms
 
+from lightcube.io._hdr import HDR_CURVES, light_of
 from lightcube.io._samples import LIGHT_OF_XYZ
 from lightcube.optics.transfer import decode, encode
 
 _Light = NDArray[np.float32]
 _Curve = Callable[[_Light], _Light]
+_Places = tuple[tuple[float, float], ...]
 
 #: Red, green, blue and white of ITU-T H.273, by number, as x and y; and what the curves of its numbers are.
 _WHITE_D65 = (0.3127, 0.3290)
@@ -25,7 +27,13 @@ _PRIMARIES = {
 }
 _ADOBE = ((0.640, 0.330), (0.210, 0.710), (0.150, 0.060))
 _ADOBE_GAMMA = 563 / 256
+#: What PNG's gAMA says of pictures that are nearly or wholly sRGB, and how far others are off at least, of 100000.
+_GAMMA_SRGB, _GAMMA_OFF = 45455, 1000
+#: From X, Y, Z to how eyes see them under another white (Bradford).
+_CONES = np.array([(0.8951, 0.2664, -0.1614), (-0.7502, 1.7135, 0.0367), (0.0389, -0.0685, 1.0296)])
 _H273_LINEAR, _H273_SRGB, _H273_VIDEO = 8, 13, (1, 6, 14, 15)
+#: What stands before the numbers in a container of pictures (ISO 14496-12, 12.1.5).
+_NUMBERS = b"colrnclx"
 #: Less than one level of 8 bits from sRGB is sRGB.
 _SAME = 1 / 255
 
@@ -37,14 +45,17 @@ class Space:
     name: str
     curves: tuple[_Curve, ...] | None = None
     matrix: NDArray[np.float64] | None = None
+    hdr: _Curve | None = None
 
     @property
     def is_known(self) -> bool:
         """Whether these colours can be turned into sRGB."""
-        return self.curves is not None
+        return self.curves is not None or self.hdr is not None
 
     def light(self, display: _Light) -> _Light:
         """Linear light of display values ``(row, column, 3)``; what sRGB has no colour for is clipped."""
+        if self.hdr is not None:
+            return self.hdr(display).astype(np.float32)
         if self.curves is None:
             return decode(display).astype(np.float32, copy=False)
         light = np.stack([curve(display[..., at]) for at, curve in enumerate(self.curves)], axis=-1)
@@ -76,13 +87,46 @@ def _space_of_tags(name: str, kind: bytes, tags: dict[bytes, bytes]) -> Space | 
 
 
 def space_of_cicp(data: bytes) -> Space | None:
-    """Return the colours that a PNG's cICP chunk names; None where they are sRGB."""
+    """Return the colours that a PNG's cICP chunk names; None where they are sRGB.
+
+    High dynamic range is dimmed as that of films is.
+    """
     primaries, transfer, matrix, whole = data[:4].ljust(4, b"\0")
     name, places = _PRIMARIES.get(primaries, ("", ()))
     curves: dict[int, _Curve] = {_H273_LINEAR: _same, _H273_SRGB: decode, **dict.fromkeys(_H273_VIDEO, _video)}
+    if transfer in HDR_CURVES and name and not matrix and whole == 1:
+        return Space(f"{name} {HDR_CURVES[transfer]}", hdr=partial(light_of, curve=transfer, primaries=primaries))
     if transfer not in curves or not name or matrix or whole != 1:
         return Space(f"cICP {primaries}/{transfer}/{matrix}/{whole}")
     return _unless_srgb(name, [curves[transfer]] * 3, _matrix(places))
+
+
+def space_of_container(data: bytes) -> Space | None:
+    """Return the colours that an AVIF or HEIC picture names by numbers; None where they are sRGB or not named.
+
+    What such files say of ordinary curves means that of sRGB.
+    """
+    at = data.find(_NUMBERS)
+    if at < 0 or len(data) < at + len(_NUMBERS) + 6:
+        return None
+    primaries, transfer, _ = struct.unpack_from(">3H", data, at + len(_NUMBERS))
+    if primaries not in _PRIMARIES:
+        return None
+    return space_of_cicp(bytes((primaries, transfer if transfer in HDR_CURVES else _H273_SRGB, 0, 1)))
+
+
+def space_of_gamma(gamma: bytes | None, places: bytes | None) -> Space | None:
+    """Return the colours that a PNG's gAMA and cHRM chunks say; None where they are sRGB, or there are none."""
+    name = " and ".join(["gAMA"] * (gamma is not None) + ["cHRM"] * (places is not None))
+    try:
+        exponent = _GAMMA_SRGB if gamma is None else struct.unpack(">I", gamma)[0]
+        curve = decode if abs(exponent - _GAMMA_SRGB) < _GAMMA_OFF else partial(_power, 100_000 / exponent)
+        numbers = (0.0,) * 8 if places is None else tuple(each / 100_000 for each in struct.unpack(">8I", places))
+        white, *primaries = zip(numbers[::2], numbers[1::2], strict=True)
+        matrix = None if places is None else _matrix(tuple(primaries), white)
+    except (struct.error, ZeroDivisionError, np.linalg.LinAlgError):
+        return Space(f"a damaged {name}")
+    return _unless_srgb(name, [curve] * 3, matrix)
 
 
 def adobe_rgb() -> Space:
@@ -99,15 +143,15 @@ def _unless_srgb(name: str, curves: list[_Curve], matrix: NDArray[np.float64] | 
     return space if np.max(np.abs(encode(space.light(display)) - display)) > _SAME else None
 
 
-def _matrix(places: tuple[tuple[float, float], ...]) -> NDArray[np.float64]:
-    """Linear light of primaries at `places` ``(x, y)`` with the white of sRGB to linear light of sRGB."""
+def _matrix(places: _Places, white: tuple[float, float] = _WHITE_D65) -> NDArray[np.float64]:
+    """Linear light of primaries at `places` ``(x, y)`` to linear light of sRGB; their white becomes that of sRGB."""
 
-    def to_xyz(places: tuple[tuple[float, float], ...]) -> NDArray[np.float64]:
-        columns = np.array([(x / y, 1, (1 - x - y) / y) for x, y in (*places, _WHITE_D65)]).T
+    def to_cones(places: _Places, white: tuple[float, float]) -> NDArray[np.float64]:
+        columns = _CONES @ np.array([(x / y, 1, (1 - x - y) / y) for x, y in (*places, white)]).T
         shares: NDArray[np.float64] = np.linalg.solve(columns[:, :3], columns[:, 3])
-        return columns[:, :3] * shares
+        return columns[:, :3] * shares / columns[:, 3:]
 
-    return np.asarray(np.linalg.solve(to_xyz(_PRIMARIES[1][1]), to_xyz(places)), np.float64)
+    return np.asarray(np.linalg.solve(to_cones(_PRIMARIES[1][1], _WHITE_D65), to_cones(places, white)), np.float64)
 
 
 def _tags(data: bytes) -> dict[bytes, bytes]:

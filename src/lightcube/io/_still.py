@@ -1,5 +1,6 @@
 """Pictures and animations that are no videos: TIFF and PNG by readers of their own, all others through Pillow."""
 
+from contextlib import suppress
 from pathlib import Path
 
 from PIL import Image
@@ -18,7 +19,7 @@ from lightcube.io._decode import (
 )
 from lightcube.io._newer import learn
 from lightcube.io._png import PNG_START, read_png
-from lightcube.io._spaces import Space, adobe_rgb, space_of_profile
+from lightcube.io._spaces import Space, adobe_rgb, space_of_container, space_of_profile
 from lightcube.io._tiff import TIFF_STARTS, read_tiff
 
 #: How the kinds of pictures of a multi-picture JPEG begin that are views of their own: panorama, disparity, angles.
@@ -29,6 +30,8 @@ _PIXELS_PER_BYTE = 512
 _SCAN, _MOST_SCANS = b"\xff\xda", 500
 _MP_ENTRIES = 0xB002
 _INTEROPERABILITY = 0xA005
+#: Before the pixels of an AVIF or HEIC stands what is said of them.
+_HEAD_BYTES = 1 << 16
 
 
 def read_single(path: Path, budget: Budget, take: Take) -> None:
@@ -86,7 +89,7 @@ def _read_others(path: Path, image: Image.Image, budget: Budget, take: Take, *, 
         levels = levels_of_image(path, image)
         if image.format == "GIF":  # Pillow lets the screen grow where a later picture goes beyond it
             levels = levels[:rows, :columns]
-        take(upright(levels, orientation_of(image)), _space(image))
+        take(upright(levels, orientation_of(image)), _space(path, image))
 
 
 def _views(image: Image.Image) -> list[int]:
@@ -99,9 +102,13 @@ def _views(image: Image.Image) -> list[int]:
     return [0, *(index for index in range(1, count) if kinds[index].startswith(_VIEW_OF_MPO))]
 
 
-def _space(image: Image.Image) -> Space | None:
-    """Colours of a picture, by its profile, or by what a camera's EXIF says instead of one."""
+def _space(path: Path, image: Image.Image) -> Space | None:
+    """Colours of a picture, by its profile, or by what its container or a camera's EXIF says instead of one."""
     profile = image.info.get("icc_profile")
-    if not profile and image.getexif().get_ifd(_INTEROPERABILITY).get(1) == "R03":
-        return adobe_rgb()
+    if not profile and image.format in ("AVIF", "HEIF"):
+        with path.open("rb") as file:
+            return space_of_container(file.read(_HEAD_BYTES))
+    with suppress(KeyError):  # Pillow 11 has no empty answer where nothing is said
+        if not profile and image.getexif().get_ifd(_INTEROPERABILITY).get(1) == "R03":
+            return adobe_rgb()
     return space_of_profile(profile)

@@ -48,7 +48,7 @@ def read_video(path: Path, budget: Budget, take: Take) -> list[str]:
             size = (context.height, context.width) if context else (0, 0)
             told = 0 if container.format.name == "avi" else stream.frames  # an AVI through a pipe states anything
             budget.check(path, *[size] * min(told, MOST_PICTURES + 1))
-            for frame in _unwoven(_decoded(path, container, stream), notes):
+            for frame in _unwoven(_decoded(path, container, stream, notes), notes):
                 shape = square(frame, stream.sample_aspect_ratio)
                 budget.spend(path, *shape)
                 if not is_known(frame):
@@ -69,9 +69,9 @@ def _film(path: Path, container: "av.container.InputContainer") -> "av.VideoStre
 
 
 def _decoded(
-    path: Path, container: "av.container.InputContainer", stream: "av.VideoStream"
+    path: Path, container: "av.container.InputContainer", stream: "av.VideoStream", notes: dict[str, None]
 ) -> Iterator["av.VideoFrame"]:
-    """Frames of a stream; `InputError` where a part of it is known to be missing."""
+    """Frames of a stream; `InputError` where a part of it is known to be missing, a note where it may be."""
     import av
 
     context = stream.codec_context
@@ -82,13 +82,17 @@ def _decoded(
         context = cast("av.VideoCodecContext", av.CodecContext.create(_WITH_OPACITY[context.name], "r"))
     context.options = {"err_detect": "explode"}
     context.thread_type = "AUTO"
+    shown = 0
     for packet in container.demux(stream):
         if packet.is_corrupt:
             raise InputError(f"{path} is cut short, its end is missing: copy it or make it again")
         for frame in context.decode(packet if packet.size else None):
             if frame.is_corrupt:
                 raise InputError(f"{path} is damaged, parts of its pictures are missing: copy it or make it again")
+            shown += 1
             yield frame
+    if "mp4" in container.format.name and shown < stream.frames:  # others count what is no picture of its own too
+        notes[f"counts {stream.frames} pictures and shows {shown}: it was trimmed, or it is damaged"] = None
 
 
 def _unwoven(frames: Iterator["av.VideoFrame"], notes: dict[str, None]) -> Iterator["av.VideoFrame"]:

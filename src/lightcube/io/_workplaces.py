@@ -35,7 +35,7 @@ def workplace(target: Path) -> Iterator[Path]:
         yield made
     finally:
         try:
-            shutil.rmtree(made, ignore_errors=True)
+            _clear(made)
         finally:
             os.close(owner)
 
@@ -44,7 +44,7 @@ def sweep(folder: Path) -> None:
     """Remove the workplaces in a folder whose programs are gone."""
     with suppress(OSError):  # whoever may not look there is told when writing
         for found in folder.iterdir():
-            if _NAME.fullmatch(found.name) and found.is_dir():
+            if _NAME.fullmatch(found.name) and found.is_dir() and not found.is_symlink():
                 _remove_deserted(found)
 
 
@@ -58,8 +58,20 @@ def _remove_deserted(found: Path) -> None:
     except OSError:
         return
     if _locked(owner, wait=False):
-        shutil.rmtree(found, ignore_errors=True)
+        _clear(found)
     os.close(owner)
+
+
+def _clear(made: Path) -> None:
+    """Remove a workplace, its mark last: without it nobody may finish what was begun here."""
+    with suppress(OSError):
+        for each in made.iterdir():
+            if each.is_dir() and not each.is_symlink():
+                shutil.rmtree(each, ignore_errors=True)
+            elif each.name != _MARK:
+                each.unlink()
+        (made / _MARK).unlink()
+        made.rmdir()
 
 
 def _made(target: Path) -> tuple[Path, int]:

@@ -32,8 +32,13 @@ Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
 
 #: A chunk is as many whole slices as fit into this many bytes, at least one.
 _CHUNK_BYTES = 8 << 20
+#: Other programs make more of them, up to so many: each takes a while to find.
+_MOST_CHUNKS = 100_000
 _ROOT = "zarr.json"
 _IMAGE, _TARGETS, _ATTRIBUTE = "0", "targets", "lightcube"
+#: Where a display's white is, among the voxels that are not empty, in per cent: a twentieth of them or more are as dark
+#: as the material can be, ten times as dark as most, and a display that ends there shows a cube as black.
+_WHITE = 90
 _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
 
 
@@ -63,12 +68,14 @@ def write_zarr_zip(file: Path, cube: Cube) -> None:
 
 
 def zip_folder(folder: Path, file: Path) -> None:
-    """Put a Zarr folder into a zip archive, its root metadata first."""
+    """Put a Zarr folder into a zip archive, its root metadata first; the same folder gives the same archive."""
     members = sorted(member for member in folder.rglob("*") if member.is_file())
     members.sort(key=lambda member: (member.name != _ROOT, len(member.parts)))
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for member in members:
-            archive.write(member, member.relative_to(folder).as_posix())
+            entry = zipfile.ZipInfo(member.relative_to(folder).as_posix())  # of no date
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, member.read_bytes())
 
 
 def read_zarr_zip(path: Path) -> Cube:
@@ -132,6 +139,8 @@ def _ome(cube: Cube) -> dict[str, Any]:
     channels = len(cube.extinction)
     colours = _COLOURS if channels == len(_COLOURS) else [(str(index + 1), "FFFFFF") for index in range(channels)]
     most = float(cube.extinction.max()) or 1.0
+    some = cube.extinction.ravel()[:: -(-cube.extinction.size // 1_000_000)]
+    white = float(np.percentile(some[some > 0], _WHITE)) if np.any(some > 0) else most
     space = [{"name": axis, "type": "space", "unit": "millimeter"} for axis in "zyx"]
     return {
         "version": "0.5",
@@ -153,7 +162,7 @@ def _ome(cube: Cube) -> dict[str, Any]:
                     "label": f"extinction {label}",
                     "color": colour,
                     "active": True,
-                    "window": {"min": 0.0, "max": most, "start": 0.0, "end": most},
+                    "window": {"min": 0.0, "max": most, "start": 0.0, "end": white},
                 }
                 for label, colour in colours
             ]
@@ -177,7 +186,10 @@ async def _read(path: Path, opened: LocalStore | ZipStore, size: Callable[[str],
 
 
 async def _array(path: Path, store: Guarded, group: zarr.AsyncGroup, name: str) -> NDArray[Any] | None:
-    """All of an array, or None where there is none; `InputError` where chunks are missing."""
+    """All of an array, or None where there is none; `InputError` where chunks are missing.
+
+    Other programs leave out chunks that hold nothing but zeros.
+    """
     if not await group.contains(name):
         return None
     array = await group.getitem(name)
@@ -188,11 +200,24 @@ async def _array(path: Path, store: Guarded, group: zarr.AsyncGroup, name: str) 
         raise InputError(f"{path} states more than half of this machine's memory: open it on a larger one")
     store.expect(array.metadata.codecs, chunk_bytes)
     counts = [-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True)]
-    there = {key async for key in store.list_prefix(array.path)}
-    few = 0 < math.prod(counts) <= len(there)
-    if not few or not all(f"{array.path}/{array.metadata.encode_chunk_key(at)}" in there for at in np.ndindex(*counts)):
+    if not _is_as_written(array):
+        if math.prod(counts) > _MOST_CHUNKS:
+            raise _metadata.damaged(path, f"its array {name!r} has more than {_MOST_CHUNKS:,} chunks: make them larger")
+    elif not await _is_whole(store, array, counts):
         raise _metadata.damaged(path, f"parts of its array {name!r} are missing")
     return locked(np.asarray(await array.getitem(...)))
+
+
+async def _is_whole(store: Guarded, array: zarr.AsyncArray[Any], counts: list[int]) -> bool:
+    """Whether all chunks of an array are there, so many along each axis."""
+    there = {key async for key in store.list_prefix(array.path)}
+    few = 0 < math.prod(counts) <= len(there)
+    return few and all(f"{array.path}/{array.metadata.encode_chunk_key(at)}" in there for at in np.ndindex(*counts))
+
+
+def _is_as_written(array: zarr.AsyncArray[Any]) -> bool:
+    """Whether an array is packed as `_write` does it, all chunks there, not as another program wrote it anew."""
+    return any(isinstance(codec, ZstdCodec) and codec.checksum for codec in array.metadata.codecs)
 
 
 def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:

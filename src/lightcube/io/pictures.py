@@ -25,13 +25,13 @@ from lightcube.io.pictures_folder import (
     FolderViews,
     is_picture,
     left_out,
-    may_be_radians,
     picture_files,
     read_views,
 )
 from lightcube.optics.arrays import locked
 from lightcube.optics.checks import checked
 from lightcube.optics.transfer import Transfer, check_transfer, decode
+from lightcube.optics.views import doubt_angles
 from lightcube.pictures.pictures import Pictures
 
 #: By suffix; they return what had to be changed, as the rest of a sentence that begins with the file's name.
@@ -55,7 +55,7 @@ class ChangedPictures(UserWarning):
 
 
 class DoubtfulFolder(UserWarning):
-    """Not all of a folder was read, or its angles may not be degrees."""
+    """Not all of a folder was read."""
 
 
 @checked
@@ -89,8 +89,9 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     TransparentPictures
         Once, where pictures are not opaque: they are put on white, in linear light.
     DoubtfulFolder
-        Where other files in a folder were left out, hidden ones and what systems leave not counted; and where all
-        angles lie so near to each other that they may be radians.
+        Where other files in a folder were left out, hidden ones and what systems leave not counted.
+    DoubtfulAngles
+        Where all angles lie so near to each other that they may be radians.
 
     Raises
     ------
@@ -111,12 +112,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
         warnings.warn(note, stacklevel=3)
     if others:
         warnings.warn(f"{path}: {others}", DoubtfulFolder, stacklevel=3)
-    if may_be_radians(pictures.angles_deg):
-        warnings.warn(
-            f"{path}: all angles lie within a few degrees: if they are radians, multiply them by 57.2958",
-            DoubtfulFolder,
-            stacklevel=3,
-        )
+    doubt_angles(pictures.angles_deg, f"{path}", stacklevel=3)
     return pictures
 
 

@@ -1,7 +1,6 @@
 """A folder of pictures: natural order, and `views.toml` with the angles they are to be seen at."""
 
 import json
-import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,8 +26,6 @@ PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", *SUFFIXES
 _LEFT_BY_SYSTEMS = (".ds_store", "thumbs.db", "desktop.ini", ".directory", ".localized", "__macosx", "@eadir")
 #: So many files that are left out are named.
 _NAMED = 3
-#: Angles that lie within a whole turn in radians may be some.
-_TURN_RAD = 2 * math.pi + 0.01
 
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 
@@ -82,11 +79,6 @@ def left_out(path: Path) -> str:
         return ""
     more = f" and {len(others) - _NAMED} more" if len(others) > _NAMED else ""
     return f"{len(others)} of what is there is no picture and was left out: {', '.join(others[:_NAMED])}{more}"
-
-
-def may_be_radians(angles_deg: NDArray[np.float64] | None) -> bool:
-    """Whether angles, three at least, lie as near to each other as if they were not in degrees."""
-    return angles_deg is not None and len(angles_deg) > 2 and float(np.ptp(angles_deg)) <= _TURN_RAD
 
 
 def picture_files(folder: Path) -> list[Path]:

@@ -22,7 +22,7 @@ from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import Transfer, check_transfer, decode
-from lightcube.optics.views import spread_angles
+from lightcube.optics.views import doubt_angles, spread_angles
 from lightcube.pictures.fitting import Fit, fit
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
@@ -188,6 +188,7 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
     said = _parse(file)
     with _about(file.name):
         stage = _stage(said)
+    doubt_angles(stage.stops_deg, f"{file.name}: turntable: stops_deg", stacklevel=3)
     shots: list[Shot] = []
     images: list[NDArray[np.float32]] = []
     fits: list[Fit] = []

@@ -371,8 +371,9 @@ def _key(said: Fingerprint) -> str:
 
 
 def _write_arrays(path: Place, arrays: Mapping[str, NDArray[Any]]) -> None:
+    named: dict[str, Any] = dict(arrays)
     with system_errors(path, "writing"), written(path) as file:
-        np.savez(file, allow_pickle=False, **arrays)
+        np.savez(file, **named)
 
 
 def _read_arrays(path: Place) -> dict[str, NDArray[Any]] | None:

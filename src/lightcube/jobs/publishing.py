@@ -10,7 +10,7 @@ import numpy as np
 from lightcube.backward.job import Job
 from lightcube.backward.solution import Solution, merged
 from lightcube.errors import InputError
-from lightcube.io._places import Place, place
+from lightcube.io._places import Place, exists, is_folder, place
 from lightcube.io.cubes import read_cube
 from lightcube.io.outputs import Output
 from lightcube.jobs.partial import DiskStore, begun_store, discard_partial, is_finished, load_job, published_path
@@ -58,6 +58,8 @@ def publish(partial: str | Path, *, overwrite: bool = False) -> Published:
         the partial folder is kept then.
     """
     out = published_path(partial)
+    if not is_folder(place(partial)) and exists(out):
+        raise InputError(f"there is no {partial}, but {out} is there: it is published already")
     check_output(out, overwrite=overwrite)
     store = begun_store(place(partial))
     return finish(load_job(partial), store, out, overwrite=overwrite)

@@ -7,6 +7,7 @@ in the cube's own axes: the cube stands still and the lamp goes round it. See do
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,8 @@ _MOST_SIDES = 1e15
 _LEAST_PIXEL = 1e-4
 #: No angle is larger: float64 would not tell a thousandth of a degree.
 _MOST_DEG = 1e9
+#: Angles that lie within a whole turn in radians may be some.
+_TURN_RAD = 2 * math.pi + 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,6 +196,17 @@ class Views:
         return Views(
             self.lamps, self.origins_mm, ratio * self.column_steps_mm, ratio * self.row_steps_mm, picture_shape
         )
+
+
+class DoubtfulAngles(UserWarning):
+    """Angles lie so near to each other that they may be radians."""
+
+
+def doubt_angles(angles_deg: Numbers | None, of: str, *, stacklevel: int) -> None:
+    """Warn where angles, three at least, lie as near to each other as if they were not in degrees."""
+    if angles_deg is not None and np.size(angles_deg) > 2 and float(np.ptp(np.asarray(angles_deg))) <= _TURN_RAD:
+        said = f"{of}: all angles lie within a few degrees: if they are radians, multiply them by 57.2958"
+        warnings.warn(said, DoubtfulAngles, stacklevel=stacklevel + 1)
 
 
 def check_angles(angles_deg: Numbers) -> Reals:

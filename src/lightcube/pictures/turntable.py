@@ -13,7 +13,7 @@ from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK
-from lightcube.optics.views import check_lamp, distinct_angles, spread_angles
+from lightcube.optics.views import check_lamp, distinct_angles, doubt_angles, spread_angles
 from lightcube.pictures.pictures import Pictures
 
 #: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
@@ -70,6 +70,8 @@ class Turntable:
             keep(self, angles_deg=np.float64)
         if self.angles_deg is not None and self.span_deg is not None:
             raise InputError("angles and a span of angles are both given: use one of the two")
+        span_deg = None if self.span_deg is None else (0.0, self.span_deg / 2, self.span_deg)
+        doubt_angles(self.angles_deg if span_deg is None else span_deg, "turntable", stacklevel=3)
         if self.pixel < 1:
             raise InputError(f"a pixel is a whole number of voxels wide, of at least 1, not {self.pixel}")
         check_lamp(self.lamp_deg, self.screen_mm)

@@ -14,8 +14,8 @@ from lightcube.report import sections
 from lightcube.report.html import element, pairs, plain, sentences, table, text
 from lightcube.report.measuring import Findings
 
-#: What a page may load: its own style, and pictures that it holds itself.
-_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
+#: What a page may load: its own style, and pictures that it holds itself. Nothing in it is run.
+_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 #: Makes the number that `digest` does, anywhere.
 _CHECK = (
     "python -c \"import hashlib, lightcube; print(hashlib.sha256(lightcube.load('CUBE').extinction.tobytes())"

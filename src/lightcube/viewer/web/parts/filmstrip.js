@@ -48,13 +48,13 @@ export function createFilmstrip(scene, chosen) {
 function thumbnail(scene, number, pressed) {
   const picture = scene.pictures[number];
   const score = scoreText(picture.psnr);
-  const mirrored = picture.mirrored ? ", mirrored" : "";
-  const label = [picture.name + mirrored, degreesText(picture.angle_deg), score].filter(Boolean).join(", ");
+  const angle = degreesText(picture.angle_deg);
+  const label = [`${picture.name} ${score || angle}`, picture.mirrored && "mirrored", score && angle].filter(Boolean).join(", ");
   const given = { type: "button", class: "thumbnail", "aria-label": label, title: label, tabindex: -1, click: pressed };
   return element("button", given,
     wantedImage(scene, picture),
-    element("span", { class: "name", text: picture.name }),
-    element("span", { class: "score", text: score || degreesText(picture.angle_deg) }));
+    element("span", { class: "name", text: picture.name }), " ",
+    element("span", { class: "score", text: score || angle }));
 }
 
 function mark(button, on) {

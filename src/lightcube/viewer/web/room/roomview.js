@@ -152,5 +152,5 @@ function rendererFor(scene, cube) {
 }
 
 function newCanvas() {
-  return element("canvas", { class: "room", tabindex: 0, role: "img" });
+  return element("canvas", { class: "room", tabindex: 0, role: "img", "aria-label": "The cube in its room" });
 }
