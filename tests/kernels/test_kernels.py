@@ -7,7 +7,10 @@ from hypothesis import strategies as st
 from numba import njit
 
 from lightcube.kernels import exponential, layout, rows
-from lightcube.kernels.stacked import GROUP, TILE
+from lightcube.kernels.beam import FIELDS, begin, follow
+from lightcube.kernels.marching import ABREAST, march
+from lightcube.kernels.stacked import GROUP
+from lightcube.kernels.tiles import TILE
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import turntable_views
 from lightcube.projection.projector import Projector, dot_test
@@ -19,8 +22,17 @@ SHAPES = [(2, TILE + 1, 5), (3, 3, 2 * TILE + 1), (2, TILE, TILE + 3)]
 
 
 @njit
-def compiled_add_rows(target, at, source, base, columns, places, shifts, weights, count, start, stop):  # type: ignore[no-untyped-def]
-    rows.add_rows(target, at, source, base, columns, places, shifts, weights, 0, count, start, stop)
+def compiled_add_rows(  # type: ignore[no-untyped-def]
+    target, at, source, base, columns, places, shifts, weights, first, count, step, low, high, start, stop
+):
+    rows.add_rows(
+        target, at, source, base, columns, places, shifts, weights, first, count, step, low, high, start, stop
+    )
+
+
+@njit
+def compiled_march(state, nx, ny, strides, places, shifts, weights, first, counts, met):  # type: ignore[no-untyped-def]
+    return march(state, nx, ny, strides, places, shifts, weights, first, counts, met)
 
 
 @njit
@@ -42,25 +54,65 @@ def compiled_log(numbers, out):  # type: ignore[no-untyped-def]
     first=st.integers(0, 149),
     most=st.integers(0, 40),
     pieces=st.integers(1, 5),
+    step=st.integers(1, 3),
     single=st.booleans(),
 )
 def test_vectors_of_sums_are_the_plain_sums(
-    columns: int, target_columns: int, first: int, most: int, pieces: int, single: bool
+    columns: int, target_columns: int, first: int, most: int, pieces: int, step: int, single: bool
 ) -> None:
     dtype = np.float32 if single else np.float64
     random = np.random.default_rng(columns + 1000 * most)
     source = random.random(7 * columns).astype(dtype)
     target = random.random(target_columns + 20).astype(dtype)
-    places = (columns * random.integers(0, 6, pieces)).astype(np.int32)
-    shifts = random.integers(-most, most + 1, pieces).astype(np.int32)
-    weights = random.random(pieces).astype(dtype)
+    places = (columns * random.integers(0, 6, 1 + step * pieces)).astype(np.int32)
+    shifts = random.integers(-most, most + 1, 1 + step * pieces).astype(np.int32)
+    weights = random.random(1 + step * pieces).astype(dtype)
     start = min(first, target_columns)
     wanted, found = target.copy(), target.copy()
-    rows.add_rows(wanted, 10, source, columns, columns, places, shifts, weights, 0, pieces, start, target_columns)
-    compiled_add_rows(found, 10, source, columns, columns, places, shifts, weights, pieces, start, target_columns)
+    own = shifts[1::step][:pieces]
+    which = places, shifts, weights, 1, pieces, step, int(own.min()), int(own.max()), start, target_columns
+    rows.add_rows(wanted, 10, source, columns, columns, *which)
+    compiled_add_rows(found, 10, source, columns, columns, *which)
     assert np.allclose(found, wanted, rtol=1e-6, atol=0)
     assert np.array_equal(found[: 10 + start], target[: 10 + start])
     assert np.array_equal(found[10 + target_columns :], target[10 + target_columns :])
+
+
+@settings(max_examples=60)
+@given(
+    beams=st.lists(
+        st.tuples(st.floats(-2, 9), st.floats(-1, 1), st.floats(-3, 3), st.floats(0, 6.3), st.floats(-2, 2)),
+        max_size=ABREAST,
+    ),
+    single=st.booleans(),
+)
+def test_beams_side_by_side_go_as_each_alone(
+    beams: list[tuple[float, float, float, float, float]], single: bool
+) -> None:
+    """As many as there are, some through corners; whatever misses the block or is not there has no pieces."""
+    nx, ny, most = 7, 5, 80
+    state = np.zeros((FIELDS, ABREAST))
+    for lane, (px, py, pz, angle, dz) in enumerate(beams):
+        dx, dy = np.cos(angle), np.sin(angle)
+        if not begin(px - 9 * dx, py - 9 * dy, pz, dx, dy, dz, nx, ny, 0.5 + lane, state, lane):
+            state[1, lane] = -np.inf
+    state[1, len(beams) :] = -np.inf
+    strides, dtype = (3, 40, -2), np.float32 if single else np.float64
+
+    def paper() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        room = 3 + most * ABREAST
+        return np.zeros(room, np.uint32), np.zeros(room, np.int32), np.zeros(room, dtype)
+
+    found, counts = paper(), np.full(ABREAST + 2, -1)
+    end = compiled_march(state, nx, ny, strides, *found, 3, counts, 1)
+    assert counts[0] == counts[-1] == -1
+    assert end >= 3 + ABREAST * counts.max()
+    for lane in range(ABREAST):
+        alone = paper()
+        count = follow(state, lane, nx, ny, strides, *alone, 0, 1)
+        assert counts[1 + lane] == count
+        for together, own in zip(found, alone, strict=True):
+            assert np.array_equal(together[3 + lane :: ABREAST][:count], own[:count])
 
 
 def test_exponential_is_exact_to_two_units_in_the_last_place() -> None:

@@ -106,6 +106,9 @@ def _from_rows(
                 weights,
                 0,
                 len(weights),
+                1,
+                0,
+                0,
                 0,
                 ROW,
             )

@@ -53,8 +53,14 @@ def faces(p: float, d: float, i: int) -> tuple[int, float, float]:
     return -1, (i - p) / d, -1 / d
 
 
+#: What a lane of a state holds of a beam on its way: path parameters of where it is and where it leaves, and how long a
+#: step of 1 is; then for each axis the parameter of the next face, and from face to face, which way the beam goes on
+#: there, and the voxel that it is in. So many numbers in all.
+AT, END, SCALE, NEXT, GAP, WAY, VOXEL, FIELDS = 0, 1, 2, 3, 6, 9, 12, 15
+
+
 @compiled
-def _trace_off_faces(
+def begin(
     px: float,
     py: float,
     pz: float,
@@ -64,42 +70,61 @@ def _trace_off_faces(
     nx: int,
     ny: int,
     scale: float,
-    strides: tuple[int, int, int],
-    places: NDArray[Any],
-    shifts: NDArray[Any],
-    weights: NDArray[Any],
-    count: int,
-) -> int:
-    """Append the pieces of a beam that runs along no face; return the new count.
-
-    Free of branches that depend on the numbers: which face comes next cannot be foretold.
-    """
+    state: NDArray[Any],
+    lane: int,
+) -> bool:
+    """Write where a beam that runs along no face enters the block to a lane of `state`; False where it misses."""
     x_in, x_out = crossings(px, dx, nx)
     y_in, y_out = crossings(py, dy, ny)
     t = max(x_in, y_in)
     end = min(x_out, y_out)
     if not t < end:
-        return count
+        return False
+    state[AT, lane], state[END, lane], state[SCALE, lane] = t, end, scale
     ix = min(max(math.floor(px + t * dx), 0), nx - 1)
     iy = min(max(math.floor(py + t * dy), 0), ny - 1)
     iz = math.floor(pz + t * dz)
-    x_way, tx, x_gap = faces(px, dx, ix)
-    y_way, ty, y_gap = faces(py, dy, iy)
-    z_way, tz, z_gap = faces(pz, dz, iz)
-    while t < end:
+    state[VOXEL, lane], state[VOXEL + 1, lane], state[VOXEL + 2, lane] = ix, iy, iz
+    state[WAY, lane], state[NEXT, lane], state[GAP, lane] = faces(px, dx, ix)
+    state[WAY + 1, lane], state[NEXT + 1, lane], state[GAP + 1, lane] = faces(py, dy, iy)
+    state[WAY + 2, lane], state[NEXT + 2, lane], state[GAP + 2, lane] = faces(pz, dz, iz)
+    return True
+
+
+@compiled
+def follow(
+    state: NDArray[Any],
+    lane: int,
+    nx: int,
+    ny: int,
+    strides: tuple[int, int, int],
+    places: NDArray[Any],
+    shifts: NDArray[Any],
+    weights: NDArray[Any],
+    first: int,
+    step: int,
+) -> int:
+    """Write the pieces of the beam in a lane of `state`, `step` numbers apart from `first` on; return how many.
+
+    Where a beam meets several faces at once some may be of length 0.
+    """
+    t, end = state[AT, lane], state[END, lane]
+    tx, ty, tz = state[NEXT, lane], state[NEXT + 1, lane], state[NEXT + 2, lane]
+    ix, iy, iz = int(state[VOXEL, lane]), int(state[VOXEL + 1, lane]), int(state[VOXEL + 2, lane])
+    count = 0
+    while t < end and 0 <= ix < nx and 0 <= iy < ny:
         stop = min(min(tx, ty), min(tz, end))
-        places[count] = ix * strides[0] + iy * strides[1]
-        shifts[count] = iz * strides[2]
-        weights[count] = (stop - t) * scale
-        count += 1 if stop > t and 0 <= ix < nx and 0 <= iy < ny else 0
+        at = first + count * step
+        places[at], shifts[at] = ix * strides[0] + iy * strides[1], iz * strides[2]
+        weights[at] = (stop - t) * state[SCALE, lane]
+        count += 1
         t = stop
-        at_x, at_y, at_z = tx <= stop, ty <= stop, tz <= stop
-        ix += x_way if at_x else 0
-        iy += y_way if at_y else 0
-        iz += z_way if at_z else 0
-        tx += x_gap if at_x else 0.0
-        ty += y_gap if at_y else 0.0
-        tz += z_gap if at_z else 0.0
+        if tx <= stop:
+            ix, tx = ix + int(state[WAY, lane]), tx + state[GAP, lane]
+        if ty <= stop:
+            iy, ty = iy + int(state[WAY + 1, lane]), ty + state[GAP + 1, lane]
+        if tz <= stop:
+            iz, tz = iz + int(state[WAY + 2, lane]), tz + state[GAP + 2, lane]
     return count
 
 
@@ -141,11 +166,24 @@ def trace_beam(
     along a face is split into equal beams half a voxel to either side, which have the same lengths as the voxels that
     touch the face. There must be room for one more piece than `max_pieces`.
     """
+    state = np.empty((FIELDS, 1))
     on_x, on_y, on_z = on_face(px, dx), on_face(py, dy), on_face(pz, dz)
     part = scale * 0.5 ** (int(on_x) + int(on_y) + int(on_z))
     for sx in range(2 if on_x else 1):
         for sy in range(2 if on_y else 1):
             for sz in range(2 if on_z else 1):
                 qx, qy, qz = beside(px, on_x, sx), beside(py, on_y, sy), beside(pz, on_z, sz)
-                count = _trace_off_faces(qx, qy, qz, dx, dy, dz, nx, ny, part, strides, places, shifts, weights, count)
+                if begin(qx, qy, qz, dx, dy, dz, nx, ny, part, state, 0):
+                    made = follow(state, 0, nx, ny, strides, places, shifts, weights, count, 1)
+                    count = _without_nothing(places, shifts, weights, count, count + made)
     return count
+
+
+@compiled
+def _without_nothing(places: NDArray[Any], shifts: NDArray[Any], weights: NDArray[Any], first: int, last: int) -> int:
+    """Move pieces `first` to before `last` together, without those of length 0; return one after the last."""
+    kept = first
+    for k in range(first, last):
+        places[kept], shifts[kept], weights[kept] = places[k], shifts[k], weights[k]
+        kept += 1 if weights[k] > 0 else 0
+    return kept

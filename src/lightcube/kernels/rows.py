@@ -29,41 +29,46 @@ def add_rows(
     shifts: Array,
     weights: Array,
     first: int,
-    last: int,
+    count: int,
+    step: int,
+    low: int,
+    high: int,
     start: int,
     stop: int,
 ) -> None:
     """``target[at + c] += sum_k weights[k] source[base + places[k] + shifts[k] + c]`` for ``start <= c < stop``.
 
-    The sum is over ``first <= k < last`` and leaves out what lies beside the row of `columns` numbers that it is
-    taken from: ``c + shifts[k]`` must be in ``[0, columns)``. `target` and `source` have one axis.
+    The sum is over the `count` pieces ``k = first, first + step, ...`` and leaves out what lies beside the row of
+    `columns` numbers that it is taken from: ``c + shifts[k]`` must be in ``[0, columns)``. Shifts are from `low` to
+    `high`. `target` and `source` have one axis.
     """
-    for k in range(first, last):
-        low, high = max(start, -shifts[k]), min(stop, columns - shifts[k])
-        if low < high:
+    for k in range(first, first + count * step, step):
+        first_c, last_c = max(start, -shifts[k]), min(stop, columns - shifts[k])
+        if first_c < last_c:
             there = base + places[k] + shifts[k]
-            target[at + low : at + high] += weights[k] * source[there + low : there + high]
+            target[at + first_c : at + last_c] += weights[k] * source[there + first_c : there + last_c]
 
 
-def _summing(vectors: int, masked: bool) -> Any:
-    """Make `add_rows` for `vectors` vectors of columns from `start` on, compiled; where not masked, all must exist."""
+def _summing(vectors: int, *, cut: bool, ragged: bool) -> Any:
+    """Make `add_rows` for `vectors` vectors of columns from `start` on, compiled.
+
+    Where not `cut`, `stop` is not before the end of the last one; where not `ragged`, all rows have all their numbers.
+    """
 
     @intrinsic
     def add(  # type: ignore[no-untyped-def]
-        context, target, at, source, base, columns, places, shifts, weights, first, last, start, stop
+        context, target, at, source, base, columns, places, shifts, weights, first, count, step, start, stop
     ):
         number = types.int64
-        signature = types.void(
-            target, number, source, number, number, places, shifts, weights, number, number, number, number
-        )
-        return signature, lambda *emitter: _emit(vectors, masked, *emitter)
+        signature = types.void(target, number, source, number, number, places, shifts, weights, *[number] * 5)
+        return signature, lambda *emitter: _emit(vectors, cut, ragged, *emitter)
 
     return add
 
 
-def _emit(vectors: int, masked: bool, context: Any, builder: Any, signature: Any, args: Any) -> Any:
+def _emit(vectors: int, cut: bool, ragged: bool, context: Any, builder: Any, signature: Any, args: Any) -> Any:
     """Emit the code of `_summing`."""
-    at, base, columns, first, last, start, stop = (args[i] for i in (1, 3, 4, 8, 9, 10, 11))
+    at, base, columns, first, count, step, start, stop = (args[i] for i in (1, 3, 4, *range(8, 13)))
     target, source, places, shifts, weights = (
         context.make_array(signature.args[i])(context, builder, args[i]).data for i in (0, 2, 5, 6, 7)
     )
@@ -72,17 +77,18 @@ def _emit(vectors: int, masked: bool, context: Any, builder: Any, signature: Any
     vector = ir.VectorType(real, LANES)
     here = builder.gep(target, [builder.add(at, start)])
     there = builder.gep(source, [builder.add(base, start)])
-    wanted = [_inside(builder, start, stop, j) if masked else None for j in range(vectors)]
+    wanted = [_inside(builder, start, stop, j) if cut else None for j in range(vectors)]
     sums = [cgutils.alloca_once(builder, vector) for _ in range(vectors)]
     for j in range(vectors):
         builder.store(_load(builder, vector, size, _at(builder, here, j), wanted[j]), sums[j])
-    with cgutils.for_range_slice(builder, first, last, ir.Constant(_I64, 1), intp=_I64) as (k, _):
+    last = builder.add(first, builder.mul(count, step))
+    with cgutils.for_range_slice(builder, first, last, step, intp=_I64) as (k, _):
         place = builder.sext(builder.load(builder.gep(places, [k])), _I64)
         shift = builder.sext(builder.load(builder.gep(shifts, [k])), _I64)
         weight = _spread(builder, builder.load(builder.gep(weights, [k])), vector)
         row = builder.gep(there, [builder.add(place, shift)])
         for j in range(vectors):
-            known = _inside(builder, builder.add(start, shift), columns, j) if masked else None
+            known = _inside(builder, builder.add(start, shift), columns, j) if ragged else None
             values = _load(builder, vector, size, _at(builder, row, j), known)
             product = builder.fmul(values, weight, flags=("contract",))
             builder.store(builder.fadd(builder.load(sums[j]), product, flags=("contract",)), sums[j])
@@ -133,33 +139,40 @@ def _store(builder: Any, values: Any, size: int, pointer: Any, mask: Any) -> Non
     builder.call(store, [values, pointer, ir.Constant(_I32, size), mask])
 
 
-_sum_4 = _summing(4, masked=False)
-_sum_some_1, _sum_some_2, _sum_some_3, _sum_some_4 = (_summing(vectors, masked=True) for vectors in (1, 2, 3, 4))
+_whole = _summing(4, cut=False, ragged=False)
+_cut_1, _cut_2, _cut_3, _cut_4 = (_summing(vectors, cut=True, ragged=False) for vectors in range(1, 5))
+_some_1, _some_2, _some_3, _some_4 = (_summing(vectors, cut=True, ragged=True) for vectors in range(1, 5))
 
 
 @overload(add_rows, inline="always")
 def _compiled_add_rows(  # type: ignore[no-untyped-def]
-    target, at, source, base, columns, places, shifts, weights, first, last, start, stop
+    target, at, source, base, columns, places, shifts, weights, first, count, step, low, high, start, stop
 ):
     def add(  # type: ignore[no-untyped-def]
-        target, at, source, base, columns, places, shifts, weights, first, last, start, stop
+        target, at, source, base, columns, places, shifts, weights, first, count, step, low, high, start, stop
     ):
-        low, high = shifts[first], shifts[first]
-        for k in range(first, last):
-            low, high = min(low, shifts[k]), max(high, shifts[k])
-        c, end = max(start, -high), min(stop, columns - low)
+        c, end = max(start, -high), min(stop, columns - low)  # elsewhere no row has a number
         while c < end:
             rest = end - c
-            if rest >= 64 and c + low >= 0 and c + 64 + high <= columns:
-                _sum_4(target, at, source, base, columns, places, shifts, weights, first, last, c, end)
+            if c + low >= 0 and c + high + min((rest + LANES - 1) // LANES, 4) * LANES <= columns:
+                if rest >= 64:
+                    _whole(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
+                elif rest > 48:
+                    _cut_4(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
+                elif rest > 32:
+                    _cut_3(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
+                elif rest > 16:
+                    _cut_2(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
+                else:
+                    _cut_1(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
             elif rest > 48:
-                _sum_some_4(target, at, source, base, columns, places, shifts, weights, first, last, c, end)
+                _some_4(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
             elif rest > 32:
-                _sum_some_3(target, at, source, base, columns, places, shifts, weights, first, last, c, end)
+                _some_3(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
             elif rest > 16:
-                _sum_some_2(target, at, source, base, columns, places, shifts, weights, first, last, c, end)
+                _some_2(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
             else:
-                _sum_some_1(target, at, source, base, columns, places, shifts, weights, first, last, c, end)
+                _some_1(target, at, source, base, columns, places, shifts, weights, first, count, step, c, end)
             c += 64
 
     return add

@@ -19,109 +19,24 @@ result, and every number is summed in one order: no two threads write the same o
 number.
 """
 
-import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.kernels.beam import PARALLEL, max_pieces, trace_beam
+from lightcube.kernels.beam import max_pieces, trace_beam
 from lightcube.kernels.compiled import compiled
+from lightcube.kernels.marching import ABREAST
 from lightcube.kernels.rows import LANES, add_rows, prefetch
 from lightcube.kernels.tasks import run
+from lightcube.kernels.tiles import TILE, Traced, paper, room, trace_tile
 
 Array = NDArray[Any]
 
-#: Voxels along the side of a tile, views in a group at most, and columns that are worked on at a time (measured).
-TILE, GROUP, COLUMNS = 16, 16, 256
+#: Views in a group at most, of one product and of the other, and columns that are worked on at a time (measured).
+GROUP, BACK_GROUP, COLUMNS = 32, 16, 256
 #: Pieces that a group may have at most: fewer views are taken where light is steep.
 _MOST_PIECES = 1 << 20
-
-
-@compiled
-def _room(beams: Array, width: int) -> tuple[int, int]:
-    """Return how many beams of a view may meet a tile, and how many pieces one of them may have there."""
-    rays, rise = 0, 0
-    for view in range(len(beams)):
-        step, light = beams[view, 1], beams[view, 2]
-        turned = abs(step[0] * light[1] - step[1] * light[0])
-        flat = math.hypot(light[0], light[1])
-        spread = TILE * (abs(light[0]) + abs(light[1]))
-        rays = max(rays, width if spread >= turned * width else min(width, int(spread / turned) + 4))
-        rise = max(rise, int(abs(light[2]) / flat * TILE * 1.5) + 2)
-    return rays, max_pieces(TILE, TILE, rise) + 1
-
-
-@compiled
-def _meeting(beams: Array, view: int, low: int, high: int, x: int, y: int, nx: int, ny: int) -> tuple[int, int]:
-    """Return the first of the beams `low` to before `high` of a view that may meet a tile, and one after the last."""
-    start, step, light = beams[view, 0], beams[view, 1], beams[view, 2]
-    turned = step[0] * light[1] - step[1] * light[0]
-    if abs(turned) < PARALLEL:
-        return low, high
-    first, last = np.inf, -np.inf
-    for corner in range(4):
-        across = x - start[0] + (nx if corner & 1 else 0)
-        along = y - start[1] + (ny if corner & 2 else 0)
-        column = (across * light[1] - along * light[0]) / turned
-        first, last = min(first, column), max(last, column)
-    return int(max(float(low), math.floor(first))), int(min(float(high), math.ceil(last) + 1))
-
-
-@compiled
-def _trace_tile(
-    beams: Array,
-    windows: Array,
-    width: int,
-    view: int,
-    after: int,
-    low: int,
-    high: int,
-    x: int,
-    y: int,
-    nx: int,
-    ny: int,
-    scale: float,
-    strides: tuple[int, int, int],
-    rays: Array,
-    ends: Array,
-    places: Array,
-    shifts: Array,
-    weights: Array,
-) -> int:
-    """Trace the beams of views `view` to before `after` through the tile of `nx` by `ny` voxels at ``(x, y)``.
-
-    Of each view only the beams `low` to before `high` in its window. The pieces of beam ``rays[i]``, counted from the
-    first beam of `view`, end before ``ends[i + 1]``; returns how many beams meet the tile.
-    """
-    met = 0
-    ends[0] = 0
-    for each in range(view, after):
-        start, step, light = beams[each, 0], beams[each, 1], beams[each, 2]
-        low_each, high_each = max(low, windows[each, 0]), min(high, windows[each, 1])
-        first, last = _meeting(beams, each, low_each, high_each, x, y, nx, ny)
-        for column in range(first, last):
-            count = trace_beam(
-                start[0] + column * step[0] - x,
-                start[1] + column * step[1] - y,
-                start[2] + column * step[2],
-                light[0],
-                light[1],
-                light[2],
-                nx,
-                ny,
-                scale,
-                strides,
-                places,
-                shifts,
-                weights,
-                ends[met],
-            )
-            if count > ends[met]:
-                rays[met] = (each - view) * width + column
-                ends[met + 1] = count
-                met += 1
-    return met
 
 
 def forward(
@@ -138,7 +53,7 @@ def forward(
     tasks: int,
 ) -> None:
     """``b = A x``; every number of `b` is written. At least `tasks` parts are worked on side by side, if possible."""
-    rays, pieces = _room(beams, width)
+    rays, pieces = room(beams, width)
     group = max(1, min(GROUP, len(beams) // tasks, _MOST_PIECES // (rays * pieces)))
     groups = (len(beams) + group - 1) // group
     parts = min((tasks + groups - 1) // groups, width)  # where there are few views, strips of beams
@@ -181,14 +96,13 @@ def _forward(
         low, high = task % parts * width // parts, (task % parts + 1) * width // parts
         for each in range(view, after):
             b[each * width + low : each * width + high] = 0
-        rays, ends = np.empty(group * most_rays, np.int64), np.empty(group * most_rays + 1, np.int64)
-        room = group * most_rays * most_pieces
-        places, shifts, weights = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
+        traced = paper(group, most_rays, most_pieces, x)
+        rays = traced.rays
         strides = (apart * slices, nx * apart * slices, channels if apart == 1 else 1)
         for tile_y in range(0, ny, TILE):
             for tile_x in range(0, nx, TILE):
                 size_x, size_y = min(TILE, nx - tile_x), min(TILE, ny - tile_y)
-                met = _trace_tile(
+                met = trace_tile(
                     beams,
                     windows,
                     width,
@@ -202,14 +116,10 @@ def _forward(
                     size_y,
                     scale,
                     strides,
-                    rays,
-                    ends,
-                    places,
-                    shifts,
-                    weights,
+                    traced,
                 )
                 if apart > 1:
-                    _into_classes(ends[met], apart, slices, channels, places, shifts)
+                    _into_classes(traced, met, apart, slices, channels)
                 base = (tile_y * nx + tile_x) * apart * slices
                 for column in range(0, columns, COLUMNS):
                     end = min(column + COLUMNS, columns)
@@ -219,17 +129,22 @@ def _forward(
                                 prefetch(target, (view * width + rays[i + 1]) * columns + near)
                         own = windows[view + rays[i] // width]
                         at = (view * width + rays[i]) * columns
+                        piece, count = traced.firsts[i], traced.counts[i]
+                        enters, leaves = traced.shifts[piece], traced.shifts[piece + ABREAST * (count - 1)]
                         add_rows(
                             target,
                             at,
                             source,
                             base,
                             slices,
-                            places,
-                            shifts,
-                            weights,
-                            ends[i],
-                            ends[i + 1],
+                            traced.places,
+                            traced.shifts,
+                            traced.weights,
+                            piece,
+                            count,
+                            ABREAST,
+                            min(enters, leaves),
+                            max(enters, leaves),
                             max(column, own[2]),
                             min(end, own[3]),
                         )
@@ -253,7 +168,7 @@ def adjoint(
     parts = max(1, min((tasks + tiles - 1) // tiles, x.shape[1] // (4 * LANES)))
     work = _work(windows, nx, ny)
     grid = beams, windows, width, nx, ny, scale
-    run(_adjoint, tiles * parts, work, *grid, b, x, channels, apart, parts, *_room(beams, width))
+    run(_adjoint, tiles * parts, work, *grid, b, x, channels, apart, parts, *room(beams, width))
 
 
 @compiled
@@ -277,7 +192,7 @@ def _adjoint(
     """Do the tiles, or strips of their columns, that are tasks `first` to before `last`."""
     rows, columns = b.shape[1], x.shape[1]
     source, target = b.reshape(-1), x.reshape(-1)
-    group = max(1, min(GROUP, len(beams), _MOST_PIECES // (most_rays * most_pieces)))
+    group = max(1, min(BACK_GROUP, len(beams), _MOST_PIECES // (most_rays * most_pieces)))
     across = (nx + TILE - 1) // TILE
     part = (columns + parts * LANES - 1) // (parts * LANES) * LANES
     for task in range(first, last):
@@ -288,17 +203,16 @@ def _adjoint(
         for y in range(size_y):
             row = ((tile_y + y) * nx + tile_x) * apart
             x[row : row + size_x * apart, start:stop] = 0
-        rays, ends = np.empty(group * most_rays, np.int64), np.empty(group * most_rays + 1, np.int64)
-        room = group * most_rays * most_pieces
-        voxels, levels, lengths = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
-        places, shifts, weights = np.empty(room, np.int32), np.empty(room, np.int32), np.empty(room, x.dtype)
-        voxel_ends = np.empty(TILE * TILE * apart + 1, np.int64)
+        traced = paper(group, most_rays, most_pieces, x)
+        most = len(traced.places)
+        places, shifts, weights = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most, x.dtype)
+        voxel_ends = np.zeros(TILE * TILE * apart + 1, np.uint32)  # signed numbers are asked whether they are below 0
         strides = (apart, size_x * apart, -channels if apart == 1 else 1)
         after = 0
         while after < len(beams):
             view, after = after, _after(windows, after, group)
-            low, high = windows[view, 2], windows[view, 3]
-            met = _trace_tile(
+            lowest, highest = windows[view, 2], windows[view, 3]
+            met = trace_tile(
                 beams,
                 windows,
                 width,
@@ -312,47 +226,53 @@ def _adjoint(
                 size_y,
                 scale,
                 strides,
-                rays,
-                ends,
-                voxels,
-                levels,
-                lengths,
+                traced,
             )
             if apart > 1:
-                _into_classes(ends[met], apart, 1, -channels, voxels, levels)
-            _by_voxel(rays, ends, met, rows, low, voxels, levels, lengths, voxel_ends, places, shifts, weights)
+                _into_classes(traced, met, apart, 1, -channels)
+            _by_voxel(traced, met, rows, lowest, voxel_ends, places, shifts, weights)
             for column in range(start, stop, COLUMNS):
                 end = min(column + COLUMNS, stop)
                 wide = size_x * apart
                 for voxel in range(wide * size_y):
-                    if voxel_ends[voxel + 1] > voxel_ends[voxel]:
+                    piece, beyond = voxel_ends[voxel], voxel_ends[voxel + 1]
+                    if piece < beyond:
+                        low, high = shifts[piece], shifts[piece]
+                        for k in range(piece, beyond):
+                            low, high = min(low, shifts[k]), max(high, shifts[k])
                         at = (((tile_y + voxel // wide) * nx + tile_x) * apart + voxel % wide) * columns
                         add_rows(
                             target,
                             at,
                             source,
-                            view * width * rows + low,
-                            high - low,
+                            view * width * rows + lowest,
+                            highest - lowest,
                             places,
                             shifts,
                             weights,
-                            voxel_ends[voxel],
-                            voxel_ends[voxel + 1],
+                            piece,
+                            beyond - piece,
+                            1,
+                            low,
+                            high,
                             column,
                             end,
                         )
 
 
 @compiled
-def _into_classes(count: int, apart: int, length: int, step: int, places: Array, levels: Array) -> None:
-    """Say where pieces are in classes of slices: so far, `length` a class, from `places`, and `step` a slice of it.
+def _into_classes(traced: Traced, met: int, apart: int, length: int, step: int) -> None:
+    """Say where pieces are in classes of slices: so far, `length` a class, from their places, and `step` a slice of it.
 
-    What comes as ``level`` of each of the first `count` pieces leaves as ``step * floor(level / apart)``.
+    What comes as ``level`` of each of them leaves as ``step * floor(level / apart)``.
     """
-    for k in range(count):
-        lifted = levels[k] // apart
-        places[k] += (levels[k] - lifted * apart) * length
-        levels[k] = lifted * step
+    for i in range(met):
+        first = traced.firsts[i]
+        for k in range(first, first + ABREAST * traced.counts[i], ABREAST):
+            level = traced.shifts[k]
+            lifted = level // apart
+            traced.places[k] += (level - lifted * apart) * length
+            traced.shifts[k] = lifted * step
 
 
 def by_class(source: Array, target: Array, slices: int, apart: int) -> None:
@@ -404,36 +324,28 @@ def _after(windows: Array, view: int, most: int) -> int:
 
 @compiled
 def _by_voxel(
-    rays: Array,
-    ends: Array,
-    met: int,
-    rows: int,
-    low: int,
-    voxels: Array,
-    levels: Array,
-    lengths: Array,
-    voxel_ends: Array,
-    places: Array,
-    shifts: Array,
-    weights: Array,
+    traced: Traced, met: int, rows: int, low: int, voxel_ends: Array, places: Array, shifts: Array, weights: Array
 ) -> None:
     """Sort the pieces of a tile's beams by voxel: those of voxel ``v`` then end before ``voxel_ends[v + 1]``.
 
     Columns of ``b`` are counted from `low` on.
     """
-    voxel_ends[:] = 0
-    for k in range(ends[met]):
-        voxel_ends[voxels[k] + 1] += 1
-    for voxel in range(len(voxel_ends) - 1):
-        voxel_ends[voxel + 1] += voxel_ends[voxel]
+    ends = voxel_ends[1:]
+    ends[:] = 0
     for i in range(met):
-        for k in range(ends[i], ends[i + 1]):
-            to = voxel_ends[voxels[k]]
-            places[to], shifts[to], weights[to] = rays[i] * rows, levels[k] - low, lengths[k]
-            voxel_ends[voxels[k]] = to + 1
-    for voxel in range(len(voxel_ends) - 1, 0, -1):
-        voxel_ends[voxel] = voxel_ends[voxel - 1]
-    voxel_ends[0] = 0
+        first = traced.firsts[i]
+        for k in range(first, first + ABREAST * traced.counts[i], ABREAST):
+            ends[traced.places[k]] += 1
+    count = 0
+    for voxel in range(len(ends)):
+        ends[voxel], count = count, count + ends[voxel]
+    for i in range(met):
+        first, place = traced.firsts[i], traced.rays[i] * rows
+        for k in range(first, first + ABREAST * traced.counts[i], ABREAST):
+            voxel = traced.places[k]
+            to = ends[voxel]
+            places[to], shifts[to], weights[to] = place, traced.shifts[k] - low, traced.weights[k]
+            ends[voxel] = to + 1
 
 
 def copy_rows(source: Array, target: Array) -> None:
