@@ -1,12 +1,15 @@
 """What a cube says of itself, changed by somebody: refused in a sentence or left out, and never shown raw."""
 
+import sys
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import lightcube as lc
+from lightcube.backward.recipe import recipe_of
 from lightcube.cli.arguments import short
 from lightcube.errors import InputError, encodable, shown
 from lightcube.report.measuring import Findings, measure
@@ -52,6 +55,19 @@ def test_how_a_cube_was_made_may_be_anything(number: int, found: Findings) -> No
             assert "<script>alert" not in look(found, cube)
         for name, value in facts(cube).items():
             assert shown(f"{name} {short(value)}").replace("\xa0", " ").isprintable()
+
+
+def test_a_method_that_a_cube_names_is_told_and_not_imported(
+    found: Findings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "harmful.py").write_text("raise RuntimeError\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    cube = replace(found.cube, provenance={**found.cube.provenance, "method": "harmful:solve"})
+    assert "harmful:solve" in look(found, cube)
+    assert lc.score(cube, TARGETS)["psnr_mean"] == lc.score(found.cube, TARGETS)["psnr_mean"]
+    assert "harmful" not in sys.modules
+    with pytest.raises(InputError, match="known by its name only"):
+        lc.solve(TARGETS, GRID, recipe_of(cube))
 
 
 @pytest.mark.parametrize("number", range(len(LEAVES)))

@@ -16,7 +16,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
 from lightcube.optics.told import remembered
-from lightcube.solvers import find_method
+from lightcube.solvers import METHODS, find_method
 from lightcube.solvers.contract import Solver
 from lightcube.solvers.method import Method
 
@@ -199,5 +199,12 @@ def from_plain(said: Mapping[str, Any]) -> Recipe:
 
 
 def recipe_of(cube: Cube) -> Recipe:
-    """How a cube was made, from what it remembers; as usual where that says nothing."""
-    return replace(from_plain(remembered(cube)), hold_deg=cube.hold_deg)
+    """How a cube was made, from what it remembers; as usual where that says nothing.
+
+    A method that is not in `lightcube.METHODS` is known by its name only: the cube may be anybody's, and nothing is
+    imported because it says so.
+    """
+    said = remembered(cube)
+    if said.get("method", "display") not in METHODS:
+        said["method"] = Method.named(said["method"])
+    return replace(from_plain(said), hold_deg=cube.hold_deg)

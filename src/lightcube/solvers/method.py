@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from lightcube.errors import InputError
-from lightcube.solvers.contract import Solver
+from lightcube.solvers.contract import Result, Solver
 
 #: What a method's residuals are: half the weighted squares of display values (those too dark linearised), of which it
 #: can be told how many dB they are; another sum over columns that it minimises; or a 2-norm over columns.
@@ -67,6 +67,15 @@ class Method:
                 f"method {self.name} does not take what a solver is given, (A, wanted, *, x0, bounds, iterations, "
                 f"callback, state): {error}"
             ) from error
+
+    @classmethod
+    def named(cls, name: str) -> Method:
+        """A method of which nothing but the name is known: it may be told, and not used."""
+
+        def refuse(*_: object, **__: object) -> Result:
+            raise InputError(f"method {name} is known by its name only: name it where it is to be used")
+
+        return cls(refuse, name, chooses_lamps=True, takes_sums=True)
 
 
 def _name_of(function: object) -> str:
