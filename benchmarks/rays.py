@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 
 from lightcube.kernels import tasks
 from lightcube.kernels.compiled import compiled
-from lightcube.kernels.ray import most_pieces
-from lightcube.kernels.rays import _trace_rows
+from lightcube.kernels.marching import ABREAST
+from lightcube.kernels.ray import FIELDS, most_pieces
+from lightcube.kernels.rays import trace_rows
+from lightcube.kernels.tiles import paper
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views
 from lightcube.projection.rays import Rays
@@ -57,11 +59,11 @@ def traversal(*data: Any) -> int:
 @compiled
 def _traversal(first_line, last_line, lamps, screens, shape, heard, grid, found):  # type: ignore[no-untyped-def]
     nz, ny, nx = grid
+    state, traced = np.empty((FIELDS, ABREAST)), paper(0, most_pieces(nx, ny, nz), np.empty(0, np.float32))
     for line in range(first_line, last_line):
-        places = np.empty((2, most_pieces(nx, ny, nz)), np.int64)
-        weights = np.empty(places.shape, np.float32)
-        for row in range(0, shape[1], 2):
-            first, second = _trace_rows(
+        row = 0
+        while row < shape[1]:
+            row, met = trace_rows(
                 lamps[line // shape[0]],
                 screens[line // shape[0]],
                 heard[line],
@@ -73,10 +75,10 @@ def _traversal(first_line, last_line, lamps, screens, shape, heard, grid, found)
                 (nz, nx * nz, 1),
                 1.0,
                 1.0,
-                places,
-                weights,
+                state,
+                traced,
             )
-            found[line] += first + second
+            found[line] += traced.counts[:met].sum()
 
 
 @compiled

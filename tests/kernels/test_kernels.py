@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from numba import njit
 
 from lightcube.kernels import exponential, layout, rows
-from lightcube.kernels.beam import FIELDS, begin, follow
 from lightcube.kernels.marching import ABREAST, march
+from lightcube.kernels.ray import END, FIELDS, enter, follow, parts_of
 from lightcube.kernels.stacked import GROUP
 from lightcube.kernels.tiles import TILE
 from lightcube.optics.grid import Grid
@@ -31,8 +31,8 @@ def compiled_add_rows(  # type: ignore[no-untyped-def]
 
 
 @njit
-def compiled_march(state, nx, ny, strides, places, shifts, weights, first, counts, met):  # type: ignore[no-untyped-def]
-    return march(state, nx, ny, strides, places, shifts, weights, first, counts, met)
+def compiled_march(state, size, strides, places, shifts, weights, first, counts, met):  # type: ignore[no-untyped-def]
+    return march(state, size, strides, places, shifts, weights, first, counts, met)
 
 
 @njit
@@ -80,23 +80,25 @@ def test_vectors_of_sums_are_the_plain_sums(
 
 @settings(max_examples=60)
 @given(
-    beams=st.lists(
+    rays=st.lists(
         st.tuples(st.floats(-2, 9), st.floats(-1, 1), st.floats(-3, 3), st.floats(0, 6.3), st.floats(-2, 2)),
         max_size=ABREAST,
     ),
+    nz=st.sampled_from([0, 1, 4]),
     single=st.booleans(),
 )
-def test_beams_side_by_side_go_as_each_alone(
-    beams: list[tuple[float, float, float, float, float]], single: bool
+def test_rays_side_by_side_go_as_each_alone(
+    rays: list[tuple[float, float, float, float, float]], nz: int, single: bool
 ) -> None:
     """As many as there are, some through corners; whatever misses the block or is not there has no pieces."""
-    nx, ny, most = 7, 5, 80
+    size, most = (7, 5, nz), 80
     state = np.zeros((FIELDS, ABREAST))
-    for lane, (px, py, pz, angle, dz) in enumerate(beams):
+    for lane, (px, py, pz, angle, dz) in enumerate(rays):
         dx, dy = np.cos(angle), np.sin(angle)
-        if not begin(px - 9 * dx, py - 9 * dy, pz, dx, dy, dz, nx, ny, 0.5 + lane, state, lane):
-            state[1, lane] = -np.inf
-    state[1, len(beams) :] = -np.inf
+        ray = (px - 9 * dx, py - 9 * dy, pz, dx, dy, dz, -np.inf, np.inf)
+        if parts_of(ray) > 1 or not enter(ray, size, 0.5 + lane, state, lane):
+            state[END, lane] = -np.inf
+    state[END, len(rays) :] = -np.inf
     strides, dtype = (3, 40, -2), np.float32 if single else np.float64
 
     def paper() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -104,12 +106,12 @@ def test_beams_side_by_side_go_as_each_alone(
         return np.zeros(room, np.uint32), np.zeros(room, np.int32), np.zeros(room, dtype)
 
     found, counts = paper(), np.full(ABREAST + 2, -1)
-    end = compiled_march(state, nx, ny, strides, *found, 3, counts, 1)
+    end = compiled_march(state, size, strides, *found, 3, counts, 1)
     assert counts[0] == counts[-1] == -1
     assert end >= 3 + ABREAST * counts.max()
     for lane in range(ABREAST):
         alone = paper()
-        count = follow(state, lane, nx, ny, strides, *alone, 0, 1)
+        count = follow(state, lane, size, strides, *alone, 0, 1)
         assert counts[1 + lane] == count
         for together, own in zip(found, alone, strict=True):
             assert np.array_equal(together[3 + lane :: ABREAST][:count], own[:count])

@@ -1,6 +1,6 @@
-"""Eight beams at a time on their way through a block of voxels, each in a lane of the processor's vectors.
+"""Eight rays at a time on their way through a block of voxels, each in a lane of the processor's vectors.
 
-One beam alone waits for its next face to be found before it can look for the one after: a vector of beams waits for all
+One ray alone waits for its next face to be found before it can look for the one after: a vector of rays waits for all
 of them at once. The vectors are LLVM's, as those of `lightcube.kernels.rows`.
 """
 
@@ -13,11 +13,11 @@ from numba.core import cgutils
 from numba.extending import intrinsic, overload
 from numpy.typing import NDArray
 
-from lightcube.kernels.beam import AT, END, GAP, NEXT, SCALE, VOXEL, WAY, follow
+from lightcube.kernels.ray import AT, END, GAP, NEXT, SCALE, VOXEL, WAY, Triple, follow
 
 Array = NDArray[Any]
 
-#: Beams that march side by side.
+#: Rays that march side by side.
 ABREAST = 8
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
 _REALS, _WHOLES = ir.VectorType(ir.DoubleType(), ABREAST), ir.VectorType(_I32, ABREAST)
@@ -25,9 +25,8 @@ _REALS, _WHOLES = ir.VectorType(ir.DoubleType(), ABREAST), ir.VectorType(_I32, A
 
 def march(
     state: Array,
-    nx: int,
-    ny: int,
-    strides: tuple[int, int, int],
+    size: Triple,
+    strides: Triple,
     places: Array,
     shifts: Array,
     weights: Array,
@@ -35,25 +34,27 @@ def march(
     counts: Array,
     met: int,
 ) -> int:
-    """Write the pieces of the beams in all lanes of `state`, as `follow` does: lane i's are ``first + i + 8 k``.
+    """Write the pieces of the rays in all lanes of `state`, as `follow` does: lane i's are ``first + i + 8 k``.
 
     Their numbers are ``counts[met + i]``; a lane whose end is -inf has none. Returns one
     after the last number of `places`, `shifts` and `weights` that may be written to.
     """
     for lane in range(ABREAST):
-        counts[met + lane] = follow(state, lane, nx, ny, strides, places, shifts, weights, first + lane, ABREAST)
+        counts[met + lane] = follow(state, lane, size, strides, places, shifts, weights, first + lane, ABREAST)
     return first + ABREAST * int(np.max(counts[met : met + ABREAST]) + 1)
 
 
 @overload(march, inline="always")
 def _compiled_march(  # type: ignore[no-untyped-def]
-    state, nx, ny, strides, places, shifts, weights, first, counts, met
+    state, size, strides, places, shifts, weights, first, counts, met
 ):
     def go(  # type: ignore[no-untyped-def]
-        state, nx, ny, strides, places, shifts, weights, first, counts, met
+        state, size, strides, places, shifts, weights, first, counts, met
     ):
+        nx, ny, nz = size
+        along_x, along_y, along_z = strides
         return _march(  # type: ignore[call-arg]
-            state, nx, ny, strides[0], strides[1], strides[2], places, shifts, weights, first, counts, met
+            state, nx, ny, nz, along_x, along_y, along_z, places, shifts, weights, first, counts, met
         )
 
     return go
@@ -61,27 +62,28 @@ def _compiled_march(  # type: ignore[no-untyped-def]
 
 @intrinsic
 def _march(  # type: ignore[no-untyped-def]
-    context, state, nx, ny, stride_x, stride_y, stride_z, places, shifts, weights, first, counts, met
+    context, state, nx, ny, nz, stride_x, stride_y, stride_z, places, shifts, weights, first, counts, met
 ):
     number = types.int64
-    sizes = number, number, number, number, number
+    sizes = (number,) * 6
     return number(state, *sizes, places, shifts, weights, number, counts, number), _emit
 
 
 def _emit(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     """Emit the code of `_march`: a loop that takes every lane to its next face, while any has one."""
     state, places, shifts, weights, counts = (
-        context.make_array(signature.args[i])(context, builder, args[i]).data for i in (0, 6, 7, 8, 10)
+        context.make_array(signature.args[i])(context, builder, args[i]).data for i in (0, 7, 8, 9, 11)
     )
-    real = context.get_value_type(signature.args[8].dtype)
-    nx, ny, *strides = (_spread(builder, builder.trunc(each, _I32)) for each in args[1:6])
+    real = context.get_value_type(signature.args[9].dtype)
+    nx, ny, nz, *strides = (_spread(builder, builder.trunc(each, _I32)) for each in args[1:7])
+    endless = builder.icmp_unsigned("==", nz, ir.Constant(_WHOLES, None))
     end, scale = _field(builder, state, END), _field(builder, state, SCALE)
     gaps = [_field(builder, state, GAP + axis) for axis in range(3)]
     ways = [_whole(builder, _field(builder, state, WAY + axis)) for axis in range(3)]
     at = _kept(builder, _field(builder, state, AT))
     faces = [_kept(builder, _field(builder, state, NEXT + axis)) for axis in range(3)]
     voxels = [_kept(builder, _whole(builder, _field(builder, state, VOXEL + axis))) for axis in range(3)]
-    count, here = _kept(builder, ir.Constant(_WHOLES, None)), _kept(builder, args[9])
+    count, here = _kept(builder, ir.Constant(_WHOLES, None)), _kept(builder, args[10])
 
     step, done = builder.append_basic_block("step"), builder.append_basic_block("done")
     builder.branch(step)
@@ -89,8 +91,13 @@ def _emit(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     start, now, next_x, next_y, next_z = (builder.load(each) for each in (at, here, *faces))
     x, y, z = (builder.load(each) for each in voxels)
     stop = _less(builder, _less(builder, next_x, next_y), _less(builder, next_z, end))
-    inside = builder.and_(builder.icmp_unsigned("<", x, nx), builder.icmp_unsigned("<", y, ny))
-    is_on = builder.and_(builder.fcmp_ordered("<", start, end), inside)
+    is_on = builder.fcmp_ordered("<", start, end)
+    for inside in (
+        builder.icmp_unsigned("<", x, nx),
+        builder.icmp_unsigned("<", y, ny),
+        builder.or_(builder.icmp_unsigned("<", z, nz), endless),
+    ):
+        is_on = builder.and_(is_on, inside)
     _write(builder, places, now, builder.add(builder.mul(x, strides[0]), builder.mul(y, strides[1])))
     _write(builder, shifts, now, builder.mul(z, strides[2]))
     _write(builder, weights, now, _as(builder, builder.fmul(builder.fsub(stop, start), scale), real))
@@ -108,7 +115,7 @@ def _emit(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     builder.cbranch(builder.icmp_unsigned("!=", left, ir.Constant(left.type, 0)), step, done)
 
     builder.position_at_end(done)
-    _write(builder, counts, args[11], builder.zext(builder.load(count), ir.VectorType(_I64, ABREAST)))
+    _write(builder, counts, args[12], builder.zext(builder.load(count), ir.VectorType(_I64, ABREAST)))
     return builder.load(here)
 
 

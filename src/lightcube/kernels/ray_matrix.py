@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.kernels.compiled import compiled
-from lightcube.kernels.ray import Triple, most_pieces
+from lightcube.kernels.ray import MOST_PARTS, Triple, most_pieces
 from lightcube.kernels.rays import trace
 
 Array = NDArray[Any]
@@ -31,7 +31,7 @@ def trace_all(
     that is not heard has none.
     """
     nz, ny, nx = grid
-    most = most_pieces(nx, ny, nz)
+    most = MOST_PARTS * most_pieces(nx, ny, nz)
     p, w = np.empty(most, np.int64), np.empty(most, np.float64)
     for index in range(len(offsets) - 1):
         count = 0

@@ -7,8 +7,9 @@ with ``corner, right, up = screens[view]``. Where ``lamps[view, 3]`` is 0 its ra
 high; directions are of length 1 in voxels' widths, their part along z in slices. ``heard`` says which pixels count:
 the equations of the others are empty.
 
-Forward, each ray gathers what it meets. Backward, each task owns a brick of voxels and walks the rays that meet it,
-view by view: no two threads write the same number, and sums do not depend on how many threads there are.
+Rays of a picture column are traced eight at a time. Forward, each gathers what it meets. Backward, each task owns a
+brick of voxels and walks the rays that meet it, view by view: no two threads write the same number, and sums do not
+depend on how many threads there are. Voxels are numbered by 32 bits.
 """
 
 import math
@@ -19,7 +20,10 @@ from numpy.typing import NDArray
 
 from lightcube.kernels import tasks
 from lightcube.kernels.compiled import compiled
-from lightcube.kernels.ray import Ray, Triple, most_pieces, trace_ray, trace_two
+from lightcube.kernels.marching import ABREAST, march
+from lightcube.kernels.ray import END, FIELDS, Ray, Triple, enter, most_pieces, parts_of
+from lightcube.kernels.ray import trace as trace_one
+from lightcube.kernels.tiles import Traced, paper
 
 Array = NDArray[Any]
 
@@ -63,11 +67,14 @@ def trace(
     nz, ny, nx = grid
     view, pixel = index // (width * height), index % (width * height)
     ray = _ray(lamps[view], screens[view], pixel // height, pixel % height, (0, 0, 0), tall)
-    return trace_ray(ray, (nx, ny, nz), (nz, nx * nz, 1), scale, places, weights)
+    shifts = np.empty_like(places)
+    count = trace_one(ray, (nx, ny, nz), (nz, nx * nz, 1), scale, places, shifts, weights)
+    places[:count] += shifts[:count]
+    return count
 
 
 @compiled
-def _trace_rows(
+def trace_rows(
     lamp: Array,
     screen: Array,
     heard: Array,
@@ -79,50 +86,62 @@ def _trace_rows(
     strides: Triple,
     scale: float,
     tall: float,
-    places: Array,
-    weights: Array,
+    state: Array,
+    traced: Traced,
 ) -> tuple[int, int]:
-    """Trace the rays of pixels `row` and ``row + 1`` of a column; of those not heard, or from `top` on, nothing.
+    """Trace the rays of the pixels from `row` to before `top` of a column that are heard, as many as go abreast.
 
-    Returns how many pieces each has, in the two rows of `places` and `weights`.
+    Returns the row to go on with, and how many rays meet the block; ``traced.rays`` are their rows.
     """
-    ray = _ray(lamp, screen, column, row, low, tall) if heard[row] else NO_RAY
-    other = _ray(lamp, screen, column, row + 1, low, tall) if row + 1 < top and heard[row + 1] else NO_RAY
-    return trace_two(ray, other, size, strides, scale, places, weights)
+    met = 0
+    while row < top:
+        if heard[row]:
+            ray = _ray(lamp, screen, column, row, low, tall)
+            if met + parts_of(ray) > ABREAST:
+                break
+            for _ in range(enter(ray, size, scale, state, met)):
+                traced.rays[met] = row
+                met += 1
+        row += 1
+    if met:
+        state[END, met:] = -np.inf  # no ray
+        march(state, size, strides, traced.places, traced.shifts, traced.weights, 0, traced.counts, 0)
+    return row, met
 
 
 @compiled
-def _gather(x: Array, places: Array, weights: Array, count: int, sums: Array) -> None:
-    """``sums = sum_k weights[k] x[places[k]]``."""
+def _gather(x: Array, traced: Traced, lane: int, sums: Array) -> None:
+    """``sums += sum_k weights[k] x[places[k] + shifts[k]]`` over the pieces of the ray in a lane."""
+    last = lane + ABREAST * traced.counts[lane]
     if len(sums) == 3:  # the colours of most cubes: in registers
-        red = green = blue = x.dtype.type(0)
-        for k in range(count):
-            place, weight = places[k], weights[k]
+        red, green, blue = sums[0], sums[1], sums[2]
+        for k in range(lane, last, ABREAST):
+            place, weight = np.uint32(traced.places[k] + traced.shifts[k]), traced.weights[k]
             red += weight * x[place, 0]
             green += weight * x[place, 1]
             blue += weight * x[place, 2]
         sums[0], sums[1], sums[2] = red, green, blue
     else:
-        sums[:] = 0
-        for k in range(count):
+        for k in range(lane, last, ABREAST):
             for column in range(len(sums)):
-                sums[column] += weights[k] * x[places[k], column]
+                sums[column] += traced.weights[k] * x[traced.places[k] + traced.shifts[k], column]
 
 
 @compiled
-def _scatter(x: Array, places: Array, weights: Array, count: int, values: Array) -> None:
-    """``x[places[k]] += weights[k] values``."""
+def _scatter(x: Array, traced: Traced, lane: int, values: Array) -> None:
+    """``x[places[k] + shifts[k]] += weights[k] values`` for the pieces of the ray in a lane."""
+    last = lane + ABREAST * traced.counts[lane]
     if len(values) == 3:
         red, green, blue = values[0], values[1], values[2]
-        for k in range(count):
-            place, weight = places[k], weights[k]
+        for k in range(lane, last, ABREAST):
+            place, weight = np.uint32(traced.places[k] + traced.shifts[k]), traced.weights[k]
             x[place, 0] += weight * red
             x[place, 1] += weight * green
             x[place, 2] += weight * blue
     else:
-        for k in range(count):
+        for k in range(lane, last, ABREAST):
             for column in range(len(values)):
-                x[places[k], column] += weights[k] * values[column]
+                x[traced.places[k] + traced.shifts[k], column] += traced.weights[k] * values[column]
 
 
 def forward(
@@ -163,29 +182,19 @@ def _forward(
     """Gather along the rays of picture columns `first` to before `last`, counted through all views."""
     width, height = shape
     nz, ny, nx = grid
+    whole, size, strides = (0, 0, 0), (nx, ny, nz), (nz, nx * nz, 1)
+    state, traced = np.empty((FIELDS, ABREAST)), paper(0, most_pieces(nx, ny, nz), x)
     for line in range(first, last):
-        places = np.empty((2, most_pieces(nx, ny, nz)), np.int64)
-        weights = np.empty(places.shape, x.dtype)
-        lamp, screen = lamps[line // width], screens[line // width]
-        for row in range(0, height, 2):
-            counts = _trace_rows(
-                lamp,
-                screen,
-                heard[line],
-                line % width,
-                row,
-                height,
-                (0, 0, 0),
-                (nx, ny, nz),
-                (nz, nx * nz, 1),
-                scale,
-                tall,
-                places,
-                weights,
+        lamp, screen, column = lamps[line // width], screens[line // width], line % width
+        sums = b[line * height : (line + 1) * height]
+        sums[:] = 0
+        row = 0
+        while row < height:
+            row, met = trace_rows(
+                lamp, screen, heard[line], column, row, height, whole, size, strides, scale, tall, state, traced
             )
-            _gather(x, places[0], weights[0], counts[0], b[line * height + row])
-            if row + 1 < height:
-                _gather(x, places[1], weights[1], counts[1], b[line * height + row + 1])
+            for lane in range(met):
+                _gather(x, traced, lane, sums[traced.rays[lane]])
 
 
 def adjoint(
@@ -228,6 +237,7 @@ def _adjoint(
     width, height = shape
     nz, ny, nx = grid
     across, along = (nx + BRICK - 1) // BRICK, (ny + BRICK - 1) // BRICK
+    state, traced = np.empty((FIELDS, ABREAST)), paper(0, most_pieces(BRICK, BRICK, BRICK), x)
     for brick in range(first, last):
         low_x, low_y = brick % across * BRICK, brick // across % along * BRICK
         low_z = brick // (across * along) * BRICK
@@ -236,33 +246,19 @@ def _adjoint(
             for each in range(low_x, low_x + size_x):
                 start = (y * nx + each) * nz + low_z
                 x[start : start + size_z] = 0
-        places = np.empty((2, most_pieces(size_x, size_y, size_z)), np.int64)
-        weights = np.empty(places.shape, x.dtype)
         brick_x = x[(low_y * nx + low_x) * nz + low_z :]
-        low, size = (low_x, low_y, low_z), (size_x, size_y, size_z)
+        low, size, strides = (low_x, low_y, low_z), (size_x, size_y, size_z), (nz, nx * nz, 1)
         for view in range(len(lamps)):
+            lamp, screen = lamps[view], screens[view]
             left, right, bottom, top = _shadow(shadows[view], shape, low, size)
             for column in range(left, right):
-                line = view * width + column
-                for row in range(bottom, top, 2):
-                    counts = _trace_rows(
-                        lamps[view],
-                        screens[view],
-                        heard[line],
-                        column,
-                        row,
-                        top,
-                        low,
-                        size,
-                        (nz, nx * nz, 1),
-                        scale,
-                        tall,
-                        places,
-                        weights,
+                line, row = view * width + column, bottom
+                while row < top:
+                    row, met = trace_rows(
+                        lamp, screen, heard[line], column, row, top, low, size, strides, scale, tall, state, traced
                     )
-                    for i in range(2):
-                        if counts[i]:
-                            _scatter(brick_x, places[i], weights[i], counts[i], b[line * height + row + i])
+                    for lane in range(met):
+                        _scatter(brick_x, traced, lane, b[line * height + traced.rays[lane]])
 
 
 @compiled

@@ -24,9 +24,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.kernels.beam import max_pieces, trace_beam
 from lightcube.kernels.compiled import compiled
 from lightcube.kernels.marching import ABREAST
+from lightcube.kernels.ray import MOST_PARTS, most_pieces, trace
 from lightcube.kernels.rows import LANES, add_rows, prefetch
 from lightcube.kernels.tasks import run
 from lightcube.kernels.tiles import TILE, Traced, paper, room, trace_tile
@@ -54,7 +54,7 @@ def forward(
 ) -> None:
     """``b = A x``; every number of `b` is written. At least `tasks` parts are worked on side by side, if possible."""
     rays, pieces = room(beams, width)
-    group = max(1, min(GROUP, len(beams) // tasks, _MOST_PIECES // (rays * pieces)))
+    group = max(1, min(GROUP, len(beams) // tasks, _MOST_PIECES // (MOST_PARTS * rays * pieces)))
     groups = (len(beams) + group - 1) // group
     parts = min((tasks + groups - 1) // groups, width)  # where there are few views, strips of beams
     work = _work(windows, nx, ny)
@@ -65,7 +65,7 @@ def forward(
 def _work(windows: Array, nx: int, ny: int) -> int:
     """Nanoseconds that a product takes, roughly: the pieces of all beams, traced once and added up in vectors."""
     wide, high = windows[:, 1] - windows[:, 0], windows[:, 3] - windows[:, 2]
-    return int(np.sum(wide * (8 + 2 * high // LANES))) * (nx + ny)
+    return int(np.sum(wide * (4 + 2 * high // LANES))) * (nx + ny)
 
 
 @compiled
@@ -84,8 +84,8 @@ def _forward(
     apart: int,
     group: int,
     parts: int,
-    most_rays: int,
-    most_pieces: int,
+    rays: int,
+    pieces: int,
 ) -> None:
     """Do the groups of views, or strips of their beams, that are tasks `first` to before `last`."""
     columns, slices = b.shape[1], x.shape[1]
@@ -96,8 +96,7 @@ def _forward(
         low, high = task % parts * width // parts, (task % parts + 1) * width // parts
         for each in range(view, after):
             b[each * width + low : each * width + high] = 0
-        traced = paper(group, most_rays, most_pieces, x)
-        rays = traced.rays
+        traced = paper(group * rays, pieces, x)
         strides = (apart * slices, nx * apart * slices, channels if apart == 1 else 1)
         for tile_y in range(0, ny, TILE):
             for tile_x in range(0, nx, TILE):
@@ -126,9 +125,9 @@ def _forward(
                     for i in range(met):
                         if i + 1 < met:
                             for near in range(column, end, LANES):
-                                prefetch(target, (view * width + rays[i + 1]) * columns + near)
-                        own = windows[view + rays[i] // width]
-                        at = (view * width + rays[i]) * columns
+                                prefetch(target, (view * width + traced.rays[i + 1]) * columns + near)
+                        own = windows[view + traced.rays[i] // width]
+                        at = (view * width + traced.rays[i]) * columns
                         piece, count = traced.firsts[i], traced.counts[i]
                         enters, leaves = traced.shifts[piece], traced.shifts[piece + ABREAST * (count - 1)]
                         add_rows(
@@ -186,13 +185,13 @@ def _adjoint(
     channels: int,
     apart: int,
     parts: int,
-    most_rays: int,
-    most_pieces: int,
+    rays: int,
+    pieces: int,
 ) -> None:
     """Do the tiles, or strips of their columns, that are tasks `first` to before `last`."""
     rows, columns = b.shape[1], x.shape[1]
     source, target = b.reshape(-1), x.reshape(-1)
-    group = max(1, min(BACK_GROUP, len(beams), _MOST_PIECES // (most_rays * most_pieces)))
+    group = max(1, min(BACK_GROUP, len(beams), _MOST_PIECES // (MOST_PARTS * rays * pieces)))
     across = (nx + TILE - 1) // TILE
     part = (columns + parts * LANES - 1) // (parts * LANES) * LANES
     for task in range(first, last):
@@ -203,7 +202,7 @@ def _adjoint(
         for y in range(size_y):
             row = ((tile_y + y) * nx + tile_x) * apart
             x[row : row + size_x * apart, start:stop] = 0
-        traced = paper(group, most_rays, most_pieces, x)
+        traced = paper(group * rays, pieces, x)
         most = len(traced.places)
         places, shifts, weights = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most, x.dtype)
         voxel_ends = np.zeros(TILE * TILE * apart + 1, np.uint32)  # signed numbers are asked whether they are below 0
@@ -366,22 +365,9 @@ def trace_column(
     """Trace beam number `beam` through the whole grid; return how many pieces it has."""
     start, step, light = beams[beam // width, 0], beams[beam // width, 1], beams[beam // width, 2]
     column = beam % width
-    return trace_beam(
-        start[0] + column * step[0],
-        start[1] + column * step[1],
-        start[2] + column * step[2],
-        light[0],
-        light[1],
-        light[2],
-        nx,
-        ny,
-        scale,
-        (1, nx, 1),
-        voxels,
-        levels,
-        lengths,
-        0,
-    )
+    px, py, pz = start[0] + column * step[0], start[1] + column * step[1], start[2] + column * step[2]
+    ray = (px, py, pz, light[0], light[1], light[2], -np.inf, np.inf)
+    return trace(ray, (nx, ny, 0), (1, nx, 1), scale, voxels, levels, lengths)
 
 
 @compiled
@@ -402,7 +388,7 @@ def trace_all(
     With `voxels` of length 0, ``offsets[i + 1]`` is set to the number of pieces up to and with beam ``i``. `rise`
     bounds the z faces that a beam crosses.
     """
-    most = max_pieces(nx, ny, rise) + 1
+    most = MOST_PARTS * most_pieces(nx, ny, rise)
     v, z, w = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most, np.float64)
     for beam in range(len(offsets) - 1):
         count = trace_column(beams, width, beam, nx, ny, scale, v, z, w)

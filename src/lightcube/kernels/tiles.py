@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.kernels.beam import END, FIELDS, PARALLEL, begin, beside, max_pieces, on_face
 from lightcube.kernels.compiled import compiled
 from lightcube.kernels.marching import ABREAST, march
+from lightcube.kernels.ray import END, FIELDS, MOST_PARTS, PARALLEL, Triple, enter, most_pieces, parts_of
 
 Array = NDArray[Any]
 
@@ -42,7 +42,7 @@ def room(beams: Array, width: int) -> tuple[int, int]:
         spread = TILE * (abs(light[0]) + abs(light[1]))
         rays = max(rays, width if spread >= turned * width else min(width, int(spread / turned) + 4))
         rise = max(rise, int(abs(light[2]) / flat * TILE * 1.5) + 2)
-    return rays, max_pieces(TILE, TILE, rise) + 1
+    return rays, most_pieces(TILE, TILE, rise)
 
 
 @compiled
@@ -75,15 +75,15 @@ def trace_tile(
     nx: int,
     ny: int,
     scale: float,
-    strides: tuple[int, int, int],
+    strides: Triple,
     traced: Traced,
 ) -> int:
     """Trace the beams of views `view` to before `after` through the tile of `nx` by `ny` voxels at ``(x, y)``.
 
     Of each view only the beams `low` to before `high` in its window. Returns how many meet the tile; beams along faces
-    are there two or four times, on either side of them (`lightcube.kernels.beam.trace_beam`).
+    are there two or four times, on either side of them (`lightcube.kernels.ray`).
     """
-    state = np.empty((FIELDS, ABREAST))
+    state, size = np.empty((FIELDS, ABREAST)), (nx, ny, 0)
     met, waiting, taken = 0, 0, 0
     for each in range(view, after):
         start, step, light = beams[each, 0], beams[each, 1], beams[each, 2]
@@ -91,37 +91,30 @@ def trace_tile(
         first, last = _meeting(beams, each, low_each, high_each, x, y, nx, ny)
         for column in range(first, last):
             px, py, pz = start[0] + column * step[0] - x, start[1] + column * step[1] - y, start[2] + column * step[2]
-            on_x, on_y, on_z = on_face(px, light[0]), on_face(py, light[1]), on_face(pz, light[2])
-            part = scale * 0.5 ** (int(on_x) + int(on_y) + int(on_z))
-            for side in range(8 if on_x or on_y or on_z else 1):
-                sx, sy, sz = side & 1, side >> 1 & 1, side >> 2
-                if (sx and not on_x) or (sy and not on_y) or (sz and not on_z):
-                    continue
-                qx, qy, qz = beside(px, on_x, sx), beside(py, on_y, sy), beside(pz, on_z, sz)
-                if begin(qx, qy, qz, light[0], light[1], light[2], nx, ny, part, state, waiting):
-                    traced.rays[met], traced.firsts[met] = (each - view) * width + column, taken + waiting
-                    met, waiting = met + 1, waiting + 1
-                if waiting == ABREAST:
-                    taken = _march(state, nx, ny, strides, traced, taken, met - waiting)
-                    waiting = 0
-    if waiting:
-        state[END, waiting:] = -np.inf  # no beam
-        _march(state, nx, ny, strides, traced, taken, met - waiting)
+            ray = (px, py, pz, light[0], light[1], light[2], -np.inf, np.inf)
+            if waiting + parts_of(ray) > ABREAST:
+                taken = _march(state, waiting, size, strides, traced, taken, met)
+                waiting = 0
+            for _ in range(enter(ray, size, scale, state, waiting)):
+                traced.rays[met], traced.firsts[met] = (each - view) * width + column, taken + waiting
+                met, waiting = met + 1, waiting + 1
+    _march(state, waiting, size, strides, traced, taken, met)
     return met
 
 
 @compiled
-def _march(state: Array, nx: int, ny: int, strides: tuple[int, int, int], traced: Traced, taken: int, met: int) -> int:
-    """Write the pieces of the beams in `state`, the last that were met; return how much room is taken then."""
+def _march(state: Array, waiting: int, size: Triple, strides: Triple, traced: Traced, taken: int, met: int) -> int:
+    """Write the pieces of the beams `waiting` in `state`, the last that were met; return how much room is taken."""
+    state[END, waiting:] = -np.inf  # no beam
     places, shifts, weights = traced.places, traced.shifts, traced.weights
-    return march(state, nx, ny, strides, places, shifts, weights, taken, traced.counts, met)
+    return march(state, size, strides, places, shifts, weights, taken, traced.counts, met - waiting)
 
 
 @compiled
-def paper(group: int, most_rays: int, most_pieces: int, real: Array) -> Traced:
-    """Room for what is traced of so many views in a tile, lengths in numbers as those of `real`."""
-    rays = 4 * group * most_rays + ABREAST  # some along faces
-    most = rays * (most_pieces // 4 + 2)  # of one that is not split
-    rays_firsts_counts = np.empty(rays, np.int64), np.empty(rays, np.int64), np.empty(rays, np.int64)
+def paper(rays: int, pieces: int, real: Array) -> Traced:
+    """Room for what is traced of so many beams of so many pieces each, lengths in numbers as those of `real`."""
+    beams = MOST_PARTS * rays + ABREAST
+    room = beams * (pieces + 1)
+    rays_firsts_counts = np.empty(beams, np.int64), np.empty(beams, np.int64), np.empty(beams, np.int64)
     # places are indices: whether a signed number is below 0 would be asked every time
-    return Traced(*rays_firsts_counts, np.empty(most, np.uint32), np.empty(most, np.int32), np.empty(most, real.dtype))
+    return Traced(*rays_firsts_counts, np.empty(room, np.uint32), np.empty(room, np.int32), np.empty(room, real.dtype))

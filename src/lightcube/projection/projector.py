@@ -73,7 +73,7 @@ class Projector:
 
     Parallel light on vertical screens whose rows are one voxel apart, a turntable's, has beams that are copies of
     each other and a quicker way to be multiplied (`lightcube.projection.stacked`); all else goes ray by ray
-    (`lightcube.projection.rays`). Lengths are traced anew in every product (Siddon, see `lightcube.kernels.beam`).
+    (`lightcube.projection.rays`). Lengths are traced anew in every product (Siddon, see `lightcube.kernels.ray`).
     Beams along voxel faces follow the tie rule of docs/conventions.md.
 
     Examples

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lightcube.kernels import rays
 from lightcube.kernels.layout import empty
-from lightcube.kernels.ray import most_pieces
+from lightcube.kernels.ray import MOST_PARTS, most_pieces
 from lightcube.kernels.ray_matrix import trace_all
 from lightcube.optics.grid import Grid
 from lightcube.optics.views import Views
@@ -69,7 +69,7 @@ class Rays:
     def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Return the unknowns that equation `index` touches, and its ray's length (mm) in each."""
         nz, ny, nx = self.grid.shape
-        most = most_pieces(nx, ny, nz)
+        most = MOST_PARTS * most_pieces(nx, ny, nz)
         unknowns, lengths = np.empty(most, np.int64), np.empty(most)
         if not self._heard.reshape(-1)[index]:
             return unknowns[:0], lengths[:0]

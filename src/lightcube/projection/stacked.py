@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.kernels import stacked
-from lightcube.kernels.beam import max_pieces
 from lightcube.kernels.layout import LINE, empty, is_worth_lines
+from lightcube.kernels.ray import MOST_PARTS, most_pieces
 from lightcube.kernels.tasks import threads
 from lightcube.optics.arrays import Flags
 from lightcube.optics.grid import PARALLEL, Grid
@@ -102,7 +102,7 @@ class StackedBeams:
         if not (first <= ray % self._width < after and low <= lift < high):
             return np.empty(0, np.int64), np.empty(0)
         nx, ny, scale = self._plane()
-        most = max_pieces(nx, ny, self.rise) + 1
+        most = MOST_PARTS * most_pieces(nx, ny, self.rise)
         voxels, levels, lengths = np.empty(most, np.int32), np.empty(most, np.int32), np.empty(most)
         count = stacked.trace_column(self.beams, self._width, ray, nx, ny, scale, voxels, levels, lengths)
         unknowns, inside = self._unknowns(voxels[:count], levels[:count] + lift * self._apart)
