@@ -522,6 +522,16 @@ def test_a_file_cut_short_is_refused_or_whole(tmp_path: Path, suffix: str, data:
         np.testing.assert_array_equal(image, other)
 
 
+def test_a_gif_without_its_palette_is_damaged(tmp_path: Path) -> None:
+    path = tmp_path / "a.gif"
+    sample(path)
+    content = bytearray(path.read_bytes())
+    content[10] = 0
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"a\.gif"):
+        read_pictures(path)
+
+
 @pytest.mark.parametrize("suffix", [*SUFFIXES, ".png", ".jpg"])
 @MANY
 @given(data=st.data())

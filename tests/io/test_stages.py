@@ -384,6 +384,7 @@ PLACES = [
 ]
 
 
+@pytest.mark.filterwarnings("ignore::lightcube.optics.views.DoubtfulAngles")
 @given(st.lists(st.tuples(st.sampled_from(PLACES), JUNK), min_size=1, max_size=2))
 @settings(max_examples=150)
 def test_any_rubbish_gives_a_stage_or_one_sentence(folder: Path, rubbish: list[tuple[tuple[str, ...], Any]]) -> None:

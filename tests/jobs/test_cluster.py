@@ -195,17 +195,18 @@ def test_a_local_scheduler_comes_and_goes(tmp_path: Path, monkeypatch: pytest.Mo
     made = some_job(lamp_power=1.0, units=3)  # no coarse passes: they are as many as they are in other processes
     monkeypatch.setattr("dask.system.CPU_COUNT", 2)
     assert cluster.count_workers("local") == 2
+    before = children()  # a browser, say
     store = open_partial(tmp_path / "a.zarr", made)
     assert cluster.run(made, "local", store, going_on)
-    assert not workers()
+    assert not {at: line for at, line in children().items() if at not in before}
     assert same(merged(made, store), solved(made))
 
 
-def workers() -> list[str]:
-    """Processes that this one has started and that are still there."""
+def children() -> dict[int, str]:
+    """Commands of the processes that this one has started and that are still there, by their numbers."""
     psutil = pytest.importorskip("psutil")
-    lines = [" ".join(child.cmdline()) for child in psutil.Process().children(recursive=True)]
-    return [line for line in lines if "resource_tracker" not in line]
+    lines = {child.pid: " ".join(child.cmdline()) for child in psutil.Process().children(recursive=True)}
+    return {number: line for number, line in lines.items() if "resource_tracker" not in line}
 
 
 def test_schedulers_that_are_not_there(monkeypatch: pytest.MonkeyPatch) -> None:

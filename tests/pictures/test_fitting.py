@@ -229,7 +229,7 @@ class TestRefused:
 
     def test_another_number_of_angles(self) -> None:
         with pytest.raises(InputError, match="3 angles for 2 pictures"):
-            fitted(pictures((12, 16), (12, 16)), GRID, angles_deg=[1, 2, 3])
+            fitted(pictures((12, 16), (12, 16)), GRID, angles_deg=[10, 20, 30])
 
     def test_angles_and_span(self) -> None:
         with pytest.raises(InputError, match="use one of the two"):

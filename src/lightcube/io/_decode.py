@@ -73,8 +73,8 @@ def _means_damage(error: Exception) -> bool:
     if isinstance(error, _WRONG) or type(error).__module__.partition(".")[0] in _DECODERS:
         return True
     trace = list(traceback.walk_tb(error.__traceback__))
-    # Over a tag of the wrong type decoders stumble so; the same of this program's own lines is a fault.
-    stumbled = isinstance(error, (TypeError, ArithmeticError))
+    # Over a tag of the wrong type or a missing palette decoders stumble so; this program's own lines are at fault.
+    stumbled = isinstance(error, (TypeError, ArithmeticError, AssertionError))
     return stumbled and trace[-1][0].f_globals["__name__"].partition(".")[0] in _DECODERS
 
 

@@ -204,7 +204,7 @@ class DoubtfulAngles(UserWarning):
 
 def doubt_angles(angles_deg: Numbers | None, of: str, *, stacklevel: int) -> None:
     """Warn where angles, three at least, lie as near to each other as if they were not in degrees."""
-    if angles_deg is not None and np.size(angles_deg) > 2 and float(np.ptp(np.asarray(angles_deg))) <= _TURN_RAD:
+    if angles_deg is not None and np.size(angles_deg) > 2 and 0 < float(np.ptp(np.asarray(angles_deg))) <= _TURN_RAD:
         said = f"{of}: all angles lie within a few degrees: if they are radians, multiply them by 57.2958"
         warnings.warn(said, DoubtfulAngles, stacklevel=stacklevel + 1)
 
