@@ -59,7 +59,7 @@ def traversal(*data: Any) -> int:
 @compiled
 def _traversal(first_line, last_line, lamps, screens, shape, heard, grid, found):  # type: ignore[no-untyped-def]
     nz, ny, nx = grid
-    state, traced = np.empty((FIELDS, ABREAST)), paper(0, most_pieces(nx, ny, nz), np.empty(0, np.float32))
+    state, traced = np.zeros((FIELDS, ABREAST)), paper(0, most_pieces(nx, ny, nz), np.empty(0, np.float32))
     for line in range(first_line, last_line):
         row = 0
         while row < shape[1]:

@@ -183,7 +183,7 @@ def _forward(
     width, height = shape
     nz, ny, nx = grid
     whole, size, strides = (0, 0, 0), (nx, ny, nz), (nz, nx * nz, 1)
-    state, traced = np.empty((FIELDS, ABREAST)), paper(0, most_pieces(nx, ny, nz), x)
+    state, traced = np.zeros((FIELDS, ABREAST)), paper(0, most_pieces(nx, ny, nz), x)
     for line in range(first, last):
         lamp, screen, column = lamps[line // width], screens[line // width], line % width
         sums = b[line * height : (line + 1) * height]
@@ -237,7 +237,7 @@ def _adjoint(
     width, height = shape
     nz, ny, nx = grid
     across, along = (nx + BRICK - 1) // BRICK, (ny + BRICK - 1) // BRICK
-    state, traced = np.empty((FIELDS, ABREAST)), paper(0, most_pieces(BRICK, BRICK, BRICK), x)
+    state, traced = np.zeros((FIELDS, ABREAST)), paper(0, most_pieces(BRICK, BRICK, BRICK), x)
     for brick in range(first, last):
         low_x, low_y = brick % across * BRICK, brick // across % along * BRICK
         low_z = brick // (across * along) * BRICK

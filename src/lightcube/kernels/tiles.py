@@ -83,7 +83,7 @@ def trace_tile(
     Of each view only the beams `low` to before `high` in its window. Returns how many meet the tile; beams along faces
     are there two or four times, on either side of them (`lightcube.kernels.ray`).
     """
-    state, size = np.empty((FIELDS, ABREAST)), (nx, ny, 0)
+    state, size = np.zeros((FIELDS, ABREAST)), (nx, ny, 0)
     met, waiting, taken = 0, 0, 0
     for each in range(view, after):
         start, step, light = beams[each, 0], beams[each, 1], beams[each, 2]
