@@ -21,6 +21,8 @@ Array = NDArray[Any]
 
 #: Numbers of a run's views that stay in the cache from one walk over them to the next, and entries of a run at most.
 _KEPT, _RUN = 16384, 4096
+#: Pixels that count together, or not.
+_BLOCK = 4
 #: Parts that the rows of a block are divided into, and numbers that are walked at a time there.
 _PARTS, _LINES = 64, 1024
 #: Light is scaled by at most e to this, so that neither it nor its inverse leaves the range of float32.
@@ -49,39 +51,64 @@ def alike(mixture: Mixture, view: int) -> bool:
     return bool(same)
 
 
-def join(mixture: Mixture, absorbance: Array, joint: Array) -> None:
-    """Write the joint absorbance of each group, ``(groups, entries)``; `absorbance` is ``(views, entries)``."""
-    _run(_join, mixture, absorbance, joint)
+def runs_of(counts: NDArray[np.bool_], groups: Array, starts: Array, channels: int) -> NDArray[np.int64]:
+    """``(runs, 4)``: a group, the first of some of its entries, one after the last, and whether any of them counts.
+
+    ``counts[p]`` says it of the pixels of picture p, which groups ``groups[p]`` to before ``groups[p + 1]`` make; views
+    ``starts[g]`` to before ``starts[g + 1]`` are those of group g. All entries of all groups are in one run.
+    """
+    pictures, pixels = counts.shape
+    blocks = -(-pixels // _BLOCK)
+    padded = np.pad(counts, ((0, 0), (0, blocks * _BLOCK - pixels)))
+    heard = np.asarray(np.any(padded.reshape(pictures, blocks, _BLOCK), axis=2))
+    begins = np.ones(heard.shape, np.bool_)
+    begins[:, 1:] = heard[:, 1:] != heard[:, :-1]
+    begins[:, :: max(1, run_length(starts, pixels * channels, channels) // (_BLOCK * channels))] = True
+    picture, first = np.nonzero(begins)
+    last = np.append(first[1:], blocks)
+    last[np.diff(picture, append=-1) != 0] = blocks
+    entries = np.minimum(np.stack([first, last]) * _BLOCK, pixels) * channels
+    several = np.diff(groups)[picture]
+    which = np.repeat(np.arange(len(picture)), several)
+    group = groups[picture][which] + np.arange(len(which)) - np.repeat(np.cumsum(several) - several, several)
+    return np.stack([group, *entries[:, which], heard[picture, first][which]], axis=1).astype(np.int64)
 
 
-def spread(mixture: Mixture, absorbance: Array, joint: Array, slopes: Array, out: Array) -> None:
-    """Write derivatives by the absorbance of each view from `slopes`, those by the joint one.
+def join(runs: Array, mixture: Mixture, absorbance: Array, joint: Array) -> None:
+    """Write the joint absorbance of each group, ``(groups, entries)``, and 0 where nothing counts.
+
+    `absorbance` is ``(views, entries)``, `runs` what `runs_of` finds.
+    """
+    _run(_join, runs, mixture, absorbance, joint)
+
+
+def spread(runs: Array, mixture: Mixture, absorbance: Array, joint: Array, slopes: Array, out: Array) -> None:
+    """Write derivatives by the absorbance of each view from `slopes`, those by the joint one, and 0 where none counts.
 
     They may take the place of `absorbance`.
     """
-    _run(_spread, mixture, absorbance, joint, slopes, out)
+    _run(_spread, runs, mixture, absorbance, joint, slopes, out)
 
 
-def _run(kernel: Any, mixture: Mixture, absorbance: Array, *arguments: Any) -> None:
-    """Run a loop whose tasks are the runs of all groups."""
-    entries = absorbance.shape[1]
-    run = run_length(mixture.starts, entries, mixture.powers.shape[1])
-    count = (len(mixture.starts) - 1) * -(-entries // run)
-    tasks.run(kernel, count, absorbance.size, mixture, absorbance, *arguments)
+def _run(kernel: Any, runs: Array, mixture: Mixture, absorbance: Array, *arguments: Any) -> None:
+    """Run a loop whose tasks are the runs."""
+    views = np.diff(mixture.starts)[runs[:, 0]]
+    work = int(np.sum(views * runs[:, 3] * (runs[:, 2] - runs[:, 1])))
+    tasks.run(kernel, len(runs), work, runs, mixture, absorbance, *arguments)
 
 
 @compiled
-def _join(first: int, last: int, mixture: Mixture, absorbance: Array, joint: Array) -> None:
-    entries = absorbance.shape[1]
-    run = run_length(mixture.starts, entries, mixture.powers.shape[1])
-    runs = (entries + run - 1) // run
-    clear, dark = np.empty(run, joint.dtype), np.empty(run, joint.dtype)
-    falls, comes = np.empty(run, joint.dtype), np.empty(run, joint.dtype)
+def _join(first: int, last: int, runs: Array, mixture: Mixture, absorbance: Array, joint: Array) -> None:
+    longest = np.max(runs[first:last, 2] - runs[first:last, 1])
+    clear, dark = np.empty(longest, joint.dtype), np.empty(longest, joint.dtype)
+    falls, comes = np.empty(longest, joint.dtype), np.empty(longest, joint.dtype)
     for task in range(first, last):
-        group, start = task // runs, task % runs * run
-        count = min(run, entries - start)
+        group, start, count = runs[task, 0], runs[task, 1], runs[task, 2] - runs[task, 1]
         first_view, last_view, here = mixture.starts[group], mixture.starts[group + 1], slice(start, start + count)
         least = joint[group, here]
+        if not runs[task, 3]:
+            least[:] = 0
+            continue
         least[:] = absorbance[first_view, here]
         for v in range(first_view + 1, last_view):
             _lower(absorbance[v, here], least)
@@ -121,18 +148,18 @@ def _finish(falls: Array, comes: Array, least: Array) -> None:
 
 @compiled
 def _spread(
-    first: int, last: int, mixture: Mixture, absorbance: Array, joint: Array, slopes: Array, out: Array
+    first: int, last: int, runs: Array, mixture: Mixture, absorbance: Array, joint: Array, slopes: Array, out: Array
 ) -> None:
-    entries = absorbance.shape[1]
-    run = run_length(mixture.starts, entries, mixture.powers.shape[1])
-    runs = (entries + run - 1) // run
-    clear, dark, part = np.empty(run, joint.dtype), np.empty(run, joint.dtype), np.empty(run, joint.dtype)
+    longest = np.max(runs[first:last, 2] - runs[first:last, 1])
+    clear, dark, part = np.empty(longest, joint.dtype), np.empty(longest, joint.dtype), np.empty(longest, joint.dtype)
     for task in range(first, last):
-        group, start = task // runs, task % runs * run
-        count = min(run, entries - start)
-        here = slice(start, start + count)
-        for v in range(mixture.starts[group], mixture.starts[group + 1]):
-            if v == mixture.starts[group] or not alike(mixture, v):
+        group, start, count = runs[task, 0], runs[task, 1], runs[task, 2] - runs[task, 1]
+        first_view, last_view, here = mixture.starts[group], mixture.starts[group + 1], slice(start, start + count)
+        for v in range(first_view, last_view):
+            if not runs[task, 3]:
+                out[v, here] = 0
+                continue
+            if v == first_view or not alike(mixture, v):
                 divide(mixture, v, start, count, clear, dark)
             through(dark[:count], absorbance[v, here], joint[group, here], part)
             _times(slopes[group, here], part, out[v, here])

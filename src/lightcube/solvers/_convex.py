@@ -23,7 +23,7 @@ class ConvexObjective:
     weights: Floats
     #: ``(equations,)``.
     lamps: NDArray[np.integer[Any]]
-    #: The equations of lamp l are ``rows[starts[l]:starts[l + 1]]``.
+    #: The equations of lamp l that count are ``rows[starts[l]:starts[l + 1]]``.
     rows: NDArray[np.integer[Any]]
     starts: NDArray[np.integer[Any]]
     low: NDArray[np.float64]
@@ -39,6 +39,7 @@ class ConvexObjective:
         low, high = wanted.lamp_bounds
         lamps = wanted.lighting.lamp_of_row(len(wanted.light))
         rows = np.argsort(lamps, kind="stable")
+        rows = rows[np.any(wanted.weights[rows] > 0, axis=1)]
         return cls(
             np.ascontiguousarray(np.log(wanted.light)),
             wanted.weights,

@@ -40,6 +40,8 @@ class Objective:
     high: NDArray[np.float64]
     bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
     curve: display.Curve
+    #: Which entries of the groups count (`lightcube.kernels.joint.runs_of`).
+    runs: NDArray[np.int64]
     #: Columns of the matrix equation.
     columns: int
     #: Of the joint absorbance, where each picture is one group.
@@ -57,8 +59,11 @@ class Objective:
         first = np.flatnonzero(np.diff(picture * len(low) + lamps, prepend=-1))  # of each group
         starts = np.searchsorted(first, mixture.starts)
         parts = (each.astype(dtype, copy=False) for each in (mixture.share, mixture.light, mixture.shadow))
+        views = light.Mixture(np.append(first, len(lamps)), *parts)
+        channels = views.powers.shape[1]
+        counts = np.asarray(np.any((heavy > 0).reshape(pictures, -1, channels), axis=2))
         return cls(
-            views=light.Mixture(np.append(first, len(lamps)), *parts),
+            views=views,
             starts=starts,
             lamps=lamps[first],
             wanted=logs,
@@ -67,6 +72,7 @@ class Objective:
             high=np.log(high),
             bounds=(low, high),
             curve=display.curve(wanted.transfer == "srgb", dtype.type),
+            runs=joint.runs_of(counts, starts, views.starts, channels),
             columns=columns,
             single=_single(wanted, heavy, lamps[first]) if len(first) == pictures else None,
         )
@@ -78,7 +84,7 @@ class Objective:
     def joint(self, ax: Floats) -> Floats:
         """Return the joint absorbance of all groups, ``(groups * equations of a view, columns)``."""
         found = empty((len(self.lamps), self.wanted.shape[1]), ax.dtype)
-        joint.join(self.views, self._of_views(ax), found)
+        joint.join(self.runs, self.views, self._of_views(ax), found)
         return found.reshape(-1, self.columns)
 
     def best_lamp(self, joint: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -118,7 +124,8 @@ class Objective:
             self.single.slopes(joint_ax, lamp, slopes)
         else:
             objective.descend(*self._data(joint_ax, lamp), self._of_groups(slopes))
-        joint.spread(self.views, absorbance, self._of_groups(joint_ax), self._of_groups(slopes), absorbance)
+        of_groups = self._of_groups(joint_ax), self._of_groups(slopes)
+        joint.spread(self.runs, self.views, absorbance, *of_groups, absorbance)
         return absorbance.reshape(ax.shape)
 
     def curved(self, values: Floats, ax: Floats, joint_ax: Floats, lamp: NDArray[np.float64]) -> Floats:
