@@ -4,7 +4,7 @@
 # make check  lint, format and types
 # make test-lowest, make test-newest
 #             the tests with the lowest versions that pyproject.toml allows, and with the newest that there are
-# make fuzz   26,000 harmed files of all kinds, of which the tests take a few hundred
+# make fuzz   28,000 harmed files of all kinds, of which the tests take a few hundred
 # make kills  commands killed at every event of the file system and at 300 moments, of which the tests take a few
 # Use another Python with: make demo PYTHON=python3.12
 

@@ -31,7 +31,7 @@ VECTORS = {name: np.ones((2, 3)) for name in ("origins_mm", "column_steps_mm", "
 GIVEN: dict[str, dict[str, Any]] = {
     "Cube": {"extinction": CUBE.extinction, "grid": GRID, "rig": RIG},
     "Grid": {"shape": (3, 5, 7)},
-    "Lamp": {"name": "sun"},
+    "Lamp": {"name": "sun", "direction": (1, 0, -0.5)},
     "Light": {},
     "Mat": {},
     "Material": {},
@@ -163,6 +163,57 @@ def test_whatever_is_absurd_is_one_sentence(name: str, argument: str) -> None:
             pytest.fail(f"{what} was taken")
         assert "\n" not in str(refused.value)
         assert len(str(refused.value)) < 300
+
+
+#: Numbers that nothing is: none, two kinds of infinity, and what float32 does not hold.
+NO_NUMBERS = {"nan": np.nan, "numpy's nan": np.float32(np.nan), "inf": np.inf, "-inf": -np.inf, "1e308": 1e308}
+#: What may be infinite, or so large that it is as good: limits that do not hold, results that were not reached.
+LIMITLESS = {
+    *("max_extinction", "hold_deg", "enough_db", "lower_bound", "reach_mm", "full_at_mm", "falloff_mm"),
+    *("width", "memory", "hours", "cores"),
+}
+
+
+def floats_of(name: str) -> list[tuple[str, int]]:
+    """Arguments of one number or of a vector of numbers, and how many, as the annotation says in words."""
+    lengths = {"float": 1, "float | None": 1, "Vector": 3, "Vector | None": 3, "tuple[float, float]": 2}
+    parameters = inspect.signature(getattr(lc, name)).parameters.values()
+    return [(each.name, lengths[said]) for each in parameters if (said := str(each.annotation)) in lengths]
+
+
+@pytest.mark.parametrize(("name", "argument", "length"), [(name, *each) for name in GIVEN for each in floats_of(name)])
+@pytest.mark.filterwarnings("error")
+def test_what_is_no_number_is_no_limit(name: str, argument: str, length: int) -> None:
+    for what, number in NO_NUMBERS.items():
+        if "nan" not in what and argument in LIMITLESS:
+            continue
+        given = number if length == 1 else (1.0,) * (length - 1) + (number,)
+        with pytest.raises(lc.InputError) as refused:  # noqa: PT012
+            getattr(lc, name)(**{**GIVEN[name], argument: given})
+            pytest.fail(f"{what} was taken")
+        assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("argument", ["extinction", "pictures", "weights"])
+@pytest.mark.filterwarnings("error")
+def test_numbers_too_large_for_pictures_and_cubes_are_refused_without_a_warning(argument: str) -> None:
+    name = "Cube" if argument == "extinction" else "Targets"
+    shape = {"extinction": (3, 3, 5, 7), "pictures": (2, 3, 3, 3), "weights": (2, 3, 3)}[argument]
+    with pytest.raises(lc.InputError, match="non-finite"):
+        getattr(lc, name)(**{**GIVEN[name], argument: np.full(shape, 1e308)})
+
+
+@pytest.mark.parametrize("tall", [0, 1e-320, -1, 1e9])
+def test_slices_that_cannot_be_are_refused_before_they_are_counted(tall: float) -> None:
+    with pytest.raises(lc.InputError, match="a slice is from"):
+        lc.plan(PICTURES, tall=tall)
+
+
+@pytest.mark.parametrize("count", [0, -1, 2**40, 2**62])
+def test_angles_are_spread_for_as_many_pictures_as_can_be(count: int) -> None:
+    for spread in (lc.spread_angles, lambda count: lc.scene_rig(SCENE, count)):
+        with pytest.raises(lc.InputError):
+            spread(count)
 
 
 STAGE = lc.Stage(GRID, (LAMP,), (SCREEN,), (SHOT,))

@@ -1,17 +1,28 @@
 """The one exception whose message is written for the person at the keyboard, and names as text that is safe to show."""
 
+import re
 from unicodedata import category
+
+#: Who asks, in a URL: up to the last @ before its path, or behind a colon in a path too, where that is no port.
+_LOGIN = re.compile(r"(?<=://)(?:[^\s/?#]*@|[^\s/?#:@]*:(?!\d*/)[^\s@]*@)")
 
 
 def shown(text: str) -> str:
     r"""`text` with nothing in it that a terminal or a reader could be led astray by.
 
     Control characters, line ends, marks that reverse the direction of writing or have no width, and bytes of a file's
-    name that are no UTF-8 are written as Python writes them: ``\x1b``, ``\u202e``.
+    name that are no UTF-8 are written as Python writes them: ``\x1b``, ``\u202e``. Names and passwords in URLs
+    are left out.
     """
+    text = without_login(text)
     if text.isprintable():
         return text
     return "".join(each if each.isprintable() or category(each) == "Zs" else _escaped(each) for each in text)
+
+
+def without_login(text: str) -> str:
+    """`text` with three stars in place of the names and passwords in its URLs."""
+    return _LOGIN.sub("***@", text) if "://" in text else text
 
 
 def encodable(text: str) -> str:

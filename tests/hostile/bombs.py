@@ -62,7 +62,7 @@ def grid_of(*shape: int) -> dict[str, Any]:
 
 
 def zstd_blanks(size: int) -> bytes:
-    from numcodecs.zstd import Zstd  # type: ignore[import-untyped]
+    from numcodecs.zstd import Zstd
 
     return bytes(Zstd(level=3).encode(bytes(size)))
 

@@ -1,23 +1,29 @@
 """Files of all kinds with bytes changed, lost or put in: they are read as something sane, or refused in one sentence.
 
 ``LIGHTCUBE_FUZZ`` says how many of each kind; `make fuzz` takes 2000. An input is made of its kind and number alone.
+Every other one is harmed inside one of its parts, whose checksum holds, so that the harm is looked at.
 """
 
+import json
 import os
 import random
 import signal
 import warnings
+import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numcodecs import GZip, Zstd
 from PIL import Image
 
 import lightcube as lc
 from lightcube.errors import InputError
 from lightcube.io import read_stage
+from tests.hostile.harm import harmed, harmed_inside, zip_of
 
 COUNT = int(os.environ.get("LIGHTCUBE_FUZZ", "50"))
 #: No input may take longer, in seconds.
@@ -45,8 +51,6 @@ file = "one.png"
 screen = "wall"
 """
 VIEWS = 'angles_deg = [0.0, 40.5]\nelevation_deg = 35.0\nnames = ["one", "two é"]\n'
-#: What sizes and counts are replaced by.
-NUMBERS = (b"\xff\xff\xff\xff", b"\0\0\0\0", b"\x7f\xff\xff\xff", b"\0\0\0\1", b"1e999", b"nan", b"9" * 30)
 
 
 def saved(suffix: str, folder: Path) -> bytes:
@@ -58,6 +62,8 @@ def saved(suffix: str, folder: Path) -> bytes:
         Image.fromarray(np.uint8(255 * PICTURES[0])).save(path)
     elif suffix == ".png":
         lc.save(PICTURES[:1], path)
+    elif suffix == "gzip.zarr.zip":
+        return packed_by_gzip(saved(".zarr.zip", folder))
     elif suffix == "views.toml":
         return VIEWS.encode()
     elif suffix == "stage.toml":
@@ -71,22 +77,16 @@ def saved(suffix: str, folder: Path) -> bytes:
     return path.read_bytes()
 
 
-def harmed(chance: random.Random, honest: bytes) -> bytes:
-    """The same file with one to twenty places changed, one in five of them cut short too."""
-    data = bytearray(honest)
-    for _ in range(chance.choice((1, 2, 5, 20))):
-        at, length = chance.randrange(len(data)), chance.randrange(1, 20)
-        how = chance.randrange(4)
-        if how == 0:
-            data[at] = chance.randrange(256)
-        elif how == 1:
-            number = chance.choice(NUMBERS)
-            data[at : at + len(number)] = number
-        elif how == 2 and len(data) > length:
-            del data[at : at + length]
-        else:
-            data[at:at] = chance.randbytes(length)
-    return bytes(data[: chance.randrange(1, len(data))] if chance.random() < 0.2 else data)
+def packed_by_gzip(archive: bytes) -> bytes:
+    """The same cube in a zip archive, its array packed by gzip, as other programs may write it."""
+    with zipfile.ZipFile(BytesIO(archive)) as opened:
+        members = {name: opened.read(name) for name in opened.namelist()}
+    array = json.loads(members["0/zarr.json"])
+    array["codecs"][-1] = {"name": "gzip", "configuration": {"level": 5}}
+    members["0/zarr.json"] = json.dumps(array).encode()
+    for name in [name for name in members if name.startswith("0/c/")]:
+        members[name] = GZip().encode(Zstd().decode(members[name]))
+    return zip_of(members)
 
 
 def look_at_pictures(path: Path) -> None:
@@ -114,7 +114,7 @@ def look_at_a_cube(path: Path) -> None:
 
 READERS: dict[str, Callable[[Path], object]] = {
     **dict.fromkeys((".png", ".jpg", ".tif", ".gif", ".webp", ".apng", ".mp4", ".webm"), look_at_pictures),
-    **dict.fromkeys((".npz", ".zarr.zip"), look_at_a_cube),
+    **dict.fromkeys((".npz", ".zarr.zip", "gzip.zarr.zip"), look_at_a_cube),
     "views.toml": look_at_a_folder,
     "stage.toml": look_at_a_stage,
     "scene.toml": lc.read_scene,
@@ -158,7 +158,8 @@ def test_what_was_harmed_is_read_as_something_sane_or_refused_in_one_sentence(su
         folder = tmp_path / str(number)
         folder.mkdir()
         path = folder / (suffix if suffix[0] != "." else f"x{suffix}")
-        path.write_bytes(harmed(random.Random(f"{suffix}-{number}"), honest))  # noqa: S311 - the same each time
+        harm = harmed_inside if number % 2 else harmed
+        path.write_bytes(harm(random.Random(f"{suffix}-{number}"), honest))  # noqa: S311 - the same each time
         said = sentence_of(READERS[suffix], path, f"{suffix} {number}")
         assert said.isprintable(), (suffix, number)  # on one line, and no terminal's cursor moves
         refused += bool(said)
@@ -170,8 +171,8 @@ def test_what_was_harmed_is_read_as_something_sane_or_refused_in_one_sentence(su
 def test_honest_files_are_read(tmp_path: Path) -> None:
     """So that it is the harm that is refused."""
     for suffix, reader in READERS.items():
-        honest = saved(suffix, tmp_path)
-        (tmp_path / suffix.strip(".")).mkdir()
-        path = tmp_path / suffix.strip(".") / (suffix if suffix[0] != "." else f"x{suffix}")
-        path.write_bytes(honest)
+        folder = tmp_path / suffix.strip(".")
+        folder.mkdir()
+        path = folder / (suffix if suffix[0] != "." else f"x{suffix}")
+        path.write_bytes(saved(suffix, folder))
         reader(path)

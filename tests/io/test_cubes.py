@@ -526,6 +526,31 @@ def test_a_missing_array_of_an_archive_is_noticed(tmp_path: Path) -> None:
         load(path)
 
 
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("letter", [0x110000, 0xFFFFFFFF, 0xFB000000])
+def test_letters_that_do_not_exist_are_refused(letter: int, order: str, tmp_path: Path) -> None:
+    """NumPy hands out a text with them, which Python and what is written in Rust fall over."""
+    path = save(make(), tmp_path / "a.npz")
+    with np.load(path) as arrays:
+        kept = dict(arrays)
+    letters = np.array([kept["lightcube"]]).view(np.uint32)
+    for at in (0, 20, len(letters) - 1):
+        changed = letters.copy()
+        changed[at] = letter
+        said = changed.astype(f"{order}u4").view(f"{order}U{len(letters)}").reshape(())
+        np.savez(path, **{**kept, "lightcube": said})
+        with pytest.raises(InputError, match="letters that do not exist"):
+            load(path)
+
+
+@pytest.mark.parametrize("said", [np.array(5), np.array(b"{}"), np.array(["{}", "{}"]), np.array([], "U1")])
+def test_what_a_cube_says_is_one_text(said: np.ndarray, tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    np.savez(path, extinction=make().extinction, lightcube=said)
+    with pytest.raises(InputError, match="what it says is no text"):
+        load(path)
+
+
 @pytest.mark.parametrize("suffix", SUFFIXES)
 @MANY
 @given(data=st.data())

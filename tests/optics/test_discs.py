@@ -173,7 +173,7 @@ def test_a_cube_that_knows_of_its_lamp_is_better_under_it() -> None:
     [
         ({"lamp_deg": -0.5}, "from 0 to below 90 degrees, not -0.5"),
         ({"lamp_deg": 90.0}, "from 0 to below 90 degrees, not 90"),
-        ({"lamp_deg": math.nan}, "from 0 to below 90 degrees, not nan"),
+        ({"lamp_deg": math.nan}, "takes a number as lamp_deg, not nan"),
         ({"lamp_deg": 1.0, "screen_mm": -1.0}, "a screen -1 mm behind the turning cube would stand inside it"),
         ({"lamp_deg": 1.0, "screen_mm": math.inf}, "a screen inf mm"),
         ({"screen_mm": 5.0}, "changes nothing unless the lamp has a size"),

@@ -256,7 +256,7 @@ class TestRefused:
 
     @pytest.mark.parametrize("picture_width", [0, -1, math.nan, math.inf])
     def test_widths(self, picture_width: float) -> None:
-        with pytest.raises(InputError, match="picture width"):
+        with pytest.raises(InputError, match=r"picture.width"):
             fitted(pictures((12, 16), (12, 16)), GRID, picture_width=picture_width)
 
     def test_unknown_fits(self) -> None:

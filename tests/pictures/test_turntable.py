@@ -17,7 +17,6 @@ from lightcube.optics.views import DoubtfulAngles
         {"angles_deg": [7, 7.1, 7.2]},
         {"span_deg": 6.2832},
         {"span_deg": 3.1416},
-        {"span_deg": -6.2832},
     ],
 )
 def test_angles_that_may_be_radians_are_told(said: dict[str, Any]) -> None:

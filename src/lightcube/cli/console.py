@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.text import Text
 
 from lightcube import events
-from lightcube.errors import shown
+from lightcube.errors import shown, without_login
 from lightcube.events import Said, Tell
 
 
@@ -54,7 +54,7 @@ _SOON_S = 0.02
 
 
 def json_line(event: str, **fields: Any) -> None:
-    """Print one line of JSON: ``{"event": event, ...}``; NaN becomes null."""
+    """Print one line of JSON: ``{"event": event, ...}``; NaN becomes null, and no URL says its password."""
     sys.stdout.write(json.dumps({"event": event, **_plain(fields)}) + "\n")
     sys.stdout.flush()
 
@@ -69,6 +69,8 @@ def _plain(value: Any) -> Any:
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
+    if isinstance(value, str):
+        return without_login(value)
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

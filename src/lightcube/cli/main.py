@@ -75,12 +75,23 @@ def run(words: Sequence[str]) -> int:
         err.print(f"lightcube: {error.format_message()}".replace("Value error, ", ""))
         code = 2
     except OSError as error:
-        err.print(f"lightcube: {error.filename or 'the system'}: {error.strerror or error}")
+        err.print(f"lightcube: {_sentence(error)}")
         code = 2
     except MemoryError:
         err.print("lightcube: the machine has not enough memory for this: use a smaller cube or fewer pictures")
         code = 2
     return code or 0
+
+
+def _sentence(error: OSError) -> str:
+    """What the system refused."""
+    from lightcube.io._files import refuse_gone_folder  # here: only what fails pays for it
+
+    try:
+        refuse_gone_folder(error)
+    except InputError as gone:
+        return str(gone)
+    return f"{error.filename or 'the system'}: {error.strerror or error}"
 
 
 def _loaded(name: str) -> Callable[..., None]:

@@ -49,13 +49,13 @@ def crowded(path: Path) -> InputError:
 def unpacks_beyond(packed: bytes, most: int, *, wbits: int = zlib.MAX_WBITS) -> bool:
     """Whether deflated bytes, or those of an LZMA stream if `wbits` is 0, unpack to more than `most`; none are kept."""
     unpacker = zlib.decompressobj(wbits) if wbits else lzma.LZMADecompressor()
-    size, rest = 0, packed
-    while not unpacker.eof and size <= most:
-        made = len(unpacker.decompress(rest, _PIECE))
-        rest = getattr(unpacker, "unconsumed_tail", b"")
-        size += made
-        if not made and not rest:
-            break
+    size = 0
+    for at in range(0, len(packed), _PIECE):  # what is not unpacked yet is copied each time: never all of it
+        rest, made = packed[at : at + _PIECE], 1
+        while (rest or made) and not unpacker.eof and size <= most:
+            made = len(unpacker.decompress(rest, _PIECE))
+            rest = getattr(unpacker, "unconsumed_tail", b"")
+            size += made
     return size > most
 
 

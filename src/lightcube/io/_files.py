@@ -67,7 +67,17 @@ def system_errors(path: Place, doing: str) -> Iterator[None]:
                 f"no space is left on the disk of {Path(path).parent} for {doing} {name_of(path)}: "
                 "make room and start again"
             ) from error
+        refuse_gone_folder(error)
         raise InputError(f"{doing} {path} failed: {error.strerror or error}") from error
+
+
+def refuse_gone_folder(error: OSError) -> None:
+    """Raise `InputError` where what the system did not find is the current folder."""
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        if error.errno == errno.ENOENT:
+            raise InputError("the current folder is gone: change to one that is there, and start again") from error
 
 
 @contextmanager

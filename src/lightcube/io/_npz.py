@@ -1,6 +1,7 @@
 """A cube as NumPy's own archive."""
 
 import json
+import sys
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,13 @@ def _document(path: Path, arrays: NpzFile) -> Any:
     """What the archive says in JSON."""
     if arrays.zip and arrays.zip.getinfo("lightcube.npy").file_size > 4 * MOST_TEXT:  # text takes four bytes a letter
         raise _metadata.damaged(path, "what it says is larger than it can be")
-    return json.loads(str(arrays["lightcube"]))
+    said = arrays["lightcube"]
+    if said.shape or said.dtype.kind != "U":
+        raise _metadata.damaged(path, "what it says is no text")
+    letters = np.frombuffer(said.tobytes(), np.dtype(np.uint32).newbyteorder(said.dtype.byteorder))
+    if letters.max(initial=0) > sys.maxunicode:  # NumPy makes texts of them that Python cannot handle
+        raise _metadata.damaged(path, "what it says has letters that do not exist")
+    return json.loads(str(said))
 
 
 def read_npz(path: Path) -> Cube:

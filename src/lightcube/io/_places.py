@@ -9,15 +9,16 @@ import io
 import os
 import re
 import shutil
+import socket
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeGuard
 from uuid import uuid4
 
-from lightcube.errors import InputError
+from lightcube.errors import InputError, without_login
 from lightcube.io._bounds import check_file
 from lightcube.io._workplaces import settle
 
@@ -257,7 +258,9 @@ def _listing(store: Any, path: str, depth: int | None = None) -> dict[str, Any] 
     store.invalidate_cache()
     try:
         itself = store.info(path)
-    except FileNotFoundError:
+    except FileNotFoundError as error:
+        if _is_refusal(cause := error.__cause__):
+            raise cause from None
         return None
     if itself["type"] == "file":
         return {"": itself}
@@ -333,10 +336,16 @@ def _reaching(url: str, doing: str) -> Iterator[tuple[Any, str]]:
     except ImportError as error:
         package = "'lightcube[remote]'" if scheme in _OF_THE_EXTRA else "what is named here"
         raise InputError(
-            f"{url} cannot be reached, a package is missing ({_detail(error)}): pip install {package}"
+            f"{url} cannot be reached, a package is missing ({_detail(error, url)}): pip install {package}"
         ) from error
     except Exception as error:  # file systems raise whatever their libraries trip over
-        raise InputError(f"{doing} {url} failed ({_detail(error)}): check the URL and your access to it") from error
+        if _is_unreached(error):
+            raise InputError(
+                f"the server of {url} does not answer ({_detail(error, url)}): check the URL and your network"
+            ) from error
+        raise InputError(
+            f"{doing} {url} failed ({_detail(error, url)}): check the URL and your access to it"
+        ) from error
 
 
 def _file_system(url: str, scheme: str) -> tuple[Any, str]:
@@ -355,6 +364,20 @@ def _file_system(url: str, scheme: str) -> tuple[Any, str]:
     return store, path
 
 
-def _detail(error: Exception) -> str:
+def _is_unreached(error: BaseException) -> bool:
+    """Whether a server could not be asked; what aiohttp raises then holds the system's error."""
+    reason = getattr(error, "os_error", error)
+    return reason is not error or isinstance(reason, ConnectionError | TimeoutError | socket.gaierror)
+
+
+def _is_refusal(error: BaseException | None) -> TypeGuard[BaseException]:
+    """Whether what a store takes for a missing file is a server that cannot be asked, or does not want to answer."""
+    return error is not None and (_is_unreached(error) or getattr(error, "status", 404) not in (404, 410))
+
+
+def _detail(error: Exception, url: str) -> str:
+    """What a library says; of a URL with a password only what kind of error it is, for it may repeat parts of it."""
+    if without_login(url) != url:
+        return type(error).__name__
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return " ".join(said.split())[:150] or type(error).__name__

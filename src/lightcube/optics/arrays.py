@@ -69,7 +69,8 @@ def as_indices(given: Indices, count: int, what: str) -> Counts:
 
 def owned(array: ArrayLike, dtype: DTypeLike | None, *, order: Any = "K") -> NDArray[Any]:
     """The same numbers in an array that nobody can write to: itself where it is one, else a copy, once."""
-    made = np.asarray(array, dtype, order=order)
+    with np.errstate(over="ignore"):  # what overflows is no longer finite, and is told so
+        made = np.asarray(array, dtype, order=order)
     if _is_safe(made):
         return made
     # numpy's own conversions are new arrays; anything else may have handed out memory that it keeps

@@ -7,6 +7,7 @@ so that importing costs nothing; a check costs about a microsecond for each thin
 import builtins
 import functools
 import inspect
+import math
 import sys
 import types
 import typing
@@ -43,11 +44,11 @@ _NUMBERS: tuple[tuple[type, str, str], ...] = (
 
 
 def _is_number(value: Any, kind: type) -> bool:
-    """Whether something is a number of a kind that is not beyond all that machines reckon with."""
+    """Whether something is a number of a kind, not NaN, and not beyond all that machines reckon with."""
     most: Any = sys.float_info.max if kind is Real else 2**63 - 1
     if not isinstance(value, kind) or isinstance(value, bool):
         return False
-    return isinstance(value, float | np.floating) or -most <= value <= most
+    return not math.isnan(value) if isinstance(value, float | np.floating) else -most <= value <= most
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ _ANYTHING = _Kind("anything", lambda value: True)
 _SIMPLE = {
     bool: _Kind("True or False", lambda value: isinstance(value, bool | np.bool_)),
     int: _Kind("a whole number", lambda value: _is_number(value, Integral)),
-    float: _Kind("a number", lambda value: type(value) is float or _is_number(value, Real)),
+    float: _Kind("a number", lambda value: _is_number(value, Real)),
     str: _Kind("a text", lambda value: isinstance(value, str)),
     Any: _ANYTHING,
     object: _ANYTHING,

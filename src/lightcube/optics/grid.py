@@ -54,8 +54,7 @@ class Grid:
             raise InputError(f"a grid's shape is three whole numbers of at least 1 (nz, ny, nx), not {self.shape}")
         if not 1e-6 <= self.voxel_mm <= 1e6:
             raise InputError(f"a voxel's side must lie between 1e-6 and 1e6 millimetres, not {self.voxel_mm:g}")
-        if not 1e-3 <= self.tall <= 1e3:
-            raise InputError(f"a slice is from 0.001 to 1000 times as tall as its voxels are wide, not {self.tall:g}")
+        check_tall(self.tall)
         object.__setattr__(self, "shape", tuple(int(n) for n in self.shape))
         object.__setattr__(self, "voxel_mm", float(self.voxel_mm))
         object.__setattr__(self, "tall", float(self.tall))
@@ -178,6 +177,12 @@ def nearest(value: float, parity: int) -> int:
     """Positive whole number nearest to `value` that is even or odd like `parity`."""
     odd = parity % 2
     return max(2 * round((value - odd) / 2) + odd, 2 - odd)
+
+
+def check_tall(tall: float) -> None:
+    """Raise `InputError` unless slices can be so tall in the width of their voxels."""
+    if not 1e-3 <= tall <= 1e3:
+        raise InputError(f"a slice is from 0.001 to 1000 times as tall as its voxels are wide, not {tall:g}")
 
 
 def check_elevation(elevation_deg: float) -> float:

@@ -19,7 +19,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.tables import POWER_MAX, POWER_MIN, POWER_MOST, Fading, Lamps, Screens, Stops, Sums, Turning
 from lightcube.optics.transfer import BLACK
-from lightcube.optics.views import Views, unit
+from lightcube.optics.views import MOST_DEG, Views, unit
 
 Vector = tuple[float, float, float]
 
@@ -55,6 +55,11 @@ class Lamp:
         So far behind the cube its shadows keep their strength; beyond, they fade to 1/e every `falloff_mm`.
     full_at_mm
         At this distance a point lamp shows its power, elsewhere by the inverse square; infinity = at every distance.
+
+    Raises
+    ------
+    InputError
+        Where a number is out of its range, or not one of `direction` and `position_mm` is given.
     """
 
     name: str
@@ -71,6 +76,7 @@ class Lamp:
 
     def __post_init__(self) -> None:
         check_fields(self, f"lamp {self.name!r}")
+        _check_lamp(self)
 
 
 @dataclass(frozen=True)
@@ -102,6 +108,11 @@ class Screen:
     black
         Display value, from half a level of 255 to below 1, that it cannot be darker than; pixels darker than it are
         wanted at it.
+
+    Raises
+    ------
+    InputError
+        Where a number is out of its range, or `up` points out of the screen.
     """
 
     name: str
@@ -119,6 +130,7 @@ class Screen:
 
     def __post_init__(self) -> None:
         check_fields(self, f"screen {self.name!r}")
+        _check_screen(self)
 
     @property
     def pixels(self) -> tuple[int, int]:
@@ -179,7 +191,7 @@ class Stage:
     Raises
     ------
     InputError
-        Where a name is unknown or used twice, or a number is out of its range.
+        Where a name is unknown or used twice, or the turntable's stops or axis are none.
     """
 
     grid: Grid
@@ -194,16 +206,14 @@ class Stage:
         check_fields(self)
         _check_names("lamp", [lamp.name for lamp in self.lamps], MOST_LAMPS)
         _check_names("screen", [screen.name for screen in self.screens], MOST_SCREENS)
-        for lamp in self.lamps:
-            _check_lamp(lamp)
-        for screen in self.screens:
-            _check_screen(screen)
         if not self.shots:
             raise InputError("no picture is wanted on this stage: name at least one, its screen, lamps and stop")
         for shot in self.shots:
             self._check_shot(shot)
-        if not self.stops_deg or not np.all(np.isfinite(self.stops_deg)):
-            raise InputError("the turntable's stops must be finite numbers of degrees, and at least one")
+        if not self.stops_deg or not np.all(np.abs(self.stops_deg) <= MOST_DEG):
+            raise InputError(
+                f"the turntable's stops must be finite numbers of degrees up to {MOST_DEG:g}, and at least one"
+            )
         _check_vector("the turntable", "axis", self.axis)
 
     def __repr__(self) -> str:

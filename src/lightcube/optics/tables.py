@@ -195,10 +195,13 @@ class Screens(_Columns):
     def __post_init__(self) -> None:
         self._keep("names", black=(np.float64, (None,)), endless=(np.bool_, (None,)))
         for black in self.black:
-            if not BLACK <= black < 1:
-                raise InputError(
-                    f"black must be a display value from {BLACK:.4f}, half a level, to below 1, not {black:g}"
-                )
+            check_black(float(black))
+
+
+def check_black(black: float) -> None:
+    """Raise `InputError` unless a screen can be as dark as this display value and no darker."""
+    if not BLACK <= black < 1:
+        raise InputError(f"black must be a display value from {BLACK:.4f}, half a level, to below 1, not {black:g}")
 
 
 def power_bounds(power: float | None, power_max: float | None = None) -> tuple[float, float]:

@@ -28,7 +28,9 @@ _MOST_SIDES = 1e15
 #: A cube's pixels are no smaller than this in its voxels' widths: else there is no end to the pixels of its shadow.
 _LEAST_PIXEL = 1e-4
 #: No angle is larger: float64 would not tell a thousandth of a degree.
-_MOST_DEG = 1e9
+MOST_DEG = 1e9
+#: More angles are not spread: no cube holds so many pictures.
+_MOST_ANGLES = 1_000_000
 #: Angles that lie within a whole turn in radians may be some.
 _TURN_RAD = 2 * math.pi + 0.01
 
@@ -214,10 +216,10 @@ def check_angles(angles_deg: Numbers) -> Reals:
     vector = np.atleast_1d(as_numbers(angles_deg, "angles"))
     if vector.ndim != 1 or vector.size == 0:
         raise InputError("angles must be a list of at least one number of degrees")
-    sane = np.abs(vector) <= _MOST_DEG
+    sane = np.abs(vector) <= MOST_DEG
     if not np.all(sane):
         raise InputError(
-            f"angle number {int(np.argmin(sane)) + 1} is not a finite number of degrees below {_MOST_DEG:g}"
+            f"angle number {int(np.argmin(sane)) + 1} is not a finite number of degrees below {MOST_DEG:g}"
         )
     return vector
 
@@ -244,18 +246,24 @@ def spread_angles(count: int, span_deg: float | None = None, *, elevation_deg: f
     >>> lc.spread_angles(1)  # half a step would be 90
     array([60.])
     """
+    check_elevation(elevation_deg)
     if span_deg is None:
         span_deg = 360.0 if elevation_deg else 180.0
-    if count < 1:
-        raise InputError(f"cannot spread {count} angles: at least 1 is needed")
-    if not 0 < span_deg <= 360:
-        raise InputError(f"cannot spread angles over {span_deg:g} degrees: use a span above 0 and up to 360")
+    if not 1 <= count <= _MOST_ANGLES:
+        raise InputError(f"cannot spread {count} angles: use 1 to {_MOST_ANGLES:,}")
+    check_span(span_deg)
     step = span_deg / count
     for offset in (1 / 2, 1 / 3):
         angles_deg = (np.arange(count, dtype=np.float64) + offset) * step
         if np.min(np.abs(np.remainder(angles_deg + 45, 90) - 45)) > 1e-9:
             break
     return angles_deg
+
+
+def check_span(span_deg: float) -> None:
+    """Raise `InputError` unless angles can be spread over so many degrees."""
+    if not 0 < span_deg <= 360:
+        raise InputError(f"cannot spread angles over {span_deg:g} degrees: use a span above 0 and up to 360")
 
 
 def swept_mm(grid: Grid) -> float:

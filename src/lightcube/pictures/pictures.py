@@ -9,6 +9,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Images, Reals, owned
 from lightcube.optics.checks import check_fields
+from lightcube.optics.grid import check_elevation
 from lightcube.optics.transfer import Transfer
 from lightcube.optics.views import check_angles
 
@@ -52,6 +53,8 @@ class Pictures:
                     f"{len(angles_deg)} angles for {len(self.images)} pictures: give one angle per picture"
                 )
             object.__setattr__(self, "angles_deg", angles_deg)
+        if self.elevation_deg is not None:
+            check_elevation(self.elevation_deg)
 
     def __len__(self) -> int:
         return len(self.images)

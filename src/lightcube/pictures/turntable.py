@@ -11,9 +11,9 @@ from lightcube.optics.arrays import Numbers, Reals, keep
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import Rig, turntable
-from lightcube.optics.tables import POWER_MAX
+from lightcube.optics.tables import POWER_MAX, check_black, power_bounds
 from lightcube.optics.transfer import BLACK
-from lightcube.optics.views import check_lamp, distinct_angles, doubt_angles, spread_angles
+from lightcube.optics.views import check_angles, check_lamp, check_span, distinct_angles, doubt_angles, spread_angles
 from lightcube.pictures.pictures import Pictures
 
 #: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
@@ -67,13 +67,20 @@ class Turntable:
     def __post_init__(self) -> None:
         check_fields(self)
         if self.angles_deg is not None:
+            check_angles(self.angles_deg)
             keep(self, angles_deg=np.float64)
+        if self.span_deg is not None:
+            check_span(self.span_deg)
         if self.angles_deg is not None and self.span_deg is not None:
             raise InputError("angles and a span of angles are both given: use one of the two")
         span_deg = None if self.span_deg is None else (0.0, self.span_deg / 2, self.span_deg)
         doubt_angles(self.angles_deg if span_deg is None else span_deg, "turntable", stacklevel=3)
         if self.pixel < 1:
             raise InputError(f"a pixel is a whole number of voxels wide, of at least 1, not {self.pixel}")
+        if self.elevation_deg is not None:
+            check_elevation(self.elevation_deg)
+        power_bounds(self.power, self.power_max)
+        check_black(self.black)
         check_lamp(self.lamp_deg, self.screen_mm)
 
     def elevation_of(self, pictures: Pictures) -> float:

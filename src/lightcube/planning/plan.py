@@ -13,7 +13,7 @@ from lightcube.backward.mat import Mat
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.checks import check_fields, checked
-from lightcube.optics.grid import Grid, dense_step_deg
+from lightcube.optics.grid import Grid, check_tall, dense_step_deg
 from lightcube.optics.rig import Rig
 from lightcube.optics.stage import Stage
 from lightcube.optics.views import swept_mm
@@ -176,6 +176,7 @@ def plan(
             f"a cube of {n} voxels with pictures {picture_width} of its width: give at least 1 voxel, and a width "
             "above 0 and at most 1.41"
         )
+    check_tall(tall)
     asked, table = recipe or Recipe.of_quality("normal", mat=Mat()), turntable or Turntable()
     small, chooses = rehearsals or Rehearsals(), picture_width is None or longest_hold or smooth
 
