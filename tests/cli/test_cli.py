@@ -298,6 +298,30 @@ BAD = [
 ]
 
 
+#: What stands where something else is wanted, and what is said of it.
+MISTAKEN = [
+    *(
+        (verb, "{tmp}/cube.zarr", "{tmp}/cube.zarr holds arrays, such as a cube's, not pictures: give ")
+        for verb in ("solve", "check")
+    ),
+    ("trace", "{tmp}/none.toml", "there is no {tmp}/none.toml: give a scene's .toml file, or one of "),
+    *((verb, "{tmp}/file.zarr", "{tmp}/file.zarr is a file, and no cube ") for verb in ("play", "info", "score")),
+]
+
+
+@pytest.mark.parametrize(("verb", "given", "said"), MISTAKEN)
+def test_what_stands_in_the_wrong_place_is_named(  # type: ignore[no-untyped-def]
+    run, tmp_path: Path, verb: str, given: str, said: str
+) -> None:
+    (tmp_path / "cube.zarr").mkdir()
+    (tmp_path / "cube.zarr" / "zarr.json").write_text("{}")
+    (tmp_path / "file.zarr").write_text("x")
+    target = {"solve": ("-o", "{tmp}/a.zarr"), "trace": ("-o", "{tmp}/a"), "play": ("-o", "{tmp}/a.gif")}.get(verb, ())
+    done = run(*[word.format(tmp=tmp_path) for word in (verb, given, *target)])
+    assert done.code == 2, done.err
+    assert any(line.startswith(f"lightcube: {said.format(tmp=tmp_path)}") for line in done.lines), done.err
+
+
 @pytest.mark.parametrize("arguments", BAD, ids=lambda a: " ".join(a))
 def test_bad_input_is_one_sentence_and_exit_code_2(  # type: ignore[no-untyped-def]
     run, pictures: Path, cube: Path, tmp_path: Path, arguments: tuple[str, ...]

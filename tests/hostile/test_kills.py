@@ -27,7 +27,8 @@ if sys.platform == "win32":
 ALL = os.environ.get("LIGHTCUBE_KILLS") == "all"
 #: Of each command's events, so many in the suite, spread over all.
 FEW = 4
-MOMENTS = 300 if ALL else 6
+#: So many moments for each signal.
+MOMENTS = 100 if ALL else 2
 SOLVE = ("--n", "8", "--picture-width", "0.7", "--iterations", "4", "--hold-deg", "0")
 #: What each command writes, and its words; `given` holds the pictures and a cube of them.
 COMMANDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -81,10 +82,12 @@ class Killer:
         kept = {name: str(folder.parent / name) for name in ("XDG_CACHE_HOME", "TMPDIR")}
         for name in kept.values():
             Path(name).mkdir()
+        paths = f"{source / 'src'}{os.pathsep}{source}"
+        self._environment = {**os.environ, **kept, "NUMBA_NUM_THREADS": "1", "PYTHONPATH": paths}
         self._program = subprocess.Popen(
             [sys.executable, "-m", "tests.hostile.kills"],
             cwd=folder,
-            env={**os.environ, **kept, "NUMBA_NUM_THREADS": "1", "PYTHONPATH": f"{source / 'src'}{os.pathsep}{source}"},
+            env=self._environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._said,
@@ -101,6 +104,24 @@ class Killer:
         self._program.stdin.flush()
         code, events = json.loads(self._program.stdout.readline() or "[-1, 0]")
         return code, events
+
+    def program(self, words: tuple[str, ...], stop: tuple[float, signal.Signals] | None) -> tuple[int, str]:
+        """Exit code of a program of its own that may be stopped after so many seconds, and what it says."""
+        with subprocess.Popen(
+            [sys.executable, "-c", PROGRAM, *words],
+            cwd=self.folder,
+            env=self._environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        ) as running:
+            assert running.stdout is not None
+            running.stdout.readline()
+            if stop is not None:
+                time.sleep(stop[0])
+                running.send_signal(stop[1])
+            _, said = running.communicate()
+        return running.returncode, said
 
     def said(self) -> str:
         return (self.folder.parent / "said").read_text()
@@ -182,46 +203,33 @@ def test_killed_at_any_event_files_are_whole_and_the_same_command_goes_on(
 
 
 @pytest.mark.skipif(INTERPRETED, reason="it takes too long to come to the moments in between")
-def test_killed_at_any_moment_files_are_whole_and_the_same_command_goes_on(killer: Killer) -> None:
-    """A program of its own, from its start to its end, by what a terminal and a system send."""
+@pytest.mark.parametrize("how", ENDS)
+def test_killed_at_any_moment_files_are_whole_and_the_same_command_goes_on(killer: Killer, how: signal.Signals) -> None:
+    """A program of its own, from its start to its end, by what a terminal and a system send; all commands in turn."""
     folder, chance = killer.folder, random.Random()  # noqa: S311 - another time, other moments
     took: dict[str, float] = {}
     whole: dict[str, dict[str, Content]] = {}
-    names = [name for name in COMMANDS if name not in ("publish", "solve units")]
+    names = chance.sample(list(COMMANDS), len(COMMANDS))
     for number in range(MOMENTS):
-        name = chance.choice(names)
+        name = names[number % len(names)]
         outputs, words = COMMANDS[name]
-        clean(folder)
         if name not in whole:
+            clean(folder)
+            begun(killer, name)
             began = time.monotonic()
-            assert program(folder, words, None)[0] == 0
+            assert killer.program(words, None)[0] == 0
             took[name] = time.monotonic() - began
             whole[name] = {output: content(folder / output) for output in outputs}
-            clean(folder)
-        how = chance.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGINT))
-        code, said = program(folder, words, (chance.uniform(0, took[name]), how))
-        what = (number, name, how, code, said)
+        clean(folder)
+        begun(killer, name)
+        moment = chance.uniform(0, took[name])
+        code, said = killer.program(words, (moment, how))
+        what = (number, name, moment, code, said)
         assert code in ENDS[how], what
         if code == 130:
             assert "interrupted" in said or "the same command goes on" in said, what
             assert "Traceback" not in said, what
         finished(killer, words, dict.fromkeys(outputs, Content()), whole[name])
-
-
-def program(folder: Path, words: tuple[str, ...], stop: tuple[float, signal.Signals] | None) -> tuple[int, str]:
-    """Exit code of a command in a program of its own that may be stopped after so many seconds, and what it says."""
-    command = [sys.executable, "-c", PROGRAM, *words]
-    environment = {**os.environ, "NUMBA_NUM_THREADS": "1"}
-    with subprocess.Popen(
-        command, cwd=folder, env=environment, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    ) as running:
-        assert running.stdout is not None
-        running.stdout.readline()
-        if stop is not None:
-            time.sleep(stop[0])
-            running.send_signal(stop[1])
-        _, said = running.communicate()
-    return running.returncode, said
 
 
 def finished(killer: Killer, words: tuple[str, ...], old: dict[str, Content], whole: dict[str, Content]) -> None:

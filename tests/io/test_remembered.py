@@ -1,6 +1,9 @@
 """What commands remember for each other: there again, bounded, and never in the way."""
 
+import json
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -40,10 +43,43 @@ def test_the_oldest_half_goes_where_there_is_no_more_room(folder: Path, monkeypa
     for age, name in enumerate("abcd"):
         known[name] = age
         os.utime(folder / f"{name}.json", (age, age))
-    (folder / "x.part").write_text("cut short")
     known["e"] = 4
     assert sorted(known) == ["c", "d", "e"]
-    assert not (folder / "x.part").exists()
+
+
+#: Puts an answer in children, each of which is killed one event of the file system later; says how many were.
+KILLED = """
+import itertools, os, signal, sys
+from lightcube.io import Remembered
+
+def put(at):
+    def hear(event, _, left=itertools.count(1)):
+        if (event == "open" or event.startswith(("os.", "tempfile."))) and next(left) == at:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    known = Remembered()
+    known["before"] = 1  # imports what is needed
+    sys.addaudithook(hear)
+    known["a"] = list(range(9))
+
+for at in itertools.count(1):
+    child = os.fork()
+    if not child:
+        put(at)
+        os._exit(0)
+    if not os.waitpid(child, 0)[1]:
+        break
+print(at - 1)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="nothing forks here")
+def test_what_a_killed_program_left_is_removed_by_the_next(folder: Path) -> None:
+    ran = subprocess.run([sys.executable, "-c", KILLED], check=True, capture_output=True, text=True)
+    assert int(ran.stdout) > 5
+    Remembered()["b"] = 2
+    assert sorted(path.name for path in folder.iterdir()) == ["a.json", "b.json", "before.json"]
+    assert json.loads((folder / "a.json").read_text()) == list(range(9))
 
 
 def test_what_is_too_large_is_not_kept(folder: Path) -> None:

@@ -62,22 +62,67 @@ CURVES = {
 
 def profile(curve: bytes, colourants: list[tuple[float, float, float]] | None = None, name: str = "Test") -> bytes:
     """An ICC profile of version 4: RGB where there are colourants, else grey."""
-    text = name.encode("utf-16-be")
-    desc = b"mluc\0\0\0\0" + struct.pack(">II2s2sII", 1, 12, b"en", b"US", len(text), 28) + text
-    tags = {b"desc": desc, b"cprt": desc, b"wtpt": b"XYZ \0\0\0\0" + fixed(0.9642, 1, 0.8249)}
+    tags = {}
     if colourants is None:
         tags[b"kTRC"] = curve
     for letter, colourant in zip(b"rgb", colourants or (), strict=False):
         tags[bytes([letter]) + b"XYZ"] = b"XYZ \0\0\0\0" + fixed(*colourant)
         tags[bytes([letter]) + b"TRC"] = curve
+    return of_tags(tags, b"RGB " if colourants else b"GRAY", b"XYZ ", name)
+
+
+def of_tags(tags: dict[bytes, bytes], kind: bytes, shared: bytes, name: str = "Test") -> bytes:
+    """An ICC profile of a kind of colours, with what all profiles have."""
+    text = name.encode("utf-16-be")
+    desc = b"mluc\0\0\0\0" + struct.pack(">II2s2sII", 1, 12, b"en", b"US", len(text), 28) + text
+    tags = {b"desc": desc, b"cprt": desc, b"wtpt": b"XYZ \0\0\0\0" + fixed(0.9642, 1, 0.8249), **tags}
     body, entries, start = b"", b"", 132 + 12 * len(tags)
     for tag, content in tags.items():
         entries += struct.pack(">4sII", tag, start + len(body), len(content))
         body += content + b"\0" * (-len(content) % 4)
-    kind = b"RGB " if colourants else b"GRAY"
-    head = struct.pack(">I4sI4s4s4s", 0, b"\0" * 4, 0x04300000, b"mntr", kind, b"XYZ ")
+    head = struct.pack(">I4sI4s4s4s", 0, b"\0" * 4, 0x04300000, b"scnr" if kind == b"CMYK" else b"mntr", kind, shared)
     head += struct.pack(">6H4s", 2026, 1, 1, 0, 0, 0, b"acsp") + b"\0" * 28 + fixed(0.9642, 1, 0.8249) + b"\0" * 48
     return struct.pack(">I", start + len(body)) + head[4:] + struct.pack(">I", len(tags)) + entries + body
+
+
+#: Lab of each kind of colours: what no colour is, and what each of its samples adds.
+LAB = {
+    b"GRAY": ((0, 0, 0), [(100, 4, -9)]),
+    b"RGB ": ((0, 0, 0), [(30, 22, 6), (55, -20, 12), (15, -2, -18)]),
+    b"CMYK": ((100, 0, 0), [(-20, -14, -16), (-25, 24, -2), (-10, -2, 26), (-45, -8, -8)]),
+}
+
+
+def of_tables(kind: bytes, *, deep: bool = True, base: tuple[float, float, float] | None = None) -> bytes:
+    """An ICC profile of a table of 8 or 16 bits that only has the corners, with straight lines between them."""
+    none, each = LAB[kind]
+    corners = np.array(list(np.ndindex(*[2] * len(each)))) @ np.array(each) + np.array(base or none)
+    if base:  # what is darker is lifted up to it
+        corners = np.maximum(corners, np.array(base))
+        corners[-1] = (100, 0, 0)
+    full, sort = (65280, ">u2") if deep else (255, "u1")
+    middle = 32768 if deep else 128
+    numbers = np.stack([corners[:, 0] / 100 * full, *(corners[:, 1:].T * (256 if deep else 1) + middle)], axis=-1)
+    line = np.linspace(0, 65535 if deep else 255, 2 if deep else 256).astype(sort).tobytes()
+    tag = (b"mft2" if deep else b"mft1") + bytes(4) + bytes((len(each), 3, 2, 0)) + fixed(1, 0, 0, 0, 1, 0, 0, 0, 1)
+    tag += struct.pack(">HH", 2, 2) if deep else b""
+    tag += line * len(each) + np.rint(numbers).astype(sort).tobytes() + line * 3
+    return of_tags({b"A2B0": tag, b"A2B1": tag}, kind, b"Lab ", "Table")
+
+
+def by_lab(samples: Array, kind: bytes) -> Array:
+    """8-bit levels of samples ``(row, column, sample)`` from 0 to 1, by the formulas of Lab."""
+    none, each = LAB[kind]
+    lab = samples @ np.array(each, float) + np.array(none)
+    y = (lab[..., 0] + 16) / 116
+    roots = np.stack([y + lab[..., 1] / 500, y, y - lab[..., 2] / 200], axis=-1)
+    xyz = np.where(roots > 6 / 29, roots**3, 3 * (6 / 29) ** 2 * (roots - 4 / 29)) * (0.9642, 1, 0.8249)
+    return encode(np.clip(xyz @ np.linalg.inv(np.array(SRGB).T).T, 0, 1)) * 255
+
+
+def tags_of(icc: bytes) -> dict[bytes, bytes]:
+    entries = [struct.unpack_from(">4sII", icc, 132 + 12 * at) for at in range(int.from_bytes(icc[128:132], "big"))]
+    return {name: icc[start : start + length] for name, start, length in entries}
 
 
 def read(path: Path) -> Array:
@@ -136,6 +181,79 @@ def test_every_kind_of_file_can_have_a_profile(tmp_path: Path, suffix: str, colo
     with pytest.warns(ChangedPictures, match=r"^1 of 1 pictures in .* not sRGB \(Test: turned into sRGB\)$"):
         image = read_pictures(path, least=1).images[0]
     np.testing.assert_allclose(encode(image) * 255, np.broadcast_to(by_littlecms(picture, icc), image.shape), atol=2.1)
+
+
+#: How each kind of file is saved, by the end of its name.
+OPTIONS: dict[str, dict[str, Any]] = {
+    ".webp": {"lossless": True},
+    ".jpg": {"quality": 100},
+    "lzw.tif": {"compression": "tiff_lzw"},
+    "jpeg.tif": {"compression": "jpeg"},
+}
+
+
+@pytest.mark.parametrize("deep", [True, False], ids=["16-bit table", "8-bit table"])
+@pytest.mark.parametrize(
+    ("suffix", "kind"),
+    [
+        *((suffix, kind) for suffix in (".png", ".jpg", ".tif") for kind in (b"RGB ", b"GRAY")),
+        (".webp", b"RGB "),
+        *(("16.png", kind) for kind in (b"RGB ", b"GRAY")),
+        *(("16.tif", kind) for kind in LAB),
+        *((suffix, b"CMYK") for suffix in (".jpg", ".tif", "lzw.tif", "jpeg.tif")),
+    ],
+)
+def test_tables_are_followed(tmp_path: Path, suffix: str, kind: bytes, *, deep: bool) -> None:
+    """One colour a file: JPEG mixes neighbours."""
+    icc, path = of_tables(kind, deep=deep), tmp_path / f"a{suffix}"
+    for colour in ([0.2, 0.5, 0.4, 0.1], [0.8, 0.7, 0.75, 0.3], [0, 0, 0, 0], [1, 1, 1, 1]):
+        levels = np.rint(np.full((9, 13, 4), colour)[..., : len(LAB[kind][1])] * 255).astype(np.uint8)
+        plain = levels[..., 0] if kind == b"GRAY" else levels
+        if suffix == "16.png":
+            png(path, levels.astype(np.uint16) * 257, chunk(b"iCCP", b"x\0\0" + zlib.compress(icc)))
+        elif suffix == "16.tif":
+            photometric = {b"RGB ": "rgb", b"GRAY": "minisblack", b"CMYK": "separated"}[kind]
+            tifffile.imwrite(path, plain.astype(np.uint16) * 257, photometric=photometric, iccprofile=icc)
+        else:
+            mode = {b"GRAY": "L", b"RGB ": "RGB", b"CMYK": "CMYK"}[kind]
+            options = OPTIONS.get(suffix, {})
+            Image.frombytes(mode, (13, 9), plain.tobytes()).save(path, icc_profile=icc, **options)
+        with pytest.warns(ChangedPictures, match=r"not sRGB \(Table, in 8 bits: turned into sRGB\)$"):
+            image = read_pictures(path, least=1).images[0]
+        np.testing.assert_allclose(encode(image) * 255, by_lab(levels / 255, kind), atol=3.1 if deep else 5.1)
+
+
+@pytest.mark.parametrize("kind", [b"RGB ", b"GRAY"])
+def test_the_darkest_of_a_table_is_black_and_its_white_is_white(tmp_path: Path, kind: bytes) -> None:
+    picture = np.zeros((2, 2, 3), np.uint8)
+    picture[1] = 255
+    plain = picture if kind == b"RGB " else picture[..., 0]
+    Image.fromarray(plain).save(tmp_path / "a.png", icc_profile=of_tables(kind, base=(12, 0, 0)))
+    np.testing.assert_allclose(encode(read(tmp_path / "a.png")) * 255, picture, atol=1.1)
+
+
+def test_tables_go_before_curves(tmp_path: Path) -> None:
+    table, curves = of_tables(b"RGB "), profile(gamma(1.8), P3)
+    both = {name: data for icc in (curves, table) for name, data in tags_of(icc).items()}
+    picture = noise(9, 13, 3)
+    images = []
+    for icc in (table, of_tags(both, b"RGB ", b"Lab ")):
+        Image.fromarray(picture).save(tmp_path / "a.png", icc_profile=icc)
+        images.append(read(tmp_path / "a.png"))
+    np.testing.assert_array_equal(images[0], images[1])
+
+
+@pytest.mark.parametrize(
+    ("mode", "kind"), [("CMYK", b"RGB "), ("CMYK", b"GRAY"), ("RGB", b"CMYK"), ("L", b"CMYK"), ("CMYK", b"cut")]
+)
+def test_profiles_of_other_colours_are_told(tmp_path: Path, mode: str, kind: bytes) -> None:
+    icc = of_tables(kind) if kind in LAB else of_tables(b"CMYK")[:400]
+    picture = Image.frombytes(mode, (4, 4), noise(4, 4, Image.getmodebands(mode)).tobytes())
+    picture.save(tmp_path / "a.tif", icc_profile=icc)
+    picture.save(tmp_path / "b.tif")
+    with pytest.warns(ChangedPictures, match="1 of 2 .* taken as sRGB"):
+        images = read_pictures(tmp_path).images
+    np.testing.assert_array_equal(images[0], images[1])
 
 
 def test_16_bits_keep_all_their_bits(tmp_path: Path) -> None:

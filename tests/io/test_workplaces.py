@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from lightcube.errors import InputError
 from lightcube.io import _workplaces
 from lightcube.io._files import written_whole
 from lightcube.io._workplaces import put, sweep, workplace
+from lightcube.io.outputs import Kind, Output, Thing, write_together
 
 KILLED = """
 import os, signal, sys
@@ -232,3 +234,29 @@ def test_disks_that_cannot_be_asked_to_settle_are_written_all_the_same(
         write(tmp_path / "x.txt")
     assert (tmp_path / "x.txt").exists() is not fails
     assert hidden(tmp_path) == []
+
+
+@pytest.mark.parametrize("failing", [0, 1, 2])
+@pytest.mark.parametrize("there", [False, True])
+def test_of_several_none_is_named_where_one_cannot_be_made(tmp_path: Path, failing: int, *, there: bool) -> None:
+    things: list[tuple[str, Kind, Thing]] = [
+        ("a.json", "document", {"a": 1}),
+        ("b.html", "page", "<p>"),
+        ("c.png", "picture", np.zeros((2, 2, 3), np.uint8)),
+    ]
+    before = {name: b"old" for name, _, _ in things} if there else {}
+    for name, data in before.items():
+        (tmp_path / name).write_bytes(data)
+    own, kinds, contents = zip(*things, strict=True)
+
+    def together(names: Sequence[str]) -> None:
+        outputs = [Output(tmp_path / name, kind, overwrite=True) for name, kind in zip(names, kinds, strict=True)]
+        write_together(*zip(outputs, contents, strict=True))
+
+    with pytest.raises(InputError):
+        together([f"nowhere/{name}" if at == failing else name for at, name in enumerate(own)])
+    assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == before
+    together(own)
+    made = {each.name: each.read_bytes() for each in tmp_path.iterdir()}
+    assert sorted(made) == sorted(own)
+    assert b"old" not in made.values()

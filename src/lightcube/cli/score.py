@@ -10,6 +10,7 @@ from lightcube.cli import printing
 from lightcube.cli.console import json_document, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.errors import InputError
+from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
 from lightcube.verbs import scoring
 from lightcube.verbs.refitting import wanted_of
@@ -44,10 +45,12 @@ def score(
     wanted = wanted_of(loaded, pictures)
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
         found = scoring.score(loaded, wanted, tell, between=between_pictures or plot is not None, off=robust)
+    drawn: list[tuple[io.Output, Thing]] = []
     if plot_file is not None and found.curve is not None:
-        plot_file.write(scoring.plot(found.curve))
+        drawn.append((plot_file, scoring.plot(found.curve)))
     if sheet_file is not None:
-        sheet_file.write(scoring.sheet(loaded, wanted, found))
+        drawn.append((sheet_file, scoring.sheet(loaded, wanted, found)))
+    io.write_together(*drawn)
     if as_json:
         json_document(found.scores)
     else:

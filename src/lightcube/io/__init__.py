@@ -11,6 +11,7 @@ __getattr__, __dir__, __all__ = when_used(
         "ClippedPictures": "movies",
         "Output": "outputs",
         "save": "outputs",
+        "write_together": "outputs",
         "ChangedPictures": "pictures",
         "DoubtfulFolder": "pictures",
         "TransparentPictures": "pictures",

@@ -3,7 +3,7 @@
 from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures
-from lightcube.io.outputs import Output, save
+from lightcube.io.outputs import Output, save, write_together
 from lightcube.io.pictures import ChangedPictures, DoubtfulFolder, TransparentPictures, read_pictures
 from lightcube.io.remembered import Remembered
 from lightcube.io.scenes import read_scene, scene_names
@@ -27,4 +27,5 @@ __all__ = [
     "save",
     "scene_names",
     "stage_pictures",
+    "write_together",
 ]

@@ -21,6 +21,7 @@ from lightcube.io._containers import is_cut_short
 from lightcube.io._files import system_errors
 from lightcube.io._frames import Levels
 from lightcube.io._spaces import Space
+from lightcube.io._tables import turn_of_profile
 
 
 class Take(Protocol):
@@ -136,6 +137,14 @@ def levels_of_image(path: Path, image: Image.Image) -> Levels:
     image.load()
     if image.mode[0] in "IF":
         raise InputError(f"{path} holds numbers instead of levels of 8 or 16 bits: save it as a PNG first")
+    return colours_of_image(image)
+
+
+def colours_of_image(image: Image.Image) -> Levels:
+    """Levels of what `image` has loaded; of inks by its profile, if it has one of theirs."""
+    turn = turn_of_profile(image.info.get("icc_profile"), "CMYK") if image.mode == "CMYK" else None
+    if turn:
+        return turn(np.asarray(image))
     return np.asarray(image.convert("RGBA" if image.has_transparency_data else "RGB"))
 
 

@@ -1,4 +1,4 @@
-"""Colours that are not sRGB: of ICC profiles of curves and a matrix, of PNG's chunks, and of cameras' Adobe RGB."""
+"""Colours that are not sRGB: of ICC profiles, of PNG's chunks, and of cameras' Adobe RGB."""
 
 import struct
 from collections.abc import Callable
@@ -12,6 +12,7 @@ from PIL import ImageCms
 
 from lightcube.io._hdr import HDR_CURVES, light_of
 from lightcube.io._samples import LIGHT_OF_XYZ
+from lightcube.io._tables import Turn, turn_of_profile
 from lightcube.optics.transfer import decode, encode
 
 _Light = NDArray[np.float32]
@@ -34,28 +35,33 @@ _CONES = np.array([(0.8951, 0.2664, -0.1614), (-0.7502, 1.7135, 0.0367), (0.0389
 _H273_LINEAR, _H273_SRGB, _H273_VIDEO = 8, 13, (1, 6, 14, 15)
 #: What stands before the numbers in a container of pictures (ISO 14496-12, 12.1.5).
 _NUMBERS = b"colrnclx"
+#: The tags of tables to colours that all devices share, and what is said of them.
+_TABLES, _IN_8_BITS = {b"A2B0", b"A2B1", b"A2B2"}, ", in 8 bits"
 #: Less than one level of 8 bits from sRGB is sRGB.
 _SAME = 1 / 255
 
 
 @dataclass(frozen=True)
 class Space:
-    """How display values become linear light of sRGB's colours; without curves it is not known, and taken as sRGB."""
+    """How display values become linear light of sRGB's colours: by curves and a matrix, or as a `whole`.
+
+    Without either it is not known, and taken as sRGB.
+    """
 
     name: str
     curves: tuple[_Curve, ...] | None = None
     matrix: NDArray[np.float64] | None = None
-    hdr: _Curve | None = None
+    whole: _Curve | None = None
 
     @property
     def is_known(self) -> bool:
         """Whether these colours can be turned into sRGB."""
-        return self.curves is not None or self.hdr is not None
+        return self.curves is not None or self.whole is not None
 
     def light(self, display: _Light) -> _Light:
         """Linear light of display values ``(row, column, 3)``; what sRGB has no colour for is clipped."""
-        if self.hdr is not None:
-            return self.hdr(display).astype(np.float32)
+        if self.whole is not None:
+            return self.whole(display).astype(np.float32)
         if self.curves is None:
             return decode(display).astype(np.float32, copy=False)
         light = np.stack([curve(display[..., at]) for at, curve in enumerate(self.curves)], axis=-1)
@@ -63,16 +69,41 @@ class Space:
         return np.clip(mixed, 0, 1).astype(np.float32)
 
 
-def space_of_profile(data: bytes | None) -> Space | None:
-    """Return the colours of an ICC profile; None where there is none, or it is sRGB."""
+def space_of_profile(data: bytes | None, *, inks: bool = False) -> Space | None:
+    """Return the colours of an ICC profile; None where there is none, or it is sRGB.
+
+    Of pictures in `inks` they are those that `turn_of_profile` has made sRGB of.
+    """
     if not data:
         return None
     try:
         data = bytes(data)  # what a damaged tag holds may be anything
         name = ImageCms.ImageCmsProfile(BytesIO(data)).profile.profile_description or "no name"
-        return _space_of_tags(name.strip(), data[16:20], _tags(data))
+        if inks:
+            return Space(f"{name.strip()}{_IN_8_BITS}", whole=decode) if turn_of_profile(data, "CMYK") else Space(name)
+        tags = _tags(data)
+        if _TABLES & set(tags):
+            return _space_of_tables(name.strip(), data)
+        return _space_of_tags(name.strip(), data[16:20], tags)
     except (OSError, LookupError, ValueError, TypeError, struct.error):
         return Space("a damaged profile")
+
+
+def _space_of_tables(name: str, data: bytes) -> Space | None:
+    """Return the colours of a profile that has tables: they go before curves and a matrix (ICC.1:2022, 8.2)."""
+    grey = data[16:20] == b"GRAY"
+    turn = turn_of_profile(data, "L" if grey else "RGB")
+    if turn is None:
+        return Space(name)
+    space = Space(f"{name}{_IN_8_BITS}", whole=partial(_turned, turn, grey))
+    return None if _is_srgb(space) else space
+
+
+def _turned(turn: Turn, grey: bool, display: _Light) -> _Light:
+    """Light of display values by tables."""
+    levels = np.rint(display * 255).astype(np.uint8)
+    shown = np.stack([turn(levels[..., at])[..., at] for at in range(3)], axis=-1) if grey else turn(levels)
+    return decode(shown / np.float32(255)).astype(np.float32, copy=False)
 
 
 def _space_of_tags(name: str, kind: bytes, tags: dict[bytes, bytes]) -> Space | None:
@@ -95,7 +126,7 @@ def space_of_cicp(data: bytes) -> Space | None:
     name, places = _PRIMARIES.get(primaries, ("", ()))
     curves: dict[int, _Curve] = {_H273_LINEAR: _same, _H273_SRGB: decode, **dict.fromkeys(_H273_VIDEO, _video)}
     if transfer in HDR_CURVES and name and not matrix and whole == 1:
-        return Space(f"{name} {HDR_CURVES[transfer]}", hdr=partial(light_of, curve=transfer, primaries=primaries))
+        return Space(f"{name} {HDR_CURVES[transfer]}", whole=partial(light_of, curve=transfer, primaries=primaries))
     if transfer not in curves or not name or matrix or whole != 1:
         return Space(f"cICP {primaries}/{transfer}/{matrix}/{whole}")
     return _unless_srgb(name, [curves[transfer]] * 3, _matrix(places))
@@ -137,10 +168,14 @@ def adobe_rgb() -> Space:
 def _unless_srgb(name: str, curves: list[_Curve], matrix: NDArray[np.float64] | None) -> Space | None:
     """Return a space, or None where it is sRGB but for less than a level."""
     space = Space(name, tuple(curves), matrix)
+    return None if _is_srgb(space) else space
+
+
+def _is_srgb(space: Space) -> bool:
+    """Whether colours are sRGB but for less than a level."""
     steps = np.linspace(0, 1, 9, dtype=np.float32)
-    red, green, blue = np.meshgrid(steps, steps, steps) if matrix is not None else (steps, steps, steps)
-    display = np.stack([red, green, blue], axis=-1)
-    return space if np.max(np.abs(encode(space.light(display)) - display)) > _SAME else None
+    display = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(27, 27, 3)
+    return bool(np.max(np.abs(encode(space.light(display)) - display)) <= _SAME)
 
 
 def _matrix(places: _Places, white: tuple[float, float] = _WHITE_D65) -> NDArray[np.float64]:

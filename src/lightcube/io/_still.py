@@ -111,4 +111,4 @@ def _space(path: Path, image: Image.Image) -> Space | None:
     with suppress(KeyError):  # Pillow 11 has no empty answer where nothing is said
         if not profile and image.getexif().get_ifd(_INTEROPERABILITY).get(1) == "R03":
             return adobe_rgb()
-    return space_of_profile(profile)
+    return space_of_profile(profile, inks=image.mode == "CMYK")

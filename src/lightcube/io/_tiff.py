@@ -4,7 +4,7 @@ import ctypes
 import logging
 import math
 import zlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
 from importlib.util import find_spec
@@ -16,10 +16,11 @@ from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io._bounds import Budget, unpacks_beyond
-from lightcube.io._decode import Take, damaged, refuse_cut_short, upright
+from lightcube.io._decode import Take, colours_of_image, damaged, refuse_cut_short, upright
 from lightcube.io._frames import Levels
 from lightcube.io._samples import Samples, full_of, of_inks, of_lab, spread, with_opacity
 from lightcube.io._spaces import space_of_profile
+from lightcube.io._tables import turn_of_profile
 
 if TYPE_CHECKING:
     from tifffile import TiffPage
@@ -87,7 +88,7 @@ def read_tiff(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
         for page in pages:
             budget.spend(path, page.imagelength, page.imagewidth)
             profile = None if page.photometric == _LAB else page.tags.valueof(_PROFILE)
-            take(_levels(path, page), space_of_profile(profile))
+            take(_levels(path, page), space_of_profile(profile, inks=page.photometric == _INKS))
 
 
 def _levels(path: Path, page: "TiffPage") -> Levels:
@@ -101,7 +102,8 @@ def _levels(path: Path, page: "TiffPage") -> Levels:
     if not unpacked:
         raise _cannot_unpack(path, page)
     samples = _samples(path, page)
-    rows = [_colours(page, samples[first : first + _ROWS]) for first in range(0, len(samples), _ROWS)]
+    inks = (page.photometric == _INKS and turn_of_profile(page.tags.valueof(_PROFILE), "CMYK")) or of_inks
+    rows = [_colours(page, samples[first : first + _ROWS], inks) for first in range(0, len(samples), _ROWS)]
     return upright(cast("Levels", np.concatenate(rows)), page.tags.valueof(_ORIENTATION, default=1))
 
 
@@ -154,7 +156,7 @@ def _levels_of_pillow(path: Path, index: int) -> Levels | None:
         image.load()
         if image.mode not in ("1", "L", "LA", "P", "PA", "RGB", "RGBA", "RGBX", "RGBa", "CMYK"):
             return None
-        return np.asarray(image.convert("RGBA" if image.has_transparency_data else "RGB"))
+        return colours_of_image(image)
 
 
 def _samples(path: Path, page: "TiffPage") -> Samples:
@@ -189,7 +191,7 @@ def _refuse_swollen(path: Path, page: "TiffPage", places: Iterable[tuple[int, in
                 raise damaged(path)
 
 
-def _colours(page: "TiffPage", samples: Samples) -> Levels:
+def _colours(page: "TiffPage", samples: Samples, inks: Callable[[Samples], Samples]) -> Levels:
     """Levels in sRGB of some rows of `page`, with opacity where the file has it."""
     count = _COLOURS[page.photometric]
     spare = spread(samples[..., count:], page.bitspersample)
@@ -202,7 +204,7 @@ def _colours(page: "TiffPage", samples: Samples) -> Levels:
     if page.photometric == _WHITE_IS_ZERO:
         colours = full_of(colours) - colours
     elif page.photometric == _INKS:
-        colours = of_inks(colours)
+        colours = inks(colours)
     elif page.photometric == _LAB:
         colours = of_lab(colours)
     colours = cast("Samples", np.broadcast_to(colours, (*colours.shape[:2], 3)))

@@ -47,7 +47,9 @@ def _read(path: Path) -> Cube:
     if not there:
         raise InputError(f"there is no {path}: give the file of a light cube")
     if is_folder != (suffix == ".zarr"):
-        raise InputError(f"{path} is a {'folder' if is_folder else 'file'}, and no cube of that suffix is one")
+        raise InputError(
+            f"{path} is a {'folder' if is_folder else 'file'}, and no cube of that suffix is one: get another copy"
+        )
     read, _ = _format(suffix)
     return read(path)
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
@@ -176,11 +177,25 @@ def _kind(thing: Thing, at: Place) -> Kind:
     return suffix_entry(at, known, " or ".join(KINDS[kind].called for kind in kinds))
 
 
+def write_together(*things: tuple[Output, Thing]) -> None:
+    """Write things to outputs; none of them gets its name before all are made, nor where one cannot be."""
+    with ExitStack() as made:
+        for output, thing in things:
+            made.enter_context(_made(output, thing, {}))
+
+
 def _write(output: Output, thing: Thing, options: movies.Options) -> None:
     """Write to an output, whole or not at all, and warn the caller's caller of what was lost."""
+    with _made(output, thing, options) as lost:
+        pass
+    if lost is not None:
+        warnings.warn(lost, stacklevel=4)
+
+
+@contextmanager
+def _made(output: Output, thing: Thing, options: movies.Options) -> Iterator[Warning | None]:
+    """Make what gets its name at the end, and yield what was lost."""
     at, row = place(output.path), KINDS[output.kind]
     write = row.writer(at)
     with written_whole(at, overwrite=output.overwrite, replaceable=row.replaceable) as fresh:
-        lost = write(fresh, thing, **options)
-    if lost is not None:
-        warnings.warn(lost, stacklevel=4)
+        yield write(fresh, thing, **options)

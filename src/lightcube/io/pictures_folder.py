@@ -90,6 +90,8 @@ def picture_files(folder: Path) -> list[Path]:
         found = [entry for entry in visible if is_picture(entry.name) and entry.is_file()]
     if not visible:
         raise InputError(f"the folder {folder} is empty: put at least two pictures into it")
+    if not found and any(entry.name == "zarr.json" for entry in visible):
+        raise InputError(f"{folder} holds arrays, such as a cube's, not pictures: give what the cube was made from")
     if not found:
         raise InputError(
             f"there are no pictures in the folder {folder}: put in files that end with {', '.join(PICTURE_SUFFIXES)}"

@@ -2,11 +2,12 @@
 
 import json
 import os
-import tempfile
 from collections.abc import Iterator, MutableMapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
+
+from lightcube.io._workplaces import workplace
 
 #: So many answers are kept at most, each of at most so many bytes of JSON: 100 MB together. The oldest go first.
 MOST, LARGEST = 2_500, 40_000
@@ -34,9 +35,10 @@ class Remembered(MutableMapping[str, Any]):
             folder = _folder()
             folder.mkdir(parents=True, exist_ok=True)
             _make_room(folder)
-            with tempfile.NamedTemporaryFile("w", dir=folder, suffix=".part", delete=False) as file:
-                file.write(text)
-            Path(file.name).replace(_file(name))
+            with workplace(_file(name)) as made:
+                fresh = made / "answer"
+                fresh.write_text(text)
+                fresh.replace(_file(name))
 
     def __delitem__(self, name: str) -> None:
         try:
@@ -66,8 +68,8 @@ def _file(name: str) -> Path:
 
 
 def _make_room(folder: Path) -> None:
-    """Let the older half go where there is no room for one more, and with it all that was left half-written."""
+    """Let the older half go where there is no room for one more."""
     kept = sorted(folder.glob("*.json"), key=lambda path: path.stat().st_mtime)
     if len(kept) >= MOST:
-        for path in [*kept[: MOST // 2], *folder.glob("*.part")]:
+        for path in kept[: MOST // 2]:
             path.unlink(missing_ok=True)

@@ -40,6 +40,8 @@ def read_scene(path_or_name: str | Path) -> Scene:
                 f"there is no scene {str(path_or_name)!r}: give a .toml file, or one of {', '.join(scene_names())}"
             )
         path = Path(str(resources.files("lightcube.scene") / "library" / f"{path_or_name}.toml"))
+    if not path.exists():
+        raise InputError(f"there is no {path}: give a scene's .toml file, or one of {', '.join(scene_names())}")
     description = parse(read_tables(path, path.name), path.name)
     meshes = {
         shape.file: read_mesh(path.parent / shape.file, f"{path.name}: shapes.{i}.file")
