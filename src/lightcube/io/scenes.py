@@ -6,6 +6,7 @@ from importlib import resources
 from pathlib import Path
 
 from lightcube.errors import InputError
+from lightcube.io._files import refuse_gone_folder
 from lightcube.io._toml import read_tables
 from lightcube.io.meshes import read_mesh
 from lightcube.optics.checks import checked
@@ -40,8 +41,14 @@ def read_scene(path_or_name: str | Path) -> Scene:
                 f"there is no scene {str(path_or_name)!r}: give a .toml file, or one of {', '.join(scene_names())}"
             )
         path = Path(str(resources.files("lightcube.scene") / "library" / f"{path_or_name}.toml"))
-    if not path.exists():
-        raise InputError(f"there is no {path}: give a scene's .toml file, or one of {', '.join(scene_names())}")
+    try:
+        path.stat()
+    except FileNotFoundError as error:
+        refuse_gone_folder(error)
+        names = ", ".join(scene_names())
+        raise InputError(f"there is no {path}: give a scene's .toml file, or one of {names}") from error
+    except OSError:  # told where it is read
+        pass
     description = parse(read_tables(path, path.name), path.name)
     meshes = {
         shape.file: read_mesh(path.parent / shape.file, f"{path.name}: shapes.{i}.file")
