@@ -23,6 +23,7 @@ from PIL import Image
 import lightcube as lc
 from lightcube.errors import InputError
 from lightcube.io import read_stage
+from tests.hostile.documents import STAGE
 from tests.hostile.harm import harmed, harmed_inside, zip_of
 
 COUNT = int(os.environ.get("LIGHTCUBE_FUZZ", "50"))
@@ -35,21 +36,6 @@ CUBE = lc.Cube(
     GRID,
     lc.turntable(GRID, [0.0, 90.0, 200.0], elevation_deg=30, picture_shape=(4, 4)),
 )
-STAGE = """
-[cube]
-shape = [6, 5, 7]
-size_mm = 100
-[[lamp]]
-name = "lamp"
-direction = [1, 0, -0.2]
-[[screen]]
-name = "wall"
-centre_mm = [150, 0, -30]
-size_mm = [75, 75]
-[[picture]]
-file = "one.png"
-screen = "wall"
-"""
 VIEWS = 'angles_deg = [0.0, 40.5]\nelevation_deg = 35.0\nnames = ["one", "two é"]\n'
 
 

@@ -20,6 +20,7 @@ import pytest
 from PIL import Image
 
 from tests.conftest import INTERPRETED
+from tests.hostile.documents import STAGE
 
 if sys.platform == "win32":
     pytest.skip("nothing forks here", allow_module_level=True)
@@ -50,21 +51,6 @@ COMMANDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "draw cube": (("d.png",), ("draw", "given/c.zarr", "-o", "d.png")),
     "draw stage": (("d.svg",), ("draw", "given/stage.toml", "-o", "d.svg")),
 }
-STAGE = """
-[cube]
-shape = [6, 5, 7]
-size_mm = 100
-[[lamp]]
-name = "lamp"
-direction = [1, 0, -0.2]
-[[screen]]
-name = "wall"
-centre_mm = [150, 0, -30]
-size_mm = [75, 75]
-[[picture]]
-file = "photos/0.png"
-screen = "wall"
-"""
 #: What programs end with that are stopped; one that is told to end before it listens ends as the system has it.
 ENDS = {signal.SIGKILL: (0, -9), signal.SIGTERM: (0, -15, 130), signal.SIGINT: (0, 130)}
 #: Says when Python is up.
@@ -138,7 +124,7 @@ def killer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Killer]:
     photos.mkdir(parents=True)
     for index, picture in enumerate(np.random.default_rng(0).integers(60, 250, (2, 6, 6, 3), np.uint8)):
         Image.fromarray(picture).save(photos / f"{index}.png")
-    (folder / "given" / "stage.toml").write_text(STAGE)
+    (folder / "given" / "stage.toml").write_text(STAGE.replace("one.png", "photos/0.png"))
     made = Killer(folder)
     assert made(("solve", "given/photos", "-o", "given/c.zarr", *SOLVE), "here") == (0, 0), made.said()
     yield made

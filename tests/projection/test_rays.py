@@ -337,3 +337,12 @@ def test_shadow_matrices_agree_with_plain_intersection(seed: int) -> None:
             assert shadow[:2] / shadow[2] == pytest.approx([column, row], rel=1e-9, abs=1e-9)
             in_front = lamp[3] == 0 or (way @ normal) * ((corner - lamp[:3]) @ normal) > 0
             assert (shadow[2] > 0) == in_front
+
+
+def test_more_voxels_than_have_numbers_are_refused() -> None:
+    grid = Grid((2**11, 2**11, 2**10 + 1))
+    views = Views(
+        np.array([[1.0, 0, 0, 0]]), np.zeros((1, 3)), np.array([[0, 1.0, 0]]), np.array([[0, 0, -1.0]]), (1, 1)
+    )
+    with pytest.raises(InputError, match="too large for rays in any direction"):
+        Rays(grid, views)

@@ -36,8 +36,8 @@ def march(
 ) -> int:
     """Write the pieces of the rays in all lanes of `state`, as `follow` does: lane i's are ``first + i + 8 k``.
 
-    Their numbers are ``counts[met + i]``; a lane whose end is -inf has none. Returns one
-    after the last number of `places`, `shifts` and `weights` that may be written to.
+    Their numbers are ``counts[met + i]``; a lane whose end is -inf has none. Returns one after the
+    last number of `places`, `shifts` and `weights` that may be written to.
     """
     for lane in range(ABREAST):
         counts[met + lane] = follow(state, lane, size, strides, places, shifts, weights, first + lane, ABREAST)

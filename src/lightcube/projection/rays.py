@@ -1,10 +1,12 @@
 """The matrix of rays in any direction: parallel or from a point, onto screens in any position."""
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.errors import InputError
 from lightcube.kernels import rays
 from lightcube.kernels.layout import empty
 from lightcube.kernels.ray import MOST_PARTS, most_pieces
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 Floats = NDArray[np.floating[Any]]
+
+#: The kernels number them by 32 bits.
+_MOST_VOXELS = 2**32
 
 
 class Rays:
@@ -33,6 +38,11 @@ class Rays:
     shape: tuple[int, int]
 
     def __init__(self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None) -> None:
+        if math.prod(grid.shape) > _MOST_VOXELS:
+            raise InputError(
+                f"a cube of {math.prod(grid.shape):,} voxels is too large for rays in any direction, which number "
+                f"{_MOST_VOXELS:,} at most: make it smaller, or let screens stand upright with rows a slice apart"
+            )
         rows, columns = views.picture_shape
         sides_mm = grid.sides_mm
         middle = np.array(grid.shape[::-1]) / 2
