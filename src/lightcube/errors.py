@@ -5,24 +5,26 @@ from unicodedata import category
 
 #: Who asks, in a URL: up to the last @ before its path, or behind a colon in a path too, where that is no port.
 _LOGIN = re.compile(r"(?<=://)(?:[^\s/?#]*@|[^\s/?#:@]*:(?!\d*/)[^\s@]*@)")
+#: What is asked for, in a URL: signed ones have keys there. What ends a sentence is no part of it.
+_QUERY = re.compile(r"(://[^\s?#]*\?)[^\s'\"<>]*[^\s'\"<>:,;.)]")
 
 
 def shown(text: str) -> str:
     r"""`text` with nothing in it that a terminal or a reader could be led astray by.
 
     Control characters, line ends, marks that reverse the direction of writing or have no width, and bytes of a file's
-    name that are no UTF-8 are written as Python writes them: ``\x1b``, ``\u202e``. Names and passwords in URLs
+    name that are no UTF-8 are written as Python writes them: ``\x1b``, ``\u202e``. Names, passwords and queries of URLs
     are left out.
     """
-    text = without_login(text)
+    text = without_secrets(text)
     if text.isprintable():
         return text
     return "".join(each if each.isprintable() or category(each) == "Zs" else _escaped(each) for each in text)
 
 
-def without_login(text: str) -> str:
-    """`text` with three stars in place of the names and passwords in its URLs."""
-    return _LOGIN.sub("***@", text) if "://" in text else text
+def without_secrets(text: str) -> str:
+    """`text` with three stars in place of the names, passwords and queries in its URLs."""
+    return _QUERY.sub(r"\1***", _LOGIN.sub("***@", text)) if "://" in text else text
 
 
 def encodable(text: str) -> str:

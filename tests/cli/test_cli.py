@@ -305,6 +305,21 @@ MISTAKEN = [
         for verb in ("solve", "check")
     ),
     ("trace", "{tmp}/none.toml", "there is no {tmp}/none.toml: give a scene's .toml file, or one of "),
+    *(
+        (verb, "{tmp}/none.toml", "there is no {tmp}/none.toml: give a stage's file or pic")
+        for verb in ("solve", "check")
+    ),
+    *(
+        (verb, given, f"{given} is {kind}, no cube: make one ")
+        for verb in ("play", "info", "score", "view", "report")
+        for given, kind in (
+            ("{tmp}/photos", "pictures"),
+            ("{tmp}/photos/1.PNG", "pictures"),
+            ("{tmp}/film.mp4", "pictures"),
+            ("{tmp}/room.toml", "a stage's or a scene's file"),
+        )
+    ),
+    ("play", "{tmp}/empty", "{tmp}/empty has no suffix that a cube can have: "),
     *((verb, "{tmp}/file.zarr", "{tmp}/file.zarr is a file, and no cube ") for verb in ("play", "info", "score")),
 ]
 
@@ -316,8 +331,12 @@ def test_what_stands_in_the_wrong_place_is_named(  # type: ignore[no-untyped-def
     (tmp_path / "cube.zarr").mkdir()
     (tmp_path / "cube.zarr" / "zarr.json").write_text("{}")
     (tmp_path / "file.zarr").write_text("x")
-    target = {"solve": ("-o", "{tmp}/a.zarr"), "trace": ("-o", "{tmp}/a"), "play": ("-o", "{tmp}/a.gif")}.get(verb, ())
-    done = run(*[word.format(tmp=tmp_path) for word in (verb, given, *target)])
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "photos").mkdir()
+    (tmp_path / "photos" / "1.PNG").touch()
+    target = {"solve": ("-o", "{tmp}/a.zarr"), "trace": ("-o", "{tmp}/a"), "play": ("-o", "{tmp}/a.gif")}
+    target |= dict.fromkeys(("view", "report"), ("-o", "{tmp}/a.html"))
+    done = run(*[word.format(tmp=tmp_path) for word in (verb, given, *target.get(verb, ()))])
     assert done.code == 2, done.err
     assert any(line.startswith(f"lightcube: {said.format(tmp=tmp_path)}") for line in done.lines), done.err
 

@@ -1,10 +1,14 @@
 """What states more than it holds, and what is no file: one sentence, little memory, and nothing is left behind."""
 
+import gzip
 import json
 import subprocess
 import sys
 import threading
 import warnings
+import zipfile
+import zlib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,26 +21,52 @@ from zarr.codecs import BloscCodec, GzipCodec, ZstdCodec
 import lightcube as lc
 from lightcube.errors import InputError
 from lightcube.io import read_pictures
-from tests.hostile.bombs import CUBE, all_bombs
+from tests.hostile.bombs import CUBE, all_bombs, zip_of_blanks
+from tests.hostile.pictures import blanks
 
 #: More than it takes to refuse what is not bounded, in megabytes.
 MOST_MB = 500
 
 
+class Bomber:
+    """The program of `tests.hostile.bombs`, which loads once what each of the commands needs."""
+
+    def __init__(self, folder: Path) -> None:
+        self._said = (folder / "said").open("w+")
+        self._program = subprocess.Popen(
+            [sys.executable, "-m", "tests.hostile.bombs", str(folder / "all"), "-"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._said,
+            text=True,
+        )
+
+    def __call__(self, name: str) -> dict[str, Any]:
+        """What a bomb comes to, given to the first of the commands that would read it."""
+        assert self._program.stdin is not None
+        assert self._program.stdout is not None
+        self._program.stdin.write(f"{name}\n")
+        self._program.stdin.flush()
+        answer = self._program.stdout.readline()
+        self._said.seek(0)
+        assert answer, self._said.read()
+        return dict(json.loads(answer))
+
+    def finish(self) -> None:
+        self._program.communicate()
+        self._said.close()
+
+
 @pytest.fixture(scope="module")
-def said(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
-    """What each comes to, given to the first of the commands that would read it."""
-    folder = tmp_path_factory.mktemp("bombs")
-    done = subprocess.run(
-        [sys.executable, "-m", "tests.hostile.bombs", str(folder / "all"), "first"], capture_output=True, text=True
-    )
-    assert not done.returncode, done.stderr
-    return {found["name"]: found for found in map(json.loads, done.stdout.splitlines())}
+def bomber(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bomber]:
+    made = Bomber(tmp_path_factory.mktemp("bombs"))
+    yield made
+    made.finish()
 
 
 @pytest.mark.parametrize("name", all_bombs())
-def test_one_sentence_and_little_memory(name: str, said: dict[str, dict[str, Any]]) -> None:
-    found = said[name]
+def test_one_sentence_and_little_memory(name: str, bomber: Bomber) -> None:
+    found = bomber(name)
     text = found["said"]
     assert found["code"] == 2, found
     assert text.startswith("lightcube: "), text
@@ -44,6 +74,18 @@ def test_one_sentence_and_little_memory(name: str, said: dict[str, dict[str, Any
     assert "Traceback" not in text
     assert not found["left"]
     assert found["megabytes"] <= MOST_MB
+
+
+def test_blanks_are_what_they_say() -> None:
+    """Whoever unpacks them finds nothing wrong, but that it is much."""
+    assert zlib.decompress(blanks(3_000_000)) == bytes(3_000_000)
+    assert gzip.decompress(blanks(2_000_000, 31, b"ab")) == b"ab" + bytes(2_000_000)
+
+
+def test_an_archive_of_blanks_is_whole(tmp_path: Path) -> None:
+    with zipfile.ZipFile(zip_of_blanks(tmp_path / "x.zip", "b", 2_000_000, {"a": b"A"}, b"B")) as archive:
+        assert archive.testzip() is None
+        assert archive.read("b") == b"B" + bytes(2_000_000)
 
 
 @pytest.mark.parametrize("suffix", [".png", ".tif", ".webp", ".jpg", ".gif"])

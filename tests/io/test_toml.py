@@ -9,6 +9,8 @@ from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io import read_pictures, read_scene, read_stage
+from lightcube.io._bounds import MOST_PICTURES
+from lightcube.io._toml import read_tables
 
 SCENE = """[camera]
 type = "shadow"
@@ -62,6 +64,9 @@ def test_a_byte_order_mark_and_lines_of_windows_do_no_harm(read: Callable[[Calla
         (b"[" + b"'a' . " * 150_000 + b"a]", "a key of it has more than 32 dots"),
         (b"x = { " + b'"a".' * 150_000 + b"a = 1}", "a key of it has more than 32 dots"),
         (b"#" * (2 << 20), "is larger than 1 MiB"),
+        (b"x = [" + b"1," * 250_000 + b"]", "holds more values and keys"),
+        (b"a.b.c.d.e.f.g.h = 1\n" * 30_000, "holds more values and keys"),
+        (b"[[a]]\n" * 110_000, "holds more values and keys"),
         ("x = 1".encode("utf-16"), "line 1 is not in UTF-8, save it as UTF-8"),
         ("x = 1".encode("utf-16-le"), "save it as UTF-8"),
         (b"# a\n# \xff", "line 2 is not in UTF-8, save it as UTF-8"),
@@ -81,3 +86,14 @@ def test_what_is_wrong_is_one_short_sentence(
     assert said in str(caught.value)
     assert len(str(caught.value)) < 400
     assert str(caught.value).isprintable()
+
+
+def test_a_file_of_as_many_pictures_as_there_can_be_is_read(tmp_path: Path) -> None:
+    """Angles with all their digits and names of cameras; or a table for each picture of a stage."""
+    file = tmp_path / "x.toml"
+    angles = [360 / 7 * index for index in range(MOST_PICTURES)]
+    file.write_text(f"angles_deg = {angles}\nnames = {[f'IMG_{index:05}.edited, 2' for index in range(MOST_PICTURES)]}")
+    assert read_tables(file, "x")["angles_deg"] == angles
+    shot = '[[picture]]\nfile = "photos/IMG_0001.jpeg"\nscreen = "wall"\nangle_deg = 12.25\nlamps = ["sun", "bulb"]\n'
+    file.write_text(shot * MOST_PICTURES)
+    assert len(read_tables(file, "x")["picture"]) == MOST_PICTURES

@@ -26,10 +26,11 @@ import os, signal, sys
 from pathlib import Path
 from lightcube.io._files import written_whole
 
-with written_whole(Path(sys.argv[1]), overwrite=True, replaceable=lambda path: True) as fresh:
+with written_whole(Path(sys.argv[1]), overwrite=True, replaceable=None) as (fresh, give_its_name):
     fresh.write_text("half of it")
     print("begun", flush=True)
     {then}
+    give_its_name()
 """
 
 
@@ -49,8 +50,9 @@ def hidden(folder: Path) -> list[str]:
 
 
 def write(path: Path, text: str = "whole") -> None:
-    with written_whole(path, overwrite=True, replaceable=lambda path: True) as fresh:
+    with written_whole(path, overwrite=True, replaceable=None) as (fresh, give_its_name):
         fresh.write_text(text)
+        give_its_name()
 
 
 def test_what_a_killed_program_left_goes_with_the_next_that_writes_there(tmp_path: Path) -> None:
@@ -216,7 +218,7 @@ def test_names_of_any_length_have_workplaces(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="there is no folder"):
-        write(tmp_path / "file" / "x.txt")
+        lc.save("<p>", tmp_path / "file" / "x.html")
 
 
 @pytest.mark.parametrize(("number", "fails"), [(errno.EINVAL, False), (errno.ENOTSUP, False), (errno.EIO, True)])
@@ -260,3 +262,36 @@ def test_of_several_none_is_named_where_one_cannot_be_made(tmp_path: Path, faili
     made = {each.name: each.read_bytes() for each in tmp_path.iterdir()}
     assert sorted(made) == sorted(own)
     assert b"old" not in made.values()
+
+
+KILLED_BETWEEN = """
+import os, signal, sys
+from pathlib import Path
+from lightcube.io import _files
+from lightcube.io.outputs import Output, write_together
+
+real, left = _files.put, int(sys.argv[2])
+
+def put(*places):
+    global left
+    real(*places)
+    left -= 1
+    if not left:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+_files.put = put
+folder = Path(sys.argv[1])
+write_together((Output(folder / "a.html", "page"), "<p>"), (Output(folder / "b.svg", "drawing"), "<svg>"))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="nobody is killed like that here")
+@pytest.mark.parametrize("named", [1, 2])
+def test_of_several_killed_between_their_names_the_same_again_finishes(tmp_path: Path, named: int) -> None:
+    killed = subprocess.run([sys.executable, "-c", KILLED_BETWEEN, str(tmp_path), str(named)], check=False)
+    assert killed.returncode == -signal.SIGKILL
+    assert (tmp_path / "a.html").exists()
+    assert (tmp_path / "b.svg").exists() is (named == 2)
+    outputs = Output(tmp_path / "a.html", "page"), Output(tmp_path / "b.svg", "drawing")
+    write_together(*zip(outputs, ("<p>", "<svg>"), strict=True))
+    assert {each.name: each.read_text() for each in tmp_path.iterdir()} == {"a.html": "<p>", "b.svg": "<svg>"}

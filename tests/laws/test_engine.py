@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lightcube.errors import InputError
 from lightcube.kernels.layout import (
     columns_from_pictures,
     columns_from_volume,
@@ -13,6 +14,7 @@ from lightcube.kernels.layout import (
     volume_from_columns,
 )
 from lightcube.optics.grid import Grid, raster_shape
+from lightcube.optics.rig import turntable
 from lightcube.optics.views import Views, turntable_views
 from lightcube.projection.projector import Projector, dot_test
 from lightcube.projection.rays import Rays
@@ -188,3 +190,10 @@ def test_the_projector_is_its_engine(engine: type, geometry: Geometry) -> None:
     columns = columns_from_volume(volume).reshape(A.shape[1], -1)
     np.testing.assert_allclose(A.as_linear_operator() @ columns, A @ columns, rtol=1e-12)
     assert len(A.view_of_row) == A.shape[0]
+
+
+@pytest.mark.parametrize("columns", [0, 1001, 2**62])
+def test_a_dot_test_of_more_columns_than_it_needs_is_refused(columns: int) -> None:
+    grid = Grid((2, 3, 4))
+    with pytest.raises(InputError, match=f"takes 1 to 1000 columns .*, not {columns} and 0"):
+        dot_test(Projector(grid, turntable(grid, [20.0])), columns)

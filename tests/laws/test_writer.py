@@ -5,6 +5,7 @@ import json
 import os
 import re
 import resource
+import shutil
 import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -219,9 +220,58 @@ def test_a_folder_of_something_else_is_never_replaced(tmp_path: Path, kind: Kind
     (path / "zarr.json").write_text('{"attributes": {"another": 1}}')
     before = content(tmp_path)
     for refused in refusals(kind, suffix, path, overwrite=True):
-        with pytest.raises(InputError, match=r"^[^\n]*is a folder of something else and is not overwritten[^\n]*$"):
+        with pytest.raises(
+            InputError, match=r"^[^\n]*is a folder of something else and is not|is a folder, and [^\n]*$"
+        ):
             refused()
     assert content(tmp_path) == before
+
+
+@every_row
+def test_no_folder_takes_the_place_of_a_file_and_no_file_that_of_a_folder(
+    tmp_path: Path, kind: Kind, suffix: str
+) -> None:
+    """Even of one that is empty, or is of the kind but for its suffix."""
+    example, path = EXAMPLES[kind], tmp_path / f"a{suffix}"
+    save(example.made(0, suffix), path)
+    is_file = path.is_file()
+    path.rename(tmp_path / "kept")
+    for there in ("empty", "cube", "pictures") if is_file else ("file",):
+        if there == "empty":
+            path.mkdir()
+        elif there == "file":
+            path.write_bytes(b"")
+        else:
+            save(
+                a_cube(0, "") if there == "cube" else some_pictures(0, ""), tmp_path / f"x{'.zarr' * (there == 'cube')}"
+            )
+            next(tmp_path.glob("x*")).rename(path)
+        before = content(tmp_path)
+        for refused in refusals(kind, suffix, path, overwrite=True):
+            with pytest.raises(InputError, match=r"is a (folder|file), and what is written is a (folder|file): "):
+                refused()
+        assert content(tmp_path) == before
+        path.unlink() if there == "file" else shutil.rmtree(path)
+
+
+@every_row
+def test_what_a_killed_program_has_finished_is_recognised(tmp_path: Path, kind: Kind, suffix: str) -> None:
+    """Its workplace is still there: the same again succeeds and tidies, anything else is refused as ever."""
+    example, path = EXAMPLES[kind], tmp_path / f"a{suffix}"
+    old, new = (example.made(number, suffix) for number in (0, 1))
+    save(old, path)
+    before = content(tmp_path)
+    for thing in (old, new):
+        workplace = tmp_path / f".lightcube-a{suffix}-abcdefgh"
+        workplace.mkdir()
+        (workplace / "owner").touch()
+        Output(path, kind).check()
+        if thing is old:
+            assert save(example.made(0, suffix), path) == path
+        else:
+            with pytest.raises(InputError, match="exists already"):
+                save(new, path)
+        assert content(tmp_path) == before
 
 
 @every_row

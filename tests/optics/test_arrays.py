@@ -160,3 +160,16 @@ def test_read_only_volumes_are_no_new_kind_to_the_compiler() -> None:
         kinds = list(loop.signatures)
         assert np.array_equal(A.forward(locked(x)), first)
         assert loop.signatures == kinds
+
+
+@pytest.mark.parametrize("field", ["scores", "provenance"])
+def test_what_a_cube_says_is_not_shared_with_the_caller(field: str) -> None:
+    grid, numbers = lc.Grid((2, 3, 4)), np.arange(3.0)
+    said: dict[str, Any] = {"a": 1, "in": {"b": [1, {"c": 2}], "d": ([3],)}, "array": numbers}
+    as_it_was = repr(said)
+    given: dict[str, Any] = {field: said}
+    cube = lc.Cube(np.zeros((3, 2, 3, 4), np.float32), grid, lc.turntable(grid, [0.0]), **given)
+    said["in"]["b"][1]["c"] = said["in"]["d"][0][0] = 9
+    said["in"]["e"], said["a"] = 1, 2
+    numbers[0] = 7.0
+    assert repr(getattr(cube, field)) == as_it_was

@@ -28,9 +28,11 @@ from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import targets_of
 from lightcube.report.html import image
-from lightcube.report.measuring import EXACT, MOST, chosen
+from lightcube.report.measuring import EXACT, MOST, chosen, measure
 from lightcube.report.page import digest
 from lightcube.scoring.metrics import score
+from lightcube.verbs import reporting
+from lightcube.verbs.refitting import wanted_of
 from lightcube.verbs.reproducing import reproducing
 from tests.conftest import INTERPRETED
 from tests.helpers.browser import opened
@@ -461,3 +463,19 @@ def test_the_axis_of_lamp_powers_can_be_read(low: float, high: float) -> None:
     drawing = lamp_powers(np.arange(1.0, 4.0), np.array([[low], [high], [high]]), high, "lamps")
     labels = [float(said) for said in re.findall(r'text-anchor="end">([\d.]+)<', drawing)]
     assert len([each for each in labels if low / 1.3 < each < 1.3 * high]) >= 2
+
+
+@pytest.mark.parametrize("compared", [0, 257])
+def test_no_login_and_no_signature_of_a_url_is_in_a_report(
+    pictures: Path, monkeypatch: pytest.MonkeyPatch, compared: int
+) -> None:
+    """The command that makes the cube again says that they are to be put in."""
+    url, cube = "https://me:secret@host/photos.gif?key=secret&sig=secret", made()
+    targets = wanted_of(cube, None)
+    monkeypatch.setattr(reporting, "wanted_of", lambda *_: targets)
+    monkeypatch.setattr(reporting, "measure", lambda *_: replace(measure(*_), apart=compared))
+    text = reporting.report(cube, "https://me:secret@host/c.npz?sig=secret", url, lambda _: None).text
+    assert "secret" not in text
+    assert "https://***@host/photos.gif?***" in text
+    assert "put them in again" in text
+    assert "the pictures in photos.gif, which" in text

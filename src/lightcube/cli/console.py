@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.text import Text
 
 from lightcube import events
-from lightcube.errors import shown, without_login
+from lightcube.errors import shown, without_secrets
 from lightcube.events import Said, Tell
 
 
@@ -70,7 +70,7 @@ def _plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
     if isinstance(value, str):
-        return without_login(value)
+        return without_secrets(value)
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

@@ -31,6 +31,8 @@ class Take(Protocol):
 
 
 _ORIENTATION = 0x0112
+#: How many rows of a picture are worked on at a time: what a large one takes in between is little.
+ROWS = 256
 
 #: What is raised over bytes that are not what they should be, beside what decoders raise of their own.
 _WRONG = (
@@ -141,11 +143,15 @@ def levels_of_image(path: Path, image: Image.Image) -> Levels:
 
 
 def colours_of_image(image: Image.Image) -> Levels:
-    """Levels of what `image` has loaded; of inks by its profile, if it has one of theirs."""
+    """Levels of what `image` has loaded; of inks by its profile, if it has one of theirs. Some rows at a time."""
     turn = turn_of_profile(image.info.get("icc_profile"), "CMYK") if image.mode == "CMYK" else None
-    if turn:
-        return turn(np.asarray(image))
-    return np.asarray(image.convert("RGBA" if image.has_transparency_data else "RGB"))
+    mode = "RGBA" if image.has_transparency_data else "RGB"
+    levels = np.empty((image.height, image.width, len(mode)), np.uint8)
+    for first in range(0, image.height, ROWS):
+        last = min(first + ROWS, image.height)
+        part = image.crop((0, first, image.width, last))
+        levels[first:last] = turn(np.asarray(part)) if turn else np.asarray(part.convert(mode))
+    return levels
 
 
 def orientation_of(image: Image.Image) -> int:

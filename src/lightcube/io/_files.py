@@ -9,12 +9,15 @@ from typing import TypeVar
 
 from lightcube.errors import InputError
 from lightcube.io._places import Place, exists, is_folder, name_of, send
-from lightcube.io._workplaces import put, workplace
+from lightcube.io._workplaces import is_same, put, settle, was_begun, workplace
 
 Entry = TypeVar("Entry")
 
 #: Called with a path where nothing is yet, a thing, and what may be said of it; returns what to warn of, if anything.
 Writer = Callable[..., Warning | None]
+
+#: Tells of an existing folder whether one that is written may take its place; None where a file is written.
+Replaceable = Callable[[Place], bool] | None
 
 #: What the name of a cube that is still being made ends with.
 PARTIAL_SUFFIX = ".partial"
@@ -34,7 +37,7 @@ def suffix_entry(path: Place, table: Mapping[str, Entry], what: str) -> Entry:
     raise InputError(f"{path} has no suffix that {what} can have: use {which}")
 
 
-def check_free(path: Place, *, overwrite: bool, replaceable: Callable[[Place], bool]) -> None:
+def check_free(path: Place, *, overwrite: bool, replaceable: Replaceable, at_last: bool = False) -> None:
     """Raise `InputError` unless `path` can be written. At a URL, folders on the way are made where there are any.
 
     Parameters
@@ -43,16 +46,24 @@ def check_free(path: Place, *, overwrite: bool, replaceable: Callable[[Place], b
         Whether something that stands there may be replaced.
     replaceable
         Tells of an existing folder whether it is of the kind that is about to be written: no other folder is
-        ever replaced.
+        ever replaced. None where a file is written: no folder takes the place of a file, and no file that of a folder.
+    at_last
+        Whether it is about to get its name. Before that, what stands there may be what a killed program of the same
+        command has finished: `written_whole` sees whether it is.
     """
     with system_errors(path, "writing"):
         taken = exists(path)
-        other_folder = taken and is_folder(path) and not replaceable(path)
+        folder = taken and is_folder(path)
+        other_folder = replaceable is not None and folder and not replaceable(path)
     if isinstance(path, Path) and not path.parent.is_dir():
         raise InputError(f"there is no folder {path.parent} to write {path.name} into: make it first")
+    if folder and replaceable is None:
+        raise InputError(f"{path} is a folder, and what is written is a file: give another name")
+    if taken and not folder and replaceable is not None:
+        raise InputError(f"{path} is a file, and what is written is a folder: give another name")
     if other_folder:
         raise InputError(f"{path} is a folder of something else and is not overwritten: give another name")
-    if taken and not overwrite:
+    if taken and not overwrite and (at_last or not (isinstance(path, Path) and was_begun(_led_to(path)))):
         raise InputError(f"{path} exists already: give another name, or overwrite it (--overwrite)")
 
 
@@ -81,25 +92,45 @@ def refuse_gone_folder(error: OSError) -> None:
 
 
 @contextmanager
-def written_whole(path: Place, *, overwrite: bool, replaceable: Callable[[Place], bool]) -> Iterator[Path]:
-    """Yield a path beside `path`, in a folder of its own; what was written there takes its place at the end.
+def written_whole(
+    path: Place, *, overwrite: bool, replaceable: Replaceable
+) -> Iterator[tuple[Path, Callable[[], None]]]:
+    """Yield a path beside `path`, in a folder of its own, and what gives it its name when it is whole.
 
     Nothing is left behind when the body raises, and what a killed program leaves is removed by the next one that writes
     into the same folder. An older target stays until the new one is whole and on the disk. For a URL the folder is a
-    temporary one.
+    temporary one. What a killed program has put there already, the very same, stays. `check_free` goes before.
     """
-    check_free(path, overwrite=overwrite, replaceable=replaceable)
+
+    def check_at_last() -> None:
+        check_free(path, overwrite=overwrite, replaceable=replaceable, at_last=True)
+
     if not isinstance(path, Path):
         with tempfile.TemporaryDirectory(prefix="lightcube-", ignore_cleanup_errors=True) as folder:
-            fresh = Path(folder) / name_of(path)
-            with system_errors(fresh, "writing"):
-                yield fresh
-            check_free(path, overwrite=overwrite, replaceable=replaceable)
-            send(fresh, path)
+            sent, url = Path(folder) / name_of(path), path
+
+            def send_it() -> None:
+                check_at_last()
+                send(sent, url)
+
+            with system_errors(sent, "writing"):
+                yield sent, send_it
         return
-    path = path.resolve() if path.is_symlink() else path  # what a link leads to is written, and the link stays
-    with system_errors(path, "writing"), workplace(path) as made:
-        fresh = made / path.name
-        yield fresh
-        check_free(path, overwrite=overwrite, replaceable=replaceable)
-        put(fresh, path, made / "old")
+    target = _led_to(path)
+
+    def put_it() -> None:
+        with system_errors(target, "writing"):
+            if not overwrite and is_same(fresh, target):
+                settle(target.parent)
+                return
+            check_at_last()
+            put(fresh, target, made / "old")
+
+    with system_errors(target, "writing"), workplace(target) as made:
+        fresh = made / target.name
+        yield fresh, put_it
+
+
+def _led_to(path: Path) -> Path:
+    """What is written: what a link leads to, and the link stays."""
+    return path.resolve() if path.is_symlink() else path

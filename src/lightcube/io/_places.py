@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import IO, Any, TypeGuard
 from uuid import uuid4
 
-from lightcube.errors import InputError, without_login
+from lightcube.errors import InputError, without_secrets
 from lightcube.io._bounds import check_file
 from lightcube.io._workplaces import settle
 
@@ -377,7 +377,7 @@ def _is_refusal(error: BaseException | None) -> TypeGuard[BaseException]:
 
 def _detail(error: Exception, url: str) -> str:
     """What a library says; of a URL with a password only what kind of error it is, for it may repeat parts of it."""
-    if without_login(url) != url:
+    if without_secrets(url) != url:
         return type(error).__name__
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return " ".join(said.split())[:150] or type(error).__name__

@@ -60,7 +60,9 @@ def read_png(path: Path, budget: Budget, take: Take, *, single: bool) -> None:
         space = _space(before, image.info.get("icc_profile"))
         if b"acTL" not in before:
             budget.spend(path, rows, columns)
-            take(upright(_levels(path, data, image), orientation), space)
+            levels = _levels(path, data, image)
+            image.close()  # what it has loaded is no longer needed, and much of a large one
+            take(upright(levels, orientation), space)
             return
     stated = int.from_bytes(before[b"acTL"][:4], "big")
     if single and stated > 1:

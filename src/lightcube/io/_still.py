@@ -89,7 +89,10 @@ def _read_others(path: Path, image: Image.Image, budget: Budget, take: Take, *, 
         levels = levels_of_image(path, image)
         if image.format == "GIF":  # Pillow lets the screen grow where a later picture goes beyond it
             levels = levels[:rows, :columns]
-        take(upright(levels, orientation_of(image)), _space(path, image))
+        orientation, space = orientation_of(image), _space(path, image)
+        if single or len(views) == 1:
+            image.close()  # what it has loaded is no longer needed, and much of a large one
+        take(upright(levels, orientation), space)
 
 
 def _views(image: Image.Image) -> list[int]:

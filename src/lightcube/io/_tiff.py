@@ -16,7 +16,7 @@ from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io._bounds import Budget, unpacks_beyond
-from lightcube.io._decode import Take, colours_of_image, damaged, refuse_cut_short, upright
+from lightcube.io._decode import ROWS, Take, colours_of_image, damaged, refuse_cut_short, upright
 from lightcube.io._frames import Levels
 from lightcube.io._samples import Samples, full_of, of_inks, of_lab, spread, with_opacity
 from lightcube.io._spaces import space_of_profile
@@ -48,7 +48,6 @@ _NUMBERS = (
     *("imagewidth", "imagelength", "imagedepth", "samplesperpixel", "bitspersample", "sampleformat"),
     *("photometric", "compression", "predictor", "planarconfig"),
 )
-_ROWS = 256
 _DEFLATE, _OLD_DEFLATE, _LZMA = 8, 32946, 34925
 #: What packers may leave behind the last pixel of a strip.
 _SLACK = 1 << 16
@@ -96,15 +95,23 @@ def _levels(path: Path, page: "TiffPage") -> Levels:
     unpacked = _is_unpacked(page)
     for_pillow = page.compression in _OF_LIBTIFF or page.photometric == _YCBCR
     if page.bitspersample <= 8 and (for_pillow or (page.compression in _SIMPLE and not unpacked)):
-        levels = _levels_of_pillow(path, page.index)
-        if levels is not None:
-            return levels
+        unpacked_there = _levels_of_pillow(path, page.index)
+        if unpacked_there is not None:
+            return unpacked_there
     if not unpacked:
         raise _cannot_unpack(path, page)
     samples = _samples(path, page)
     inks = (page.photometric == _INKS and turn_of_profile(page.tags.valueof(_PROFILE), "CMYK")) or of_inks
-    rows = [_colours(page, samples[first : first + _ROWS], inks) for first in range(0, len(samples), _ROWS)]
-    return upright(cast("Levels", np.concatenate(rows)), page.tags.valueof(_ORIENTATION, default=1))
+    levels: Levels | None = None
+    for first in range(0, len(samples), ROWS):
+        part = _colours(page, samples[first : first + ROWS], inks)
+        if levels is None:  # what has the same samples takes their place
+            whole = (*samples.shape[:2], part.shape[2])
+            alike = (whole, part.dtype) == (samples.shape, samples.dtype) and samples.flags.writeable
+            levels = cast("Levels", samples if alike else np.empty(whole, part.dtype))
+        levels[first : first + ROWS] = part
+    assert levels is not None  # noqa: S101 - a page has rows
+    return upright(levels, page.tags.valueof(_ORIENTATION, default=1))
 
 
 def _cannot_unpack(path: Path, page: "TiffPage") -> InputError:

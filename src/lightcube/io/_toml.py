@@ -11,6 +11,8 @@ from lightcube.io._files import system_errors
 
 #: More than a file that people write ever has; and tables in tables, where reading a key takes time with their square.
 _MOST_BYTES, _MOST_PARTS = 1 << 20, 32
+#: Reading takes time with what stands between values and the parts of keys; ten thousand pictures of a stage have half.
+_MARKS, _MOST_MARKS = b"=,.[", 200_000
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _DEEP_KEY = re.compile(rf"(?:^|[{{,\[])[ \t]*+{_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS},}}", re.MULTILINE)
@@ -28,6 +30,8 @@ def read_tables(file: Path, called: str) -> dict[str, Any]:
         data = opened.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
         raise InputError(f"{called} is larger than {_MOST_BYTES >> 20} MiB: make it shorter")
+    if sum(map(data.count, _MARKS)) > _MOST_MARKS:
+        raise InputError(f"{called} holds more values and keys than one of 10,000 pictures: make it shorter")
     try:
         text = data.removeprefix(_BYTE_ORDER_MARK).decode("utf-8")
     except UnicodeDecodeError as error:

@@ -6,6 +6,7 @@ takes the lock away however a program ends, so the next one that writes there kn
 
 import ctypes
 import errno
+import filecmp
 import os
 import re
 import shutil
@@ -18,8 +19,8 @@ from pathlib import Path
 if sys.platform != "win32":
     import fcntl
 
-#: What `tempfile` makes of the prefix of a workplace.
-_NAME = re.compile(r"\.lightcube-.*-[a-z0-9_]{8}", re.DOTALL)
+#: What `tempfile` makes of the prefix of a workplace: so many letters more.
+_NAME, _RANDOM = re.compile(r"\.lightcube-.*-[a-z0-9_]{8}", re.DOTALL), 8
 _MARK = "owner"
 #: Of the target's name, so that the workplace's is none that is too long.
 _LETTERS = 50
@@ -48,18 +49,41 @@ def sweep(folder: Path) -> None:
                 _remove_deserted(found)
 
 
-def _remove_deserted(found: Path) -> None:
+def was_begun(target: Path) -> bool:
+    """Whether a program that was killed, or is about to begin, has a workplace for `target`."""
+    prefix = _prefix(target)
+    with suppress(OSError):
+        for found in target.parent.iterdir():
+            if _NAME.fullmatch(found.name) and found.name[:-_RANDOM] == prefix:
+                with _deserted(found) as deserted:
+                    if deserted:
+                        return True
+    return False
+
+
+@contextmanager
+def _deserted(found: Path) -> Iterator[bool]:
+    """Tell whether the program of a workplace is gone, or has put no mark there yet."""
     try:
         owner = os.open(found / _MARK, os.O_RDWR)
-    except FileNotFoundError:  # killed before there was a mark; or it is about to be there, and then another is made
-        with suppress(OSError):
-            found.rmdir()
+    except FileNotFoundError:
+        yield True
         return
     except OSError:
+        yield False
         return
-    if _locked(owner, wait=False):
-        _clear(found)
-    os.close(owner)
+    try:
+        yield _locked(owner, wait=False)
+    finally:
+        os.close(owner)
+
+
+def _remove_deserted(found: Path) -> None:
+    with suppress(OSError), _deserted(found) as deserted:
+        if deserted and (found / _MARK).exists():
+            _clear(found)
+        elif deserted:  # killed before there was a mark; or it is about to be there, and then another is made
+            found.rmdir()
 
 
 def _clear(made: Path) -> None:
@@ -74,10 +98,15 @@ def _clear(made: Path) -> None:
         made.rmdir()
 
 
+def _prefix(target: Path) -> str:
+    """What the names of workplaces for `target` begin with."""
+    return f".lightcube-{target.name[:_LETTERS]}-"
+
+
 def _made(target: Path) -> tuple[Path, int]:
     """A new workplace and its open mark, locked."""
     while True:
-        made = Path(tempfile.mkdtemp(prefix=f".lightcube-{target.name[:_LETTERS]}-", dir=target.parent))
+        made = Path(tempfile.mkdtemp(prefix=_prefix(target), dir=target.parent))
         with suppress(FileNotFoundError):  # it was swept before it was marked
             owner = os.open(made / _MARK, os.O_CREAT | os.O_RDWR, 0o600)
             if _locked(owner, wait=True) and (made / _MARK).exists():
@@ -114,6 +143,14 @@ def put(fresh: Path, path: Path, aside: Path) -> None:
                 aside.rename(path)
             raise
     settle(path.parent)
+
+
+def is_same(one: Path, other: Path) -> bool:
+    """Whether two files hold the same bytes, or two folders the same files."""
+    if one.is_dir() and other.is_dir():
+        names = [{each.relative_to(folder) for each in folder.rglob("*")} for folder in (one, other)]
+        return names[0] == names[1] and all(is_same(one / name, other / name) for name in names[0])
+    return one.is_file() and other.is_file() and filecmp.cmp(one, other, shallow=False)
 
 
 def settle(path: Path) -> None:

@@ -34,9 +34,27 @@ def read_cube(path: str | Path) -> Cube:
         Where there is no such file, it is no light cube, it is damaged, or a newer version wrote it.
     """
     at = place(path)
-    _suffix(at)
+    try:
+        _suffix(at)
+    except InputError:
+        _refuse_pictures(at)
+        raise
     with fetched(at) as local:
         return _read(local)
+
+
+def _refuse_pictures(at: Place) -> None:
+    """Raise `InputError` where what is given as a cube is what cubes are made from."""
+    from lightcube.io.pictures import is_pictures  # here: who reads a cube waits for no reader of pictures
+
+    with system_errors(at, "reading"):
+        pictures = is_pictures(at)
+    if pictures:
+        raise InputError(f"{at} is pictures, no cube: make one of them first, as in lightcube solve {name_of(at)}")
+    if name_of(at).lower().endswith(".toml"):
+        raise InputError(
+            f"{at} is a stage's or a scene's file, no cube: make one first, by lightcube solve, of a scene after trace"
+        )
 
 
 def _read(path: Path) -> Cube:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.io import cubes, documents, movies
-from lightcube.io._files import Writer, check_free, suffix_entry, written_whole
+from lightcube.io._files import Replaceable, Writer, check_free, suffix_entry, written_whole
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
@@ -42,18 +42,23 @@ class Row:
         By suffix; the empty one is that of names without a suffix.
     takes
         Tells of a thing whether it is of the kind.
-    replaceable
-        Tells of an existing folder whether it is of the kind: no other folder is ever replaced.
+    folders
+        By suffix, for those that are written as folders: tells of an existing one whether it is of the kind. No other
+        folder is ever replaced.
     """
 
     called: str
     writers: Mapping[str, Writer]
     takes: Callable[[Any], bool]
-    replaceable: Callable[[Place], bool] = lambda _: False
+    folders: Mapping[str, Replaceable] = field(default_factory=dict)
 
     def writer(self, at: Place) -> Writer:
         """The writer for a place, by its suffix, or `InputError`."""
         return suffix_entry(at, self.writers, self.called)
+
+    def replaceable(self, at: Place) -> Replaceable:
+        """Which folders may be replaced at a place; None where a file is written."""
+        return suffix_entry(at, {**dict.fromkeys(self.writers), **self.folders}, self.called)
 
 
 def _is_picture(thing: Any) -> bool:
@@ -63,7 +68,7 @@ def _is_picture(thing: Any) -> bool:
 
 #: The table; of the kinds that take a thing, `save` chooses the first one that knows the suffix.
 KINDS: Mapping[Kind, Row] = {
-    "cube": Row("a cube", cubes.WRITERS, lambda thing: isinstance(thing, Cube), cubes.is_cube_folder),
+    "cube": Row("a cube", cubes.WRITERS, lambda thing: isinstance(thing, Cube), {".zarr": cubes.is_cube_folder}),
     "page": Row("a page", {".html": documents.write_text}, lambda thing: isinstance(thing, str)),
     "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),
     "plot": Row("a plot", documents.PLOTS, lambda thing: hasattr(thing, "savefig")),
@@ -73,7 +78,7 @@ KINDS: Mapping[Kind, Row] = {
         "a movie",
         movies.WRITERS,
         lambda thing: isinstance(thing, Iterable) and not (isinstance(thing, str | Mapping) or _is_picture(thing)),
-        movies.is_pictures_folder,
+        {"": movies.is_pictures_folder},
     ),
 }
 
@@ -99,8 +104,7 @@ class Output:
     def check(self) -> None:
         """Raise `InputError` unless the output could be written: ask before long work."""
         at, row = place(self.path), KINDS[self.kind]
-        row.writer(at)
-        check_free(at, overwrite=self.overwrite, replaceable=row.replaceable)
+        check_free(at, overwrite=self.overwrite, replaceable=row.replaceable(at))
 
     @checked
     def write(self, thing: Thing, **options: Unpack[movies.Options]) -> None:
@@ -178,24 +182,31 @@ def _kind(thing: Thing, at: Place) -> Kind:
 
 
 def write_together(*things: tuple[Output, Thing]) -> None:
-    """Write things to outputs; none of them gets its name before all are made, nor where one cannot be."""
-    with ExitStack() as made:
-        for output, thing in things:
-            made.enter_context(_made(output, thing, {}))
+    """Write things to outputs; none of them gets its name before all are made, nor where one cannot be.
+
+    The folders in which they are made go when all have their names: after a kill in between, the same again finishes.
+    """
+    for output, _ in things:
+        output.check()  # all of them first: whoever makes one tidies what tells of the others
+    with ExitStack() as stack:
+        made = [stack.enter_context(_made(output, thing, {})) for output, thing in things]
+        for _, give_its_name in made:
+            give_its_name()
 
 
 def _write(output: Output, thing: Thing, options: movies.Options) -> None:
     """Write to an output, whole or not at all, and warn the caller's caller of what was lost."""
-    with _made(output, thing, options) as lost:
-        pass
+    output.check()
+    with _made(output, thing, options) as (lost, give_its_name):
+        give_its_name()
     if lost is not None:
         warnings.warn(lost, stacklevel=4)
 
 
 @contextmanager
-def _made(output: Output, thing: Thing, options: movies.Options) -> Iterator[Warning | None]:
-    """Make what gets its name at the end, and yield what was lost."""
+def _made(output: Output, thing: Thing, options: movies.Options) -> Iterator[tuple[Warning | None, Callable[[], None]]]:
+    """Make something, and yield what was lost and what gives it its name."""
     at, row = place(output.path), KINDS[output.kind]
     write = row.writer(at)
-    with written_whole(at, overwrite=output.overwrite, replaceable=row.replaceable) as fresh:
-        yield write(fresh, thing, **options)
+    with written_whole(at, overwrite=output.overwrite, replaceable=row.replaceable(at)) as (fresh, give_its_name):
+        yield write(fresh, thing, **options), give_its_name

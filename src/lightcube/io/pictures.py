@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from pathlib import Path
+from pathlib import Path, PurePath
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError, encodable
 from lightcube.io._bounds import Budget, check_file
-from lightcube.io._decode import Take
+from lightcube.io._decode import ROWS, Take
 from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._frames import Levels
-from lightcube.io._places import fetched, place
+from lightcube.io._places import Place, fetched, name_of, names_in, place
 from lightcube.io._spaces import Space
 from lightcube.io._still import read_animation, read_single
 from lightcube.io._video import read_video
@@ -42,8 +43,9 @@ _READERS: dict[str, Callable[[Path, Budget, Take], Sequence[str] | None]] = {
     **dict.fromkeys((".mp4", ".webm", ".mkv", ".mov", ".avi"), read_video),
 }
 
-#: How many rows are decoded at a time: what a large picture takes beside itself.
-_ROWS = 256
+#: Pixels of a picture as it is kept, at most: screens have some hundred rows, and linear light takes four times as much
+#: memory as levels of 8 bits.
+MOST_KEPT = 64_000_000
 
 
 class TransparentPictures(UserWarning):
@@ -116,6 +118,12 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     return pictures
 
 
+def is_pictures(at: Place) -> bool:
+    """Whether a place is named as pictures are, or is a folder on this disk with some in it."""
+    folder = isinstance(at, Path) and at.is_dir()
+    return any(map(is_picture, names_in(at))) if folder else PurePath(name_of(at)).suffix.lower() in _READERS
+
+
 def _is_wanted(name: str) -> bool:
     """Whether a file of a folder is read."""
     return name == VIEWS_FILE or is_picture(name)
@@ -157,6 +165,10 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]
     """Pictures, and what is to be said of them."""
     with system_errors(path, "reading"):
         there, is_folder = check_file(path).exists(), path.is_dir()
+    if not there and path.suffix.lower() == ".toml":
+        raise InputError(
+            f"there is no {path}: give a stage's file or pictures, which `lightcube trace` makes of a scene's file"
+        )
     if not there:
         raise InputError(f"there is no {path}: give a folder of pictures, an animation or a video")
     take = _Taken(transfer)
@@ -182,15 +194,31 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]
 def _linear_light(
     levels: Levels, light_of: Callable[[NDArray[np.float32]], NDArray[np.floating]]
 ) -> tuple[NDArray[np.float32], bool]:
-    """Levels ``(row, column, 3 or 4)`` as linear light on white, and whether they were opaque."""
+    """Levels ``(row, column, 3 or 4)`` as linear light on white, made smaller if need be, and whether they were opaque.
+
+    Some rows at a time: what a large picture takes in between is little.
+    """
     full = np.float32(np.iinfo(levels.dtype).max)
-    light = np.empty((*levels.shape[:2], 3), np.float32)
+    rows, columns = levels.shape[:2]
+    times = math.ceil(math.sqrt(rows * columns / MOST_KEPT))
+    light = np.empty((-(-rows // times), -(-columns // times), 3), np.float32)
     opaque = True
-    for first in range(0, len(light), _ROWS):
-        part, rows = levels[first : first + _ROWS], light[first : first + _ROWS]
-        rows[:] = light_of(part[..., :3].astype(np.float32) / full)
+    step = max(1, ROWS // times) * times
+    for first in range(0, rows, step):
+        part = levels[first : first + step]
+        shown = light_of(part[..., :3].astype(np.float32) / full).astype(np.float32, copy=False)
         if levels.shape[2] == 4:
             opacity = part[..., 3:].astype(np.float32) / full
-            rows[:] = opacity * rows + (1 - opacity)
+            shown = opacity * shown + (1 - opacity)
             opaque = opaque and bool(np.all(opacity == 1))
+        light[first // times : (first + step) // times] = _averaged(shown, times)
     return light, opaque
+
+
+def _averaged(light: NDArray[np.float32], times: int) -> NDArray[np.float32]:
+    """Light as means over squares of so many pixels; those at the end may be parts of squares."""
+    for axis in (0, 1) if times > 1 else ():
+        starts = np.arange(0, light.shape[axis], times)
+        counts = np.diff(starts, append=light.shape[axis]).reshape([-1] + [1] * (2 - axis))
+        light = (np.add.reduceat(light, starts, axis) / counts).astype(np.float32)
+    return light

@@ -4,7 +4,7 @@ A value of this package shares its arrays with nobody who can write to them. Wha
 taken without a copy: whoever makes a large one and hands it over marks it by `locked`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -78,6 +78,15 @@ def owned(array: ArrayLike, dtype: DTypeLike | None, *, order: Any = "K") -> NDA
     kept = made if is_new else np.array(made, dtype, order=order)
     kept.setflags(write=False)
     return kept
+
+
+def copied(value: Any) -> Any:
+    """Mappings, lists, tuples and arrays copied, whatever is in them; all else as it is."""
+    if isinstance(value, Mapping):
+        return {key: copied(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return type(value)(map(copied, value)) if type(value) in (list, tuple) else value
+    return owned(value, None) if isinstance(value, np.ndarray) else value
 
 
 def locked(array: NDArray[Scalar]) -> NDArray[Scalar]:

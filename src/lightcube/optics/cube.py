@@ -10,7 +10,7 @@ import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.optics import showing
-from lightcube.optics.arrays import Levels, Reals, Volume, keep, owned
+from lightcube.optics.arrays import Levels, Reals, Volume, copied, keep, owned
 from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
@@ -105,6 +105,8 @@ class Cube:
         object.__setattr__(self, "extinction", extinction)
         object.__setattr__(self, "lamp_powers", powers)
         object.__setattr__(self, "names", names)
+        for field_name in ("scores", "provenance"):
+            object.__setattr__(self, field_name, copied(getattr(self, field_name)))
 
     @property
     def powers(self) -> Reals:

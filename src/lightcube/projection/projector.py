@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
     from lightcube.projection.linear_operator import MatrixOperator
 
+#: Of a dot test, which needs few.
+_MOST_COLUMNS = 1000
+
 
 class Projector:
     """Lengths (mm) of the views' beams in the grid's voxels, as a linear operator A.
@@ -357,8 +360,10 @@ def dot_test(operator: Multiplies, columns: int = 3, dtype: DTypeLike = "float64
     >>> lc.dot_test(A) < 1e-12
     True
     """
-    if columns < 1 or seed < 0:
-        raise InputError(f"a dot test takes at least 1 column and a seed of at least 0, not {columns} and {seed}")
+    if not 1 <= columns <= _MOST_COLUMNS or seed < 0:
+        raise InputError(
+            f"a dot test takes 1 to {_MOST_COLUMNS} columns and a seed of at least 0, not {columns} and {seed}"
+        )
     dtype, random = _precision(dtype), np.random.default_rng(seed)
     x = random.random((operator.shape[1], columns)).astype(dtype)
     b = random.random((operator.shape[0], columns)).astype(dtype)

@@ -1,4 +1,7 @@
-"""Small pieces of a page: everything that comes from outside is escaped here, and nowhere else."""
+"""Small pieces of a page: everything that comes from outside is escaped here, and nowhere else.
+
+No URL is shown with its login or its query.
+"""
 
 import base64
 import math
@@ -11,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from lightcube.errors import without_secrets
+
 #: Rows of a table that fit a printed page.
 _SHORT = 32
 
@@ -22,7 +27,7 @@ def element(tag: str, inside: str, **attributes: str) -> str:
 
 def text(tag: str, words: object, **attributes: str) -> str:
     """An element with plain text inside."""
-    return element(tag, escape(str(words)), **attributes)
+    return element(tag, escape(without_secrets(str(words))), **attributes)
 
 
 def image(levels: NDArray[np.uint8], alt: str, *, exact: bool = True) -> str:
@@ -98,4 +103,5 @@ def plain(value: Any) -> str:
 
 def _attributes(given: Mapping[str, str]) -> str:
     """Attributes of an element, escaped."""
-    return "".join(f' {name.rstrip("_").replace("_", "-")}="{escape(value)}"' for name, value in given.items())
+    named = {name.rstrip("_").replace("_", "-"): escape(without_secrets(value)) for name, value in given.items()}
+    return "".join(f' {name}="{value}"' for name, value in named.items())

@@ -1,11 +1,13 @@
 """What `report` makes: the page that keeps all that is known of a cube."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from lightcube import io
+from lightcube.errors import without_secrets
 from lightcube.events import Tell, counting
+from lightcube.io._places import name_of
+from lightcube.io._places import place as io_place
 from lightcube.optics.cube import Cube
 from lightcube.report.measuring import Findings, measure
 from lightcube.report.page import page
@@ -41,7 +43,7 @@ def report(cube: Cube, place: str, source: str | None, tell: Tell) -> Report:
     wanted = wanted_of(cube, source)
     stage = io.read_stage(source, transfer=cube.transfer)[0] if source is not None and io.is_stage(source) else None
     found = measure(cube, wanted, stage, counting(tell))
-    command = reproducing(cube, wanted, source, Path(place.removesuffix(".partial")).name)
+    command = reproducing(cube, wanted, source, name_of(io_place(place.removesuffix(".partial"))))
     text = page(found, io.bare_name(place), _compared(found, source), command, [*origins(place, source)])
     return Report(text, found.scores)
 
@@ -53,8 +55,9 @@ def _compared(found: Findings, source: str | None) -> str:
             "Compared with the 8-bit pictures that the cube keeps, which cap PSNR at about 59 dB where they were "
             "resampled."
         )
+    name = name_of(io_place(without_secrets(source)))
     if found.apart == 0:
-        return f"Compared with the pictures in {Path(source).name}, which are those that the cube was made from."
+        return f"Compared with the pictures in {name}, which are those that the cube was made from."
     off = "" if found.apart is None else f": they differ from these by up to {found.apart / 257:.2g} levels of 255"
     about = "which are not known to be those that it was made from"
-    return f"Compared with the pictures in {Path(source).name}, {about}{off}."
+    return f"Compared with the pictures in {name}, {about}{off}."

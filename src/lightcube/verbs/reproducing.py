@@ -17,7 +17,7 @@ from lightcube.backward.job import Job
 from lightcube.backward.mat import TONES, Mat
 from lightcube.backward.needs import MEMORY, fewest_units
 from lightcube.backward.recipe import QUALITIES, Quality, Recipe, recipe_of
-from lightcube.errors import InputError
+from lightcube.errors import InputError, without_secrets
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
@@ -54,6 +54,8 @@ def reproducing(cube: Cube, targets: Targets, source: str | None, target: str) -
     asked = ["lightcube", "solve", source or ("PICTURES" if _is_planned(cube) else "STAGE.toml"), "-o", target]
     solve = [shlex.join(asked), *(shlex.join(pair) for pair in zip(words[::2], words[1::2], strict=True))]
     _doubt_origin(cube, command, source)
+    if source is not None and without_secrets(source) != source:
+        command.doubts.append("The URL of the pictures is shown without its login and its query: put them in again.")
     units = int(provenance.get("units", 1))
     if units == 1 or units == _usual_units(cube, targets):
         command.lines = [solve]
