@@ -5,12 +5,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from xml.sax.saxutils import escape, quoteattr
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lightcube.drawing.svg import Box, Labels, around, disc, hex_of, hull, moved, path, polygon, text
+from lightcube.drawing.svg import Box, Labels, around, disc, element, hex_of, hull, moved, path, polygon, text
 from lightcube.optics.stage import Lamp, Screen, Stage
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import rotations
@@ -54,8 +54,8 @@ def drawing(stage: Stage) -> str:
     style = f'font-family={quoteattr(_FONT)} font-size="12" fill="{_INK}"'
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img" {style}>',
-        f"<title>{escape(title)}</title>",
-        f"<desc>{escape(_described(stage))}</desc>",
+        element("title", title),
+        element("desc", _described(stage)),
         f'<rect width="{_WIDTH}" height="{whole:.0f}" rx="14" fill="{_CARD}"/>',
         text(_MARGIN + 2, 36, title, 'font-size="19" font-weight="600"'),
         text(_MARGIN + 2, 58, _counted(stage), f'fill="{_QUIET}"'),
@@ -319,7 +319,7 @@ def _lamp(room: _Room, panel: _Panel, lamp: Lamp) -> str:
         symbol += polygon(
             np.array([tip + 2 * unit, tip - 5 * unit + 4 * side, tip - 5 * unit - 4 * side]), f'fill="{edge}"'
         )
-    return f'<g class="lamp"><title>{escape(lamp.name)}</title>{symbol}</g>'
+    return f'<g class="lamp">{element("title", lamp.name)}{symbol}</g>'
 
 
 def _sun(place: Reals, colour: tuple[float, ...]) -> str:

@@ -9,6 +9,8 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.errors import shown
+
 Reals = NDArray[np.float64]
 #: Least x and y, largest x and y.
 Box = tuple[float, float, float, float]
@@ -18,7 +20,7 @@ _LETTERS = 22
 
 def polygon(points: Reals, style: str, title: str = "") -> str:
     """A filled outline ``(n, 2)``; `style` is more attributes, `title` its tooltip."""
-    inside = f"<title>{escape(title)}</title>" if title else ""
+    inside = element("title", title) if title else ""
     return f'<polygon points="{_listed(points)}" {style}>{inside}</polygon>'
 
 
@@ -34,7 +36,12 @@ def disc(place: Reals, radius: float, style: str) -> str:
 
 def text(x: float, y: float, words: str, style: str = "") -> str:
     """Words, at their left end unless `style` says otherwise."""
-    return f'<text x="{x:.1f}" y="{y:.1f}" {style}>{escape(words)}</text>'
+    return element("text", words, f'x="{x:.1f}" y="{y:.1f}" {style}')
+
+
+def element(name: str, words: str, style: str = "") -> str:
+    """An element of words: what is markup in them, or no letter that XML knows or that people see, is escaped."""
+    return f"<{name}{style and f' {style}'}>{escape(shown(words))}</{name}>"
 
 
 def hex_of(colour: Reals) -> str:
