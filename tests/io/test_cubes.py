@@ -23,7 +23,7 @@ from lightcube.backward.pieces import solve_piece
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import merged
 from lightcube.errors import InputError
-from lightcube.io import _zarr, save
+from lightcube.io import HollowCube, _zarr, save
 from lightcube.jobs import partial
 from lightcube.jobs.partial import DiskStore, discard_partial, open_partial
 from lightcube.jobs.publishing import publish
@@ -218,6 +218,7 @@ def test_a_display_shows_most_of_a_cube(tmp_path: Path) -> None:
         {"chunks": (3, 1, 1, 1), "dtype": ">f4"},
     ],
 )
+@pytest.mark.filterwarnings("ignore:.* parts of array '0'")
 def test_what_other_programs_packed_anew_is_read(tmp_path: Path, packed: dict[str, Any], suffix: str) -> None:
     """Chunks of nothing but zeros are left out by most."""
     made = make()
@@ -516,6 +517,61 @@ def test_missing_parts_of_a_folder_are_noticed(tmp_path: Path) -> None:
     (tmp_path / "b.zarr" / "zarr.json").unlink()
     with pytest.raises(InputError, match=r"no zarr\.json"):
         load(tmp_path / "b.zarr")
+
+
+@pytest.mark.parametrize("suffix", [".zarr", ".zarr.zip"])
+@pytest.mark.parametrize("name", ["0", "targets"])
+def test_parts_that_are_not_there_of_a_cube_that_was_rewritten_are_told(
+    name: str, suffix: str, tmp_path: Path, recwarn: pytest.WarningsRecorder
+) -> None:
+    """Other programs leave out what is zero, so it cannot be known whether they are lost."""
+    cube = make()
+    rewritten = save(cube, tmp_path / "a.zarr")
+    group = zarr.open_group(rewritten, mode="a")
+    values = np.array(cube.extinction if name == "0" else cube.targets)
+    del group[name]
+    group.create_array(name, data=values, chunks=(1, *values.shape[1:]), compressors=[GzipCodec()])
+
+    def read() -> Cube:
+        if suffix == ".zarr":
+            return load(rewritten)
+        (tmp_path / f"a{suffix}").unlink(missing_ok=True)
+        return load(packed(rewritten, tmp_path / f"a{suffix}", ""))
+
+    assert_same(read(), cube)
+    assert not recwarn.list
+    (rewritten / name / "c" / "1" / "0" / "0" / "0").unlink()
+    with pytest.warns(
+        HollowCube, match=rf"^1 of the {len(values)} parts of array '{name}' in .*a{suffix} are not there"
+    ):
+        found = read()
+    empty = np.array(found.extinction if name == "0" else found.targets)
+    assert not empty[1].any()
+    np.testing.assert_array_equal(np.delete(empty, 1, 0), np.delete(values, 1, 0))
+
+
+@pytest.mark.parametrize("suffix", [".zarr", ".zarr.zip", ".npz"])
+@pytest.mark.parametrize("field", ["provenance", "names"])
+def test_what_is_written_can_be_read_or_it_is_refused(field: str, suffix: str, tmp_path: Path) -> None:
+    """However much a cube says beside its arrays: readers take no more than 20 MiB."""
+    for size, is_read in ((19 << 20, True), (21 << 20, False)):
+        text = "y" * size
+        cube = replace(make(), provenance={"x": text}) if field == "provenance" else replace(make(), names=(text, "b"))
+        if is_read:
+            assert_same(load(save(cube, tmp_path / f"a{suffix}")), cube)
+            continue
+        with pytest.raises(InputError, match="a cube says at most 20 MiB beside its arrays, and this one more: "):
+            save(cube, tmp_path / f"b{suffix}")
+    assert [each.name for each in tmp_path.iterdir()] == [f"a{suffix}"]
+
+
+def test_a_job_whose_cube_could_not_be_read_is_not_begun(tmp_path: Path) -> None:
+    cube = make()
+    pictures = np.full((2, 3, 5, 3), 0.5, np.float32)
+    job = Job(Targets(pictures, cube.rig), cube.grid, Recipe(), provenance={"x": "y" * (15 << 20)})
+    with pytest.raises(InputError, match="at most 20 MiB beside its arrays"):
+        open_partial(tmp_path / "a.zarr", job)
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_missing_array_of_an_archive_is_noticed(tmp_path: Path) -> None:

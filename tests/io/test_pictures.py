@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 from lightcube.errors import InputError
-from lightcube.io import DoubtfulFolder, TransparentPictures, _bounds, read_pictures, save
+from lightcube.io import DoubtfulFolder, TransparentPictures, _bounds, pictures, read_pictures, save
 from lightcube.optics.transfer import Transfer, decode, from_levels, to_uint8
 from lightcube.optics.views import DoubtfulAngles, spread_angles
 
@@ -554,3 +554,25 @@ def test_damaged_bytes_raise_nothing_but_a_sentence(tmp_path: Path, suffix: str,
             read_pictures(path)
         except InputError as error:
             assert str(path) in str(error)  # noqa: PT017 - any other exception fails the test
+
+
+@pytest.mark.parametrize("suffix", [".png", ".tif", ".jpg"])
+@pytest.mark.parametrize(("most", "times"), [(2000, 1), (1000, 2), (300, 3)])
+def test_a_picture_of_too_many_pixels_is_kept_smaller(
+    suffix: str, most: int, times: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its light is averaged over squares of pixels, which may be cut at the end."""
+    random = np.random.default_rng(8)
+    Image.fromarray(random.integers(0, 256, (37, 54, 3), np.uint8)).save(tmp_path / f"a{suffix}")
+    (whole,) = read_pictures(tmp_path / f"a{suffix}", least=1).images
+    monkeypatch.setattr(pictures, "MOST_KEPT", most)
+    monkeypatch.setattr(pictures, "ROWS", 7)
+    (small,) = read_pictures(tmp_path / f"a{suffix}", least=1).images
+    assert small.shape[0] * small.shape[1] <= most * 1.1
+    wanted = [
+        [whole[row : row + times, column : column + times].mean(axis=(0, 1)) for column in range(0, 54, times)]
+        for row in range(0, 37, times)
+    ]
+    if times == 1:
+        np.testing.assert_array_equal(small, whole)
+    np.testing.assert_allclose(small, wanted, rtol=1e-5)

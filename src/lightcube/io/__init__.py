@@ -12,6 +12,7 @@ __getattr__, __dir__, __all__ = when_used(
         "Output": "outputs",
         "save": "outputs",
         "write_together": "outputs",
+        "HollowCube": "_zarr",
         "ChangedPictures": "pictures",
         "DoubtfulFolder": "pictures",
         "TransparentPictures": "pictures",

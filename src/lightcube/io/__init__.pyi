@@ -1,5 +1,6 @@
 """Reading and writing files, by suffix."""
 
+from lightcube.io._zarr import HollowCube
 from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures
@@ -13,6 +14,7 @@ __all__ = [
     "ChangedPictures",
     "ClippedPictures",
     "DoubtfulFolder",
+    "HollowCube",
     "Output",
     "Remembered",
     "TransparentPictures",

@@ -34,6 +34,15 @@ def check_file(path: Path) -> Path:
     return path
 
 
+def check_text(size: int) -> None:
+    """Raise `InputError` where what is to be written of a cube beside its arrays is longer than what is read again."""
+    if size > MOST_TEXT:
+        raise InputError(
+            f"a cube says at most {MOST_TEXT >> 20} MiB beside its arrays, and this one more: "
+            "give fewer pictures, lamps and screens, or say less in its names, scores and provenance"
+        )
+
+
 def too_large(path: Path) -> InputError:
     """Return the exception for a picture that is larger than any may be."""
     return InputError(

@@ -11,15 +11,20 @@ from numpy.lib.npyio import NpzFile
 
 from lightcube.io import _metadata
 from lightcube.io._archives import archive
-from lightcube.io._bounds import MOST_TEXT
+from lightcube.io._bounds import MOST_TEXT, check_text
 from lightcube.io._files import system_errors
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 
+#: Before an array stands what it is, in fewer bytes than these.
+_HEADER = 256
+
 
 def write_npz(path: Path, cube: Cube) -> None:
     """Write a cube as NumPy's archive."""
-    arrays: dict[str, Any] = {"extinction": cube.extinction, "lightcube": np.array(json.dumps(_metadata.to_json(cube)))}
+    text = json.dumps(_metadata.to_json(cube))
+    check_text(len(text) + _HEADER)
+    arrays: dict[str, Any] = {"extinction": cube.extinction, "lightcube": np.array(text)}
     if cube.targets is not None:
         arrays["targets"] = cube.targets
     with path.open("wb") as file:

@@ -6,6 +6,7 @@ Zarr's own coroutines run in an event loop that ends with each call, so that no 
 import asyncio
 import concurrent.futures
 import math
+import warnings
 import zipfile
 from collections.abc import Callable, Coroutine, Iterable
 from functools import partial
@@ -21,14 +22,21 @@ from zarr.storage import LocalStore, StorePath, ZipStore
 from lightcube.errors import InputError
 from lightcube.io import _metadata
 from lightcube.io._archives import is_crowded
-from lightcube.io._bounds import check_file, memory
+from lightcube.io._bounds import check_file, check_text, memory
 from lightcube.io._files import system_errors
 from lightcube.io._guarded import Guarded
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 
 Value = TypeVar("Value")
+#: By an array's name: how many of its chunks are not there, of how many.
+Missing = dict[str, tuple[int, int]]
 Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
+
+
+class HollowCube(UserWarning):
+    """Parts of a cube's arrays that another program wrote are not there: they may be empty, or lost."""
+
 
 #: A chunk is as many whole slices as fit into this many bytes, at least one.
 _CHUNK_BYTES = 8 << 20
@@ -57,7 +65,7 @@ def read_zarr(path: Path) -> Cube:
         member = check_file(path / key)
         return member.stat().st_size if member.is_file() else 0
 
-    return _metadata.from_json(path, *_reading(path, lambda: _read(path, LocalStore(path, read_only=True), size)))
+    return _cube(path, lambda missing: _read(path, LocalStore(path, read_only=True), size, missing))
 
 
 def write_zarr_zip(file: Path, cube: Cube) -> None:
@@ -81,15 +89,29 @@ def zip_folder(folder: Path, file: Path) -> None:
 def read_zarr_zip(path: Path) -> Cube:
     """Read a cube from a Zarr group in a zip archive, or from the one folder in it that holds such a group."""
 
-    async def read() -> Parts:
+    async def read(missing: Missing) -> Parts:
         with path.open("rb") as file:
             if is_crowded(file):
                 raise _metadata.damaged(path, "it lists too many members")
             with zipfile.ZipFile(file) as archive:
                 sizes = {member.filename: member.file_size for member in archive.infolist()}
-        return await _read(path, ZipStore(path, mode="r"), lambda key: sizes.get(key, 0), _inside(path, sizes))
+        return await _read(path, ZipStore(path, mode="r"), lambda key: sizes.get(key, 0), missing, _inside(path, sizes))
 
-    return _metadata.from_json(path, *_reading(path, read))
+    return _cube(path, read)
+
+
+def _cube(path: Path, read: Callable[[Missing], Coroutine[Any, Any, Parts]]) -> Cube:
+    """The cube of what `read` finds; of parts that are not there a note says so."""
+    missing: Missing = {}
+    cube = _metadata.from_json(path, *_reading(path, lambda: read(missing)))
+    for name, (absent, count) in missing.items():
+        warnings.warn(
+            f"{absent} of the {count} parts of array {name!r} in {path} are not there and were taken as empty, as the "
+            "program that rewrote it may have left them out: get another copy if they were lost",
+            HollowCube,
+            stacklevel=2,
+        )
+    return cube
 
 
 def _inside(path: Path, names: Iterable[str]) -> str:
@@ -111,6 +133,7 @@ async def _write(folder: Path, cube: Cube) -> None:
     channels, nz, ny, nx = cube.extinction.shape
     attributes = {"ome": _ome(cube), _ATTRIBUTE: _metadata.to_json(cube)}
     group = await zarr.AsyncGroup.from_store(LocalStore(folder), attributes=attributes, zarr_format=3)
+    check_text((folder / _ROOT).stat().st_size)
     slab = max(1, min(nz, _CHUNK_BYTES // (4 * channels * ny * nx)))
     arrays: list[tuple[str, NDArray[Any], tuple[int, ...], list[str]]] = [
         (_IMAGE, cube.extinction, (channels, slab, ny, nx), ["c", "z", "y", "x"])
@@ -170,49 +193,56 @@ def _ome(cube: Cube) -> dict[str, Any]:
     }
 
 
-async def _read(path: Path, opened: LocalStore | ZipStore, size: Callable[[str], int], inside: str = "") -> Parts:
-    """Metadata, extinction and targets of the group in a store, or in a folder inside it."""
+async def _read(
+    path: Path, opened: LocalStore | ZipStore, size: Callable[[str], int], missing: Missing, inside: str = ""
+) -> Parts:
+    """Metadata, extinction and targets of the group in a store, or in a folder inside it; and what is `missing`."""
     store = Guarded(opened, size, partial(_metadata.damaged, path))
     try:
         group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
         document = group.attrs.get(_ATTRIBUTE)
         _metadata.check_version(path, document)
-        extinction = await _array(path, store, group, _IMAGE)
+        extinction = await _array(path, store, group, _IMAGE, missing)
         if extinction is None:
             raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await _array(path, store, group, _TARGETS)
+        return document, extinction, await _array(path, store, group, _TARGETS, missing)
     finally:
         store.close()
 
 
-async def _array(path: Path, store: Guarded, group: zarr.AsyncGroup, name: str) -> NDArray[Any] | None:
+async def _array(
+    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing
+) -> NDArray[Any] | None:
     """All of an array, or None where there is none; `InputError` where chunks are missing.
 
-    Other programs leave out chunks that hold nothing but zeros.
+    Other programs leave out chunks that hold nothing but zeros: of theirs it is told in `missing`.
     """
     if not await group.contains(name):
         return None
     array = await group.getitem(name)
-    if not isinstance(array, zarr.AsyncArray) or array.ndim != 4:
-        raise _metadata.damaged(path, f"{name!r} is not an array with 4 axes")
+    if not isinstance(array, zarr.AsyncArray) or array.ndim != 4 or not all(array.shape):
+        raise _metadata.damaged(path, f"{name!r} is not an array with 4 axes, none of them empty")
     chunk_bytes = math.prod(array.chunks) * array.dtype.itemsize
     if max(array.nbytes, chunk_bytes) > memory() // 2:
         raise InputError(f"{path} states more than half of this machine's memory: open it on a larger one")
     store.expect(array.metadata.codecs, chunk_bytes)
     counts = [-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True)]
-    if not _is_as_written(array):
-        if math.prod(counts) > _MOST_CHUNKS:
-            raise _metadata.damaged(path, f"its array {name!r} has more than {_MOST_CHUNKS:,} chunks: make them larger")
-    elif not await _is_whole(store, array, counts):
+    if not _is_as_written(array) and math.prod(counts) > _MOST_CHUNKS:
+        raise _metadata.damaged(path, f"its array {name!r} has more than {_MOST_CHUNKS:,} chunks: make them larger")
+    absent = await _absent(store, array, counts)
+    if absent and _is_as_written(array):
         raise _metadata.damaged(path, f"parts of its array {name!r} are missing")
+    if absent:
+        missing[name] = (absent, math.prod(counts))
     return locked(np.asarray(await array.getitem(...)))
 
 
-async def _is_whole(store: Guarded, array: zarr.AsyncArray[Any], counts: list[int]) -> bool:
-    """Whether all chunks of an array are there, so many along each axis."""
+async def _absent(store: Guarded, array: zarr.AsyncArray[Any], counts: list[int]) -> int:
+    """How many chunks of an array are not there, of so many along each axis."""
     there = {key async for key in store.list_prefix(array.path)}
-    few = 0 < math.prod(counts) <= len(there)
-    return few and all(f"{array.path}/{array.metadata.encode_chunk_key(at)}" in there for at in np.ndindex(*counts))
+    if len(there) < math.prod(counts) and _is_as_written(array):  # not to count thousands of millions
+        return math.prod(counts) - len(there) or 1
+    return sum(f"{array.path}/{array.metadata.encode_chunk_key(at)}" not in there for at in np.ndindex(*counts))
 
 
 def _is_as_written(array: zarr.AsyncArray[Any]) -> bool:

@@ -25,7 +25,7 @@ from lightcube.backward.recipe import from_plain
 from lightcube.backward.store import Arrays
 from lightcube.errors import InputError
 from lightcube.io._archives import archive
-from lightcube.io._bounds import MOST_TEXT, check_file
+from lightcube.io._bounds import MOST_TEXT, check_file, check_text
 from lightcube.io._files import PARTIAL_SUFFIX, system_errors
 from lightcube.io._metadata import plain
 from lightcube.io._places import (
@@ -189,13 +189,13 @@ def open_partial(out: str | Path, job: Job, *, overwrite: bool = False) -> DiskS
         cannot be written; or where no name leads to the job's method, so that nobody could go on.
     """
     check_lasting(job.recipe.solver)
-    folder = check_partial(out)
+    folder, document = check_partial(out), _document(job)
     if isinstance(folder, Path):
         _make(folder)
     if overwrite and not _is_of(folder, job):
         _empty(folder)
     if not exists(child(folder, _JOB)):
-        _write_job(folder, job)
+        _write_job(folder, job, document)
     changed = differences(_read_job(folder).fingerprint, fingerprint(job))
     if changed:
         raise InputError(
@@ -306,10 +306,9 @@ def load_job(partial: str | Path) -> Job:
     return job
 
 
-def _write_job(folder: Place, job: Job) -> None:
+def _document(job: Job) -> bytes:
+    """What is written of a job beside its arrays; `InputError` where its cube would say more than can be read."""
     targets, grid = job.targets, job.grid
-    start = {} if job.start is None else {"start": job.start}
-    _write_arrays(child(folder, _TARGETS), {"pictures": targets.pictures, "weights": targets.weight, **start})
     document = {
         "format_version": FORMAT_VERSION,
         "written_by": f"lightcube {version('lightcube')}",
@@ -324,9 +323,17 @@ def _write_job(folder: Place, job: Job) -> None:
         "units": job.units,
         "provenance": plain(job.provenance),
     }
+    text = json.dumps(document, indent=2).encode()
+    check_text(len(text) + len(text) // 2)  # powers and scores are yet to come
+    return text
+
+
+def _write_job(folder: Place, job: Job, document: bytes) -> None:
+    start = {} if job.start is None else {"start": job.start}
+    _write_arrays(child(folder, _TARGETS), {"pictures": job.targets.pictures, "weights": job.targets.weight, **start})
     at = child(folder, _JOB)
     with system_errors(at, "writing"), written(at) as file:
-        file.write(json.dumps(document, indent=1).encode())
+        file.write(document)
 
 
 def _read_job(folder: Place) -> _JobJson:
