@@ -54,6 +54,7 @@ __getattr__, __dir__, __all__ = when_used(
         "METHODS": "solvers",
         "Result": "solvers.contract",
         "show": "viewer.notebook",
+        "Label": "viewer.label",
         "page": "viewer.page",
     },
 )

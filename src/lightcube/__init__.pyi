@@ -31,6 +31,7 @@ from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.scoring.metrics import score
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
+from lightcube.viewer.label import Label
 from lightcube.viewer.notebook import show
 from lightcube.viewer.page import page
 
@@ -39,6 +40,7 @@ __all__ = [
     "Cube",
     "Grid",
     "InputError",
+    "Label",
     "Lamp",
     "Light",
     "Mat",

@@ -28,11 +28,13 @@ from lightcube.projection.projector import Projector
 #: Angles that stand for all that the table comes to, degrees.
 _AROUND = tuple(np.arange(0.0, 360.0, 30.0))
 #: Degrees: what the picture's width spans, how high the eye may stand, and the azimuths that it is tried at.
-_FIELD, _HEIGHTS, _AZIMUTHS = 36.0, (27.0, 48.0), tuple(np.arange(7.5, 360.0, 15.0))
+_FIELD, _HEIGHTS, _AZIMUTHS = 36.0, (10.0, 27.0, 48.0), tuple(np.arange(7.5, 360.0, 15.0))
 #: Stops at which eyes are tried at most.
 _MOST_STOPS = 12
 #: Parts of the picture that stay free at its edges; what standing high costs, and what the first stop is worth more.
 _MARGIN, _HIGH, _FIRST = 0.05, 0.12, 0.1
+#: What it is worth that screens stand to the right: one reads on from the lamp, through the glass, to the picture.
+_RIGHT = 0.03
 #: A lamp's radius, in widths of the cube.
 _LAMP = 0.036
 #: Linear light of the room and of what stands in it.
@@ -89,13 +91,14 @@ def camera_for(cube: Cube, size: tuple[int, int] = (540, 960)) -> Camera:
     across = math.tan(math.radians(_FIELD) / 2)
     best, chosen = -math.inf, (np.ones(3), np.zeros(3))
     for height, azimuth in product(_HEIGHTS, _AZIMUTHS):
-        above, aside = math.radians(height), math.radians(azimuth)
-        ahead = -np.array([math.cos(above) * math.cos(aside), math.cos(above) * math.sin(aside), math.sin(above)])
+        above, around = math.radians(height), math.radians(azimuth)
+        ahead = -np.array([math.cos(above) * math.cos(around), math.cos(above) * math.sin(around), math.sin(above)])
         right = unit(np.cross(ahead, (0.0, 0.0, 1.0)))
         axes = np.stack([right, np.cross(right, ahead), ahead])
         eye = fitting(points, axes, (across, across * size[0] / size[1]), _MARGIN)
         seen = [_worth(cube.grid, room, eye) for room in rooms]
-        worth = float(np.mean(seen)) + _FIRST * seen[0] - _HIGH * (height > _HEIGHTS[0])
+        aside = np.mean([np.sign(np.mean(screen.corners, axis=0) @ right) for room in rooms for screen in room.screens])
+        worth = float(np.mean(seen)) + _FIRST * seen[0] - _HIGH * (height > _HEIGHTS[1]) + _RIGHT * float(aside)
         if worth > best + 1e-9:
             best, chosen = worth, (eye, eye - (eye @ ahead) * ahead)
     eye, target = chosen
@@ -117,7 +120,7 @@ def _worth(grid: Grid, room: Standing, eye: Reals) -> float:
     hidden = _behind_screens(room, points, eye) | _behind_lamps(grid, room, points, eye)
     free = ~(hidden | _behind_cube(grid, room, points, eye)).reshape(slant.shape)
     cube = ~_behind_screens(room, corners_of(grid, room.turn), eye)
-    return float(np.mean(np.sqrt(np.mean(free * np.maximum(slant, 0), axis=1))) + np.mean(cube))
+    return float(np.mean(np.sqrt(np.mean(free * np.maximum(slant, 0) ** 2, axis=1))) + np.mean(cube))
 
 
 def _behind_screens(room: Standing, points: Reals, eye: Reals) -> NDArray[np.bool_]:

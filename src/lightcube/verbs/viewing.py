@@ -2,9 +2,15 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
+from lightcube.drawing.room import camera_for, room_picture
 from lightcube.events import Tell, counting
 from lightcube.optics.cube import Cube
+from lightcube.optics.transfer import to_uint8
 from lightcube.viewer import smaller
+from lightcube.viewer.label import Label
 from lightcube.viewer.page import contents, page_of
 
 
@@ -33,10 +39,15 @@ def is_solved_anew(cube: Cube, *, full: bool) -> bool:
     return not full and cube.grid.longest > smaller.MOST_SIDE
 
 
-def page(cube: Cube, title: str, tell: Tell, *, full: bool = False) -> Page:
+def page(cube: Cube, label: str | Label, tell: Tell, *, full: bool = False) -> Page:
     """The page of a cube; takes and raises what `lightcube.page` does, and tells how far a smaller cube is solved."""
     advance = counting(tell)
-    description, packed = contents(cube, title, full=full, callback=lambda step: advance(round(1000 * step.done), 1000))
+    description, packed = contents(cube, label, full=full, callback=lambda step: advance(round(1000 * step.done), 1000))
     nz, ny, nx = description["voxels"]["shape"]
     kept = description["kept"]
-    return Page(page_of(description, packed), (nz, ny, nx), kept["worst_levels"], kept["rms_levels"])
+    return Page(page_of(Label.of(label), description, packed), (nz, ny, nx), kept["worst_levels"], kept["rms_levels"])
+
+
+def preview(cube: Cube) -> NDArray[np.uint8]:
+    """The cube in its room at its first stop, ``(630, 1200, 3)`` levels: a usual size where pages are shared."""
+    return to_uint8(room_picture(cube, float(cube.angles_deg[0]), camera_for(cube, (630, 1200))))

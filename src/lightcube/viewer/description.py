@@ -16,6 +16,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.light import discs_sampled
 from lightcube.optics.rig import Rig
 from lightcube.scoring import metrics
+from lightcube.viewer.label import Label
 from lightcube.viewer.packing import Packed, lost
 
 #: Of the description; a page of another one is not read.
@@ -27,7 +28,7 @@ _EXACT = 1_000_000
 _QUALITY = 85
 
 
-def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
+def describe(cube: Cube, packed: Packed, label: str | Label) -> dict[str, Any]:
     """What stands where at which angle, in the cube's own axes, and what was wanted; infinity is None.
 
     Parameters
@@ -36,9 +37,10 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
         The full cube, whose targets are shown.
     packed
         What the page holds of it, or of a `smaller` one.
-    title
-        For people.
+    label
+        For people; a text is a title.
     """
+    label = Label.of(label)
     shown = drawn(packed.cube)
     rig = shown.rig
     camera = camera_for(packed.cube, _WIDE)
@@ -47,7 +49,9 @@ def describe(cube: Cube, packed: Packed, title: str) -> dict[str, Any]:
     wanted = _wanted(cube)
     return {
         "format": FORMAT,
-        "title": title if cube.status == "complete" else f"{title} (unfinished)",
+        "title": label.title if cube.status == "complete" else f"{label.title} (unfinished)",
+        "by": label.by,
+        "note": label.note,
         "voxels": {
             "shape": packed.cube.grid.shape,
             "voxel_mm": packed.cube.grid.voxel_mm,

@@ -12,22 +12,25 @@ from lightcube.backward.pieces import Watching
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.viewer.description import describe, zipped
+from lightcube.viewer.label import Label
 from lightcube.viewer.modules import joined, source
 from lightcube.viewer.packing import pack
 from lightcube.viewer.smaller import in_cubes, smaller
 
 #: What is run of the page's scripts: its policy knows them by their digests, and a browser runs no other.
 _RUN = re.compile(r'<script(?: type="module")?>(.*?)</script>', re.DOTALL)
+#: Pictures that are named where a page's address is shared.
+_NAMED = 6
 
 
 @checked
-def page(cube: Cube, title: str, *, full: bool = False, callback: Watching | None = None) -> str:
+def page(cube: Cube, label: str | Label, *, full: bool = False, callback: Watching | None = None) -> str:
     """The text of a page that shows a cube, in any browser, from a file, without a network.
 
     Parameters
     ----------
-    title
-        For people.
+    label
+        For people; a text is a title.
     full
         Keep all voxels; else a `smaller` cube is solved for one of more than 128 along a side, and the page says so.
     callback
@@ -39,13 +42,14 @@ def page(cube: Cube, title: str, *, full: bool = False, callback: Watching | Non
         Where the cube has other than 1 or 3 colours, more voxels than a browser takes, slices that are no whole voxels
         tall, or lamps at several elevations.
     """
-    return page_of(*contents(cube, title, full=full, callback=callback))
+    return page_of(Label.of(label), *contents(cube, label, full=full, callback=callback))
 
 
-def page_of(description: dict[str, Any], voxels: bytes) -> str:
+def page_of(label: Label, description: dict[str, Any], voxels: bytes) -> str:
     """The same of what `contents` returns."""
     parts = {
         "title": html.escape(description["title"]),
+        "sharing": _sharing(label, description),
         "style": source("style.css"),
         "code": joined("page.js"),
         "scene": base64.b64encode(zipped(description)).decode(),
@@ -57,10 +61,21 @@ def page_of(description: dict[str, Any], voxels: bytes) -> str:
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)
 
 
+def _sharing(label: Label, description: dict[str, Any]) -> str:
+    """What is shown of the page where its address is shared (https://ogp.me)."""
+    names = [picture["name"] for picture in description["pictures"] if not picture["mirrored"]]
+    shown = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
+    said = f"Light falls through a block of coloured glass, and its shadows are pictures: {shown}."
+    told = {"og:type": "website", "og:title": description["title"], "og:description": said, "og:image": label.picture}
+    lines = [f'<meta name="description" content="{html.escape(said)}">']
+    lines += [f'<meta property="{name}" content="{html.escape(text)}">' for name, text in told.items() if text]
+    return "\n".join(lines)
+
+
 def contents(
-    cube: Cube, title: str, *, full: bool = False, callback: Watching | None = None
+    cube: Cube, label: str | Label, *, full: bool = False, callback: Watching | None = None
 ) -> tuple[dict[str, Any], bytes]:
     """Description and voxels, as the page's modules read them; takes and raises what `page` does."""
     cubic = in_cubes(cube)
     packed = pack(cubic if full else smaller(cubic, callback))
-    return describe(cubic, packed, title), packed.data()
+    return describe(cubic, packed, label), packed.data()

@@ -13,13 +13,18 @@ import { listenToKeys } from "./parts/keys.js";
 import { createLoop } from "./parts/loop.js";
 import { createScanline } from "./parts/scanline.js";
 import { followTheme } from "./parts/theme.js";
+import { createWall } from "./parts/wall.js";
 import { RoomView } from "./room/roomview.js";
-import { degreesText, element, scoreText } from "./tools/elements.js";
+import { degreesText, element, qualityOf } from "./tools/elements.js";
 
 /** Degrees by which a pixel of a drag turns the cube. */
 const TURN_SPEED = 0.35;
 /** Milliseconds between two copies of the shadow into the cards while it changes. */
 const COPY_EVERY = 80;
+/** Milliseconds after which the cube turns to its next stop, once, if nobody has touched anything. */
+const BECKONS_AFTER = 3500;
+/** Seconds that it takes for it. */
+const BECKONING = 2.4;
 
 /**
  * Build the page in an element.
@@ -35,13 +40,14 @@ const COPY_EVERY = 80;
 export function mount(root, scene, cube, { compact = false } = {}) {
   const turning = new Turning(stops(scene), matchMedia("(prefers-reduced-motion: reduce)").matches);
   const view = new RoomView(scene, cube);
-  const app = { root, scene, turning, view, chosen: { place: 0, row: null, column: null, whole: false, thin: false, dark: null } };
+  const app = { root, scene, turning, view, chosen: nothingChosen() };
   app.does = actionsOf(app);
   app.parts = createParts(app, cube, compact);
   const [show, rested] = showing(app);
   app.loop = createLoop(show, rested);
   view.aim(turning.angle, app.chosen, false);
   const ends = [
+    compact ? () => {} : beckon(app),
     listenToTheme(app, compact),
     listenToKeys(compact ? root : document, app.does),
     listenToRoom(app, compact),
@@ -74,6 +80,28 @@ export function mount(root, scene, cube, { compact = false } = {}) {
     },
   };
   return root.lightcube;
+}
+
+function nothingChosen() {
+  return { place: 0, row: null, column: null, whole: false, thin: false, lampsEye: false, details: false, dark: null };
+}
+
+/** Turn to the next stop, once, so that one sees what this is; whoever touches anything before is not disturbed. */
+function beckon({ root, turning, loop }) {
+  const touches = ["pointerdown", "keydown", "wheel"];
+  const go = () => {
+    end();
+    if (turning.calm || turning.moving || turning.stops.length < 2 || turning.angle !== turning.stops[0]) return;
+    turning.glideTo(turning.stops[1], BECKONING);
+    loop.ask();
+  };
+  const timer = setTimeout(go, BECKONS_AFTER);
+  function end() {
+    clearTimeout(timer);
+    for (const touch of touches) root.removeEventListener(touch, end, true);
+  }
+  for (const touch of touches) root.addEventListener(touch, end, true);
+  return end;
 }
 
 /** What can be done, each ending with a new drawing. */
@@ -109,6 +137,14 @@ function actionsOf(app) {
     },
     eye: (across, down) => view.moveEye(across, down),
     thin: () => (chosen.thin = !chosen.thin),
+    lampsEye() {
+      chosen.lampsEye = !chosen.lampsEye;
+      app.parts.hint.done();
+    },
+    details() {
+      chosen.details = !chosen.details;
+      root.toggleAttribute("data-details", chosen.details);
+    },
     zoom: (factor, x, y) => view.zoom(factor, x === undefined ? chosenPixel(chosen) : view.pointed(x, y)),
     reset: () => view.comeBack(),
     screen: (place) => Object.assign(chosen, { place, row: null, column: null }),
@@ -186,7 +222,8 @@ function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
 
 function createParts({ scene, turning, view, does }, cube, compact) {
   return {
-    header: createHeader(scene, does),
+    header: createHeader(scene, does, compact),
+    wall: compact ? null : createWall(scene),
     quiet: createQuietLine(scene, view.note, compact),
     hint: createHint(scene),
     help: createHelp(scene),
@@ -200,7 +237,7 @@ function createParts({ scene, turning, view, does }, cube, compact) {
 }
 
 function layoutOf(parts, compact) {
-  const stage = element("div", { class: "stage" }, parts.room, parts.header, parts.hint.element);
+  const stage = element("div", { class: "stage" }, parts.room, parts.header.element, parts.hint.element);
   const dock = element("div", { class: "dock" }, parts.controls?.element ?? null, parts.filmstrip.element);
   const rest = [parts.said, parts.help.element];
   if (compact) {
@@ -208,7 +245,8 @@ function layoutOf(parts, compact) {
     return [stage, dock, ...rest];
   }
   const cards = [parts.compare.element, parts.scanline.element, parts.quiet];
-  return [stage, dock, element("aside", { class: "side", "aria-label": "Details" }, ...cards), ...rest];
+  const details = element("div", { class: "details" }, ...cards);
+  return [stage, dock, element("aside", { class: "side", "aria-label": "The wall" }, parts.wall.element, details), parts.wall.threads, ...rest];
 }
 
 /** How a frame is shown, and what is said once things rest. */
@@ -219,10 +257,13 @@ function showing(app) {
   function show(seconds, scale, still) {
     turning.step(seconds);
     view.aim(turning.angle, chosen, still);
+    const goes = view.look(seconds, chosen.lampsEye, turning.calm);
     const now = momentOf(scene, turning, view.exposures, chosen);
     const { place, row, column } = now.spot;
     view.draw(now.dark, chosen.row === null ? null : { screen: place, row, column }, scale);
+    parts.header.update(now);
     parts.controls?.update(now);
+    parts.wall?.tie(now, view);
     parts.filmstrip.update(now);
     if (!still && performance.now() - copied > COPY_EVERY) showCards(now);
     if (told !== turning.angle) {
@@ -230,11 +271,12 @@ function showing(app) {
       parts.hint.done();
       app.told?.(told);
     }
-    return turning.moving;
+    return turning.moving || goes;
   }
 
   function showCards(now) {
     copied = performance.now();
+    parts.wall?.update(now, view);
     parts.compare?.update(now, view);
     parts.scanline?.update(now, view.beams);
   }
@@ -244,7 +286,7 @@ function showing(app) {
     const now = momentOf(scene, turning, view.exposures, chosen);
     showCards(now);
     view.canvas.setAttribute("aria-label", `The cube in its room, turned by ${degreesText(now.angle)}`);
-    const scores = now.pictures.map((number) => scoreText(scene.pictures[number].psnr));
+    const scores = now.pictures.map((number) => qualityOf(scene.pictures[number].psnr));
     parts.said.textContent = [now.name, degreesText(now.angle), ...scores].filter(Boolean).join(", ");
   }
 

@@ -84,11 +84,10 @@ export class Turning {
     this.set(this.angle + degrees);
   }
 
-  /** Go to an angle the shortest way, softly. */
-  glideTo(angle) {
+  /** Go to an angle the shortest way, softly, in so many seconds. */
+  glideTo(angle, lasts = 0.3 + Math.abs(shortestWay(this.angle, angle)) / 240) {
     const start = this.angle;
     const way = shortestWay(start, angle);
-    const lasts = 0.3 + Math.abs(way) / 240;
     let past = 0;
     this.go(angle, (seconds) => {
       past += seconds;

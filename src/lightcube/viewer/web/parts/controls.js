@@ -1,7 +1,7 @@
 // The controls below the room: the slider over the turn with a tick at every stop, playing, and what can be chosen.
 
 import { PLAY_SPEED } from "../model/turning.js";
-import { degreesText, element, icon, iconButton } from "../tools/elements.js";
+import { degreesText, element, icon, iconButton, setPressed, wordButton } from "../tools/elements.js";
 
 /** Speeds of playing. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
@@ -15,15 +15,17 @@ const MOST_TICKS = 60;
  *
  * @param {Object} scene
  * @param {number[]} stops
- * @param {Object} does `play()`, `neighbour(way)`, `snap()`, `whole()`, `thin()`, `speed(factor)`, `slide(angle)`, `slid()`
+ * @param {Object} does `play()`, `neighbour(way)`, `snap()`, `lampsEye()`, `whole()`, `thin()`,
+ *   `speed(factor)`, `slide(angle)`, `slid()`
  * @returns {{element: HTMLElement, update: function(Object): void}} `update` takes what the app knows at a moment
  */
 export function createControls(scene, stops, does) {
   const play = iconButton("play", "Play", "Space", does.play);
-  const snap = switchButton("magnet", "Snap", "Come to rest on pictures, and on each while playing", does.snap);
-  const whole = switchButton("whole", "Whole shadow", "Show the whole shadow (W)", does.whole);
+  const snap = wordButton("magnet", "Snap", "Come to rest on pictures, and on each while playing", does.snap);
+  const whole = wordButton("whole", "Whole shadow", "Show the whole shadow (W)", does.whole);
   whole.hidden = scene.whole_shadow === null;
-  const thin = switchButton("thin", "Thin beams", "Show one thin beam in each pixel, as in the paper (B)", does.thin);
+  const thin = wordButton("thin", "Thin beams", "Show one thin beam in each pixel, as in the paper (B)", does.thin);
+  const eye = wordButton("eye", "Lamp's eye", "Look from where the lamp is (L)", does.lampsEye);
   const readout = element("output", { class: "readout", "aria-live": "off" });
   const slider = createSlider(stops, does);
   const row = element("div", { class: "controls", role: "group", "aria-label": "Turning" },
@@ -31,12 +33,13 @@ export function createControls(scene, stops, does) {
       iconButton("previous", "Previous picture", "Page Up", () => does.neighbour(-1)), play,
       iconButton("next", "Next picture", "Page Down", () => does.neighbour(1))),
     readout, slider.element,
-    element("div", { class: "choices" }, speedChoice(does.speed), snap, whole, thin));
+    element("div", { class: "choices" }, speedChoice(does.speed), snap, eye, whole, thin));
 
   return {
     element: row,
     update(now) {
       setPressed(snap, now.snap);
+      setPressed(eye, now.lampsEye);
       setPressed(whole, now.whole);
       setPressed(thin, now.thin);
       if (play.dataset.playing !== String(now.playing)) {
@@ -101,13 +104,4 @@ function speedChoice(chosen) {
   const select = element("select", { "aria-label": "Speed of playing", change: choose }, ...options);
   say();
   return select;
-}
-
-function switchButton(name, text, title, pressed) {
-  return element("button", { type: "button", class: "switch", "aria-pressed": "false", title, click: pressed },
-    icon(name), element("span", { text }));
-}
-
-function setPressed(button, on) {
-  button.setAttribute("aria-pressed", String(on));
 }

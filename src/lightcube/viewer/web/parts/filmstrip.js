@@ -1,7 +1,7 @@
 // The strip of all wanted pictures: a click turns the cube to one, and the nearest one is marked.
 
 import { wantedImage } from "../tools/cards.js";
-import { degreesText, element, scoreText } from "../tools/elements.js";
+import { degreesText, element, qualityOf } from "../tools/elements.js";
 
 /**
  * The film strip, in the order of the turn.
@@ -47,14 +47,14 @@ export function createFilmstrip(scene, chosen) {
 
 function thumbnail(scene, number, pressed) {
   const picture = scene.pictures[number];
-  const score = scoreText(picture.psnr);
+  const quality = qualityOf(picture.psnr);
   const angle = degreesText(picture.angle_deg);
-  const label = [`${picture.name} ${score || angle}`, picture.mirrored && "mirrored", score && angle].filter(Boolean).join(", ");
+  const label = [picture.name, quality, picture.mirrored && "mirrored", angle].filter(Boolean).join(", ");
   const given = { type: "button", class: "thumbnail", "aria-label": label, title: label, tabindex: -1, click: pressed };
   return element("button", given,
     wantedImage(scene, picture),
-    element("span", { class: "name", text: picture.name }), " ",
-    element("span", { class: "score", text: score || angle }));
+    element("span", { class: "name", text: picture.name }),
+    quality ? element("span", { class: `mark ${quality}`, "aria-hidden": "true" }) : null);
 }
 
 function mark(button, on) {

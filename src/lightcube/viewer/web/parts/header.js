@@ -1,21 +1,34 @@
 // The title, the quiet line that says what the page holds, and the buttons of the page itself.
 
-import { element, iconButton, oneDecimal } from "../tools/elements.js";
+import { element, iconButton, oneDecimal, setPressed, wordButton } from "../tools/elements.js";
+
+const GLASS = "Light falls through a block of coloured glass";
 
 /**
- * Title and buttons.
+ * Title, who made it and for whom, what it is, and buttons.
  *
  * @param {Object} scene
- * @param {Object} does `theme()`, `fullScreen()`, `help()`
- * @returns {HTMLElement}
+ * @param {Object} does `details()`, `theme()`, `fullScreen()`, `help()`
+ * @param {boolean} compact the title and the buttons of a notebook
+ * @returns {{element: HTMLElement, update: function(Object): void}}
  */
-export function createHeader(scene, does) {
-  return element("header", { class: "top" },
-    element("h1", { text: scene.title }),
-    element("div", { class: "tools" },
-      iconButton("theme", "Light or dark", "T", does.theme),
-      document.fullscreenEnabled ? iconButton("screen", "Full screen", "F", does.fullScreen) : null,
-      iconButton("help", "Help", "?", does.help)));
+export function createHeader(scene, does, compact) {
+  const details = wordButton("details", "Details", "Scores, lamps and the way of the light (D)", does.details);
+  const what = scene.turns ? `${GLASS}; at each stop its shadow is another picture.` : `${GLASS}; its shadows are pictures.`;
+  const said = [scene.by && `by ${scene.by}`, scene.note].filter(Boolean);
+  return {
+    element: element("header", { class: "top" },
+      element("div", { class: "titles" },
+        element("h1", { text: scene.title, dir: "auto" }),
+        said.length > 0 ? element("p", { class: "by", text: said.join(" · "), dir: "auto" }) : null,
+        compact ? null : element("p", { class: "what", text: what })),
+      element("div", { class: "tools" },
+        compact ? null : details,
+        iconButton("theme", "Light or dark", "T", does.theme),
+        document.fullscreenEnabled ? iconButton("screen", "Full screen", "F", does.fullScreen) : null,
+        iconButton("help", "Help", "?", does.help))),
+    update: (now) => setPressed(details, now.details),
+  };
 }
 
 /**

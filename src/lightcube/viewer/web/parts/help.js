@@ -3,6 +3,7 @@
 import { element, icon, iconButton } from "../tools/elements.js";
 
 const WHAT_IT_IS = "Light falls through a block of coloured glass.";
+const ITS_GLASS = "So that one sees into it the glass is drawn clearer than it is, and shining; what the wall shows, and what the lamp's eye sees, is exact.";
 const ITS_LIGHT = "Each pixel shows all the light that falls on it; nearer, one sees how that varies inside.";
 const AT_STOPS = "At each stop of the turntable its shadow is another picture.";
 const ON_SCREENS = "Its shadows are pictures.";
@@ -22,6 +23,8 @@ const TURNING_KEYS = [
 const KEYS = [
   ["arrows on “shown”", "choose the scan-line's row and pixel"],
   ["+ −", "nearer, farther"],
+  ["L", "look from where the lamp is"],
+  ["D", "details: scores, lamps, scan-line"],
   ["W", "whole shadow"],
   ["B", "thin beams, as in the paper"],
   ["F", "full screen"],
@@ -59,7 +62,7 @@ export function createHelp(scene) {
   const keys = all.filter(([key]) => key !== "W" || scene.whole_shadow !== null);
   const dialog = element("dialog", { class: "help", "aria-labelledby": "lightcube-help" },
     element("header", {}, element("h2", { id: "lightcube-help", text: "Turning a light cube" }), close),
-    element("p", { text: `${WHAT_IT_IS} ${scene.turns ? AT_STOPS : ON_SCREENS} ${ITS_LIGHT}` }),
+    element("p", { text: `${WHAT_IT_IS} ${scene.turns ? AT_STOPS : ON_SCREENS} ${ITS_LIGHT} ${ITS_GLASS}` }),
     element("div", { class: "lists" }, listOf("gestures", "Mouse and fingers", gestures), listOf("keys", "Keys", keys)));
   dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
   return {

@@ -8,7 +8,7 @@ const TYPED_IN = "select, textarea, input:not([type=range]), [contenteditable]";
  *
  * @param {EventTarget} area the document, or an element of it
  * @param {Object} does `turn(degrees)`, `neighbour(way)`, `play()`, `nearest()`, `first()`, `zoom(factor)`, `whole()`,
- *   `thin()`, `fullScreen()`, `theme()`, `help()`, `close()`
+ *   `thin()`, `lampsEye()`, `details()`, `fullScreen()`, `theme()`, `help()`, `close()`
  * @returns {function(): void} stops listening
  */
 export function listenToKeys(area, does) {
@@ -43,6 +43,8 @@ function actionsOf(does) {
     "-": () => does.zoom(1 / 1.15),
     w: () => does.whole(),
     b: () => does.thin(),
+    l: () => does.lampsEye(),
+    d: () => does.details(),
     f: () => does.fullScreen(),
     t: () => does.theme(),
     "?": () => does.help(),

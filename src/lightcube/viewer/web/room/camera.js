@@ -1,7 +1,7 @@
 // A camera on an orbit round the cube, and what its rays meet; lengths are mm, in the room.
 
-import { add, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
-import { extentOf } from "./furniture.js";
+import { add, cross, dot, modulo, norm, scaled, sub, unit } from "../tools/vectors.js";
+import { extentOf, lampsLighting, screenCorners } from "./furniture.js";
 
 /** Heights of the eye above its target's level, degrees: above the floor, and with an upright picture. */
 export const LOWEST = 2;
@@ -10,6 +10,9 @@ export const HIGHEST = 88;
 const ASPECT = 16 / 9;
 /** Part of the picture that stays free at each edge. */
 const MARGIN = 0.05;
+
+/** From the lamp a picture fills so much of the sight, and what is far away is seen under so many degrees. */
+const [LAMPS_SIGHT, FAR_FIELD] = [0.72, 0.8];
 
 const RADIANS = Math.PI / 180;
 
@@ -78,6 +81,48 @@ export function fitted(orbit, scene, rooms, aspect) {
     depth = Math.min(depth, -(most + least) / (2 * free));
   }
   return { ...orbit, target: eye, distance: -depth };
+}
+
+/**
+ * The orbit of an eye where the brightest lamp is: the picture that it throws on the first lit screen fills its sight.
+ * @param {object} scene
+ * @param {object[]} exposures that the room's screens show
+ * @param {object} room
+ */
+export function lampsOrbit(scene, exposures, room) {
+  const lit = Math.max(0, exposures.findIndex((exposure) => exposure.lit));
+  const screen = room.screens[lit];
+  const middle = scaled(screenCorners(screen).reduce(add), 1 / 4);
+  const lamp = room.lamps[lampsLighting(scene, exposures[lit])[0] ?? 0];
+  const high = Math.max(norm(screen.down) * screen.pixels[0], norm(screen.right) * screen.pixels[1]);
+  if (!lamp.parallel) {
+    const distance = norm(sub(lamp.place, middle));
+    const seen = { ...orbitFrom({ eye: lamp.place, target: middle, field_deg: 1 }) };
+    return { ...seen, field_deg: widthOf(high, distance) };
+  }
+  const distance = high / (2 * LAMPS_SIGHT * Math.tan((FAR_FIELD / 2) * RADIANS)) * ASPECT;
+  const ahead = unit(scaled(lamp.place, -1));
+  const target = sub(middle, scaled(ahead, dot(middle, ahead))); // where its light passes the cube's middle
+  return orbitFrom({ eye: sub(target, scaled(ahead, distance)), target, field_deg: FAR_FIELD });
+}
+
+/** The field, degrees, in which something so high has the lamp's part of the sight. */
+function widthOf(high, distance) {
+  return (2 * Math.atan((high * ASPECT) / (2 * LAMPS_SIGHT * distance))) / RADIANS;
+}
+
+/** An orbit between two, the way that is shorter round the cube; what is seen of the target grows evenly. */
+export function between(one, other, part) {
+  const mixed = (a, b) => a + (b - a) * part;
+  const sight = ({ distance, field_deg }) => Math.log(distance * Math.tan((field_deg / 2) * RADIANS));
+  const field_deg = mixed(one.field_deg, other.field_deg);
+  return {
+    azimuth: one.azimuth + (modulo(other.azimuth - one.azimuth + 180, 360) - 180) * part,
+    height: mixed(one.height, other.height),
+    distance: Math.exp(mixed(sight(one), sight(other))) / Math.tan((field_deg / 2) * RADIANS),
+    target: one.target.map((each, axis) => mixed(each, other.target[axis])),
+    field_deg,
+  };
 }
 
 /**

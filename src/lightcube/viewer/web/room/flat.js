@@ -6,7 +6,7 @@ import { castPicture, transmittance } from "../model/cast.js";
 import { encode } from "../model/light.js";
 import { add, applyInverse, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, rayAt, seenAt } from "./camera.js";
-import { TONES, cubeCorners, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
+import { TONES, cubeCorners, floorOf, fromFar, halfSides, lampRadius, wallWidth } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, screenCorners, tableOf } from "./furniture.js";
 
 /** Shadows that are kept. */
@@ -207,12 +207,12 @@ function drawLine(stage, { ends, colour, parts, width }) {
 
 function drawScreen(stage, { corner, right, down, pixels, facing, number }) {
   const { context, scene, camera, tones, shadows } = stage;
-  const rim = [right, down].map((step) => scaled(unit(step), frameWidth(scene)));
+  const rim = [right, down].map((step) => scaled(unit(step), wallWidth(scene, { right, pixels })));
   const corners = screenCorners({ corner, right, down, pixels });
   const outside = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
   const rimmed = (each, [x, y]) => add(each, add(scaled(rim[0], x), scaled(rim[1], y)));
   tracePath(stage, corners.map((each, i) => rimmed(each, outside[i])));
-  context.fillStyle = cssColour(tones.frame);
+  context.fillStyle = cssColour(tones.wall);
   context.fill();
   for (let i = 0; i < PATCHES; i++) {
     for (let j = 0; j < PATCHES; j++) {

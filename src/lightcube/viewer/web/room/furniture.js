@@ -6,32 +6,36 @@ import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from ".
 /** Linear light of the room and of what stands in it. */
 export const TONES = {
   dark: {
-    floor: [0.15, 0.153, 0.162],
-    far: [0.02, 0.0215, 0.0255],
-    grid: [0.26, 0.265, 0.28],
-    table: [0.7, 0.705, 0.715],
-    rim: [0.86, 0.87, 0.89],
-    frame: [0.3, 0.3, 0.31],
-    back: [0.06, 0.06, 0.064],
+    floor: [0.05, 0.052, 0.058],
+    far: [0.009, 0.0095, 0.0115],
+    grid: [0.1, 0.103, 0.11],
+    table: [0.16, 0.16, 0.165],
+    rim: [0.5, 0.5, 0.5],
+    wall: [0.022, 0.023, 0.026],
+    back: [0.03, 0.03, 0.032],
     off: [0.12, 0.12, 0.13],
-    edge: [0.78, 0.88, 1.0],
+    edge: [0.75, 0.86, 1.0],
     hint: [0.9, 0.92, 1.0],
     mark: [0.55, 0.9, 1.0],
     shade: 0.6,
+    glow: 0.5,
+    ember: 0.5,
   },
   light: {
-    floor: [0.83, 0.83, 0.82],
-    far: [0.6, 0.61, 0.63],
-    grid: [0.6, 0.605, 0.61],
-    table: [0.97, 0.97, 0.96],
-    rim: [0.3, 0.31, 0.33],
-    frame: [0.09, 0.09, 0.095],
-    back: [0.33, 0.335, 0.345],
+    floor: [0.4, 0.4, 0.395],
+    far: [0.24, 0.245, 0.255],
+    grid: [0.3, 0.302, 0.305],
+    table: [0.55, 0.55, 0.545],
+    rim: [0.2, 0.205, 0.215],
+    wall: [0.2, 0.2, 0.205],
+    back: [0.16, 0.163, 0.17],
     off: [0.24, 0.245, 0.26],
-    edge: [0.05, 0.065, 0.09],
-    hint: [0.12, 0.13, 0.17],
+    edge: [0.9, 0.95, 1.0],
+    hint: [0.95, 0.95, 1.0],
     mark: [0.0, 0.25, 0.75],
-    shade: 0.34,
+    shade: 0.45,
+    glow: 0.4,
+    ember: 0.7,
   },
 };
 
@@ -41,6 +45,8 @@ const AROUND = Array.from({ length: 12 }, (_, i) => 30 * i);
 const FAR = 3;
 /** A lamp's radius, in widths of the cube. */
 const LAMP_RADIUS = 0.036;
+/** Width of a frame, in widths of the cube, and of a wall around a picture, in widths of that. */
+const [FRAME, WALL] = [0.014, 0.7];
 /** With more lamps than this, lines to the corners of all pictures would hide the room. */
 const MOST_HINTED = 6;
 
@@ -59,9 +65,9 @@ export function lampRadius(scene) {
   return LAMP_RADIUS * longestSide(scene);
 }
 
-/** Sides of a picture's frame. */
-export function frameWidth(scene) {
-  return 0.014 * longestSide(scene);
+/** How far a wall goes on beyond its picture; a screen with edges has a frame. */
+export function wallWidth(scene, { right, pixels }) {
+  return scene.whole_shadow === null ? FRAME * longestSide(scene) : WALL * norm(right) * Math.max(...pixels);
 }
 
 /** The colour of light, its brightest part 1; null of no light. */
@@ -180,7 +186,7 @@ function edgeLines(scene, room, eye, tones) {
 }
 
 /** The lamps that light a screen, by their numbers in the room, the brightest first. */
-function lampsLighting(scene, exposure) {
+export function lampsLighting(scene, exposure) {
   const numbers = [...new Set(scene.views.map((view) => view.lamp))].sort((a, b) => a - b);
   const light = numbers.map((lamp) =>
     exposure.views.filter((view) => view.lamp === lamp).reduce((sum, view) => sum + Math.max(...view.power), 0),

@@ -3,9 +3,9 @@
 import { pointsOf } from "../model/area.js";
 import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, seenAt } from "./camera.js";
-import { TONES, floorOf, frameWidth, fromFar, halfSides, lampRadius } from "./furniture.js";
-import { linesOf, longestSide, markedSheet, pureColour, tableOf } from "./furniture.js";
-import { CAST, EVERYWHERE, ROOM } from "./shaders.js";
+import { TONES, floorOf, fromFar, halfSides, lampRadius, lampsLighting } from "./furniture.js";
+import { linesOf, longestSide, markedSheet, pureColour, tableOf, wallWidth } from "./furniture.js";
+import { CAST, EVERYWHERE, MOST_BEAMS, ROOM } from "./shaders.js";
 
 /** What is infinite, in single precision. */
 const NEVER = 1e30;
@@ -332,25 +332,46 @@ function setSight(gl, painter, { scene, room, camera, floor }, width, height) {
   gl.uniformMatrix3fv(painter.at("inCube"), false, room.turn.map((each) => each / voxel_mm));
   gl.uniform3iv(painter.at("eyeWhole"), whole);
   gl.uniform3fv(painter.at("eyeRest"), sub(inside, whole));
+  gl.uniform3fv(painter.at("middle"), scaled(eye, -1));
   gl.uniform3fv(painter.at("ground"), sub([0, 0, floor], eye));
   gl.uniform1f(painter.at("unit"), longestSide(scene));
 }
 
 /** What stands in the room, in which colours. */
-function setThings(gl, painter, { scene, exposures, parts, room, camera, dark, mark }, counts) {
+function setThings(gl, painter, { scene, exposures, parts, room, camera, dark, mark, bare = 0 }, counts) {
   const tones = TONES[dark ? "dark" : "light"];
   const { middle, right, down } = tableOf(scene, room);
   gl.uniform1f(painter.at("parts"), parts);
   gl.uniform3iv(painter.at("counts"), counts);
   gl.uniformMatrix3fv(painter.at("table"), false, [...sub(middle, camera.eye), ...right, ...down]);
   gl.uniform3fv(painter.at("foot"), footOf(scene, room, right, down));
-  for (const name of ["floor", "far", "grid", "table", "rim", "frame", "back", "off", "mark"]) {
+  for (const name of ["floor", "far", "grid", "table", "rim", "wall", "back", "off", "mark"]) {
     gl.uniform3fv(painter.at(`${name}Tone`), tones[name]);
   }
   gl.uniform1f(painter.at("shade"), tones.shade);
+  gl.uniform1f(painter.at("glow"), tones.glow);
+  const lit = room.lamps.reduce((sum, { light }) => add(sum, light), [0, 0, 0]);
+  gl.uniform3fv(painter.at("emberTone"), scaled(pureColour(lit) ?? [0, 0, 0], tones.ember));
+  gl.uniform1f(painter.at("bare"), bare);
+  gl.uniform3fv(painter.at("bareTone"), lit);
+  setBeams(gl, painter, scene, exposures, room, camera.eye);
   const sheet = markedSheet(scene, exposures, room, mark);
   gl.uniform1i(painter.at("sheetKind"), sheet ? sheet.kind : 0);
   if (sheet) gl.uniformMatrix3fv(painter.at("sheet"), false, [...sub(sheet.corner, camera.eye), ...sheet.sides.flat()]);
+}
+
+/** The light of each screen's brightest lamp, in the order in which screens are drawn. */
+function setBeams(gl, painter, scene, exposures, room, eye) {
+  const [ways, tones] = [new Float32Array(4 * MOST_BEAMS), new Float32Array(3 * MOST_BEAMS)];
+  fromFar(room, eye).slice(0, MOST_BEAMS).forEach(({ number }, i) => {
+    const [brightest] = lampsLighting(scene, exposures[number]).map((lamp) => room.lamps[lamp]);
+    if (brightest === undefined) return;
+    const { place, parallel, light } = brightest;
+    ways.set(parallel ? [...scaled(unit(place), -longestSide(scene)), 0] : [...sub(place, eye), 1], 4 * i);
+    tones.set(pureColour(light), 3 * i);
+  });
+  gl.uniform4fv(painter.at("beams"), ways);
+  gl.uniform3fv(painter.at("beamTones"), tones);
 }
 
 /** What the cube covers of the disc, in its radii; it shades it where it stands upright. */
@@ -386,12 +407,11 @@ function thingTable({ scene, exposures, room, camera, dark, mark }, width, heigh
 }
 
 function screenRows(scene, room, eye) {
-  const frame = frameWidth(scene);
   return fromFar(room, eye).map(({ corner, right, down, pixels, facing, number }) => [
     ...[...sub(corner, eye), pixels[0]],
     ...[...right, pixels[1]],
     ...[...down, number],
-    ...[...facing, frame],
+    ...[...facing, wallWidth(scene, { right, pixels })],
   ]);
 }
 

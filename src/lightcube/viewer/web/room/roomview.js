@@ -4,7 +4,8 @@ import { JUDGED, QUICK, THIN } from "../model/area.js";
 import { exposures, standing } from "../model/stage.js";
 import { clampTo, element, fitCanvas } from "../tools/elements.js";
 import { add, norm, scaled, sub } from "../tools/vectors.js";
-import { HIGHEST, LOWEST, cameraOf, eyeOf, fitted, middleOfPixel, orbitFrom, pointed, rayAt } from "./camera.js";
+import { HIGHEST, LOWEST, between, cameraOf, eyeOf, fitted, lampsOrbit, middleOfPixel, orbitFrom } from "./camera.js";
+import { pointed, rayAt, seenAt } from "./camera.js";
 import { createFlat } from "./flat.js";
 import { roomsAround, screenCorners } from "./furniture.js";
 import { createRenderer } from "./gpu.js";
@@ -13,6 +14,8 @@ import { createRenderer } from "./gpu.js";
 const EYE_SPEED = 0.3;
 /** How far the eye may go, in parts of the distance at which all is seen. */
 const [NEAREST, FARTHEST] = [0.2, 3];
+/** Seconds that the eye takes to the lamp. */
+const TO_THE_LAMP = 1.4;
 /** Parts along the longer side of a shadow at most: all browsers have textures of twice as many. */
 const MOST_PARTS = 1024;
 
@@ -29,6 +32,7 @@ export class RoomView {
     Object.assign(this, { canvas, renderer, note });
     this.comeBack();
     this.bases = {};
+    this.atLamp = 0; // how far the eye is on its way there, 0..1
   }
 
   /**
@@ -64,7 +68,21 @@ export class RoomView {
   /** Draw at a part of the full resolution; `mark` is the pixel that is pointed at, or null. */
   draw(dark, mark, scale) {
     fitCanvas(this.canvas);
-    this.renderer.draw(this.room, this.camera(), { dark, mark, scale });
+    this.renderer.draw(this.room, this.camera(), { dark, mark, scale, bare: soft(this.atLamp) });
+  }
+
+  /** Go on towards the lamp's eye, or back from it, for some seconds, or at once; returns whether there is way left. */
+  look(seconds, lampsEye, atOnce) {
+    const goal = lampsEye ? 1 : 0;
+    const step = atOnce ? 1 : seconds / TO_THE_LAMP;
+    this.atLamp += clampTo(goal - this.atLamp, -step, step);
+    return this.atLamp !== goal;
+  }
+
+  /** Where a screen's corners are seen, from the upper left around, 0..1 from the canvas's upper left. */
+  cornersSeen(place) {
+    const camera = this.camera();
+    return screenCorners(this.room.screens[place]).map((corner) => seenAt(camera, corner)).map(({ x, y }) => [x, y]);
   }
 
   /** Move the eye around the room by pixels of a drag. */
@@ -109,6 +127,11 @@ export class RoomView {
   }
 
   orbit() {
+    const own = this.ownOrbit();
+    return this.atLamp === 0 ? own : between(own, lampsOrbit(this.scene, this.exposures, this.room), soft(this.atLamp));
+  }
+
+  ownOrbit() {
     const [base, { azimuth, height, far, aside }] = [this.base(), this.away];
     return {
       ...base,
@@ -136,6 +159,11 @@ export class RoomView {
   dispose() {
     this.renderer.dispose();
   }
+}
+
+/** Begin and end softly: 0..1 to 0..1. */
+function soft(part) {
+  return part * part * (3 - 2 * part);
 }
 
 /** A canvas with its renderer, and a sentence for people where it is not WebGL2 that draws. */

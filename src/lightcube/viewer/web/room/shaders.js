@@ -37,6 +37,9 @@ vec3 toLinear(vec3 shown) {
  * enough for rays that run almost along a face.
  */
 const GLASS = `
+#ifndef LIT
+#define LIT(dense, piece)
+#endif
 uniform usampler3D voxels;
 uniform vec3 rates;    // extinction of a code c: least (2 ^ (rates c) - 1), per voxel side
 uniform float least;
@@ -68,7 +71,10 @@ vec3 walked(ivec3 base, vec3 off, vec3 way, float from, float to) {
     vec3 next = mix((vec3(cell + rise) - off) * per, vec3(NEVER), still);
     float until = min(least3(next), end);
     vec3 code = vec3(texelFetch(voxels, cell, 0).rgb);
-    sum += max(until - t, 0.0) * (exp2(rates * code) - 1.0);
+    vec3 dense = exp2(rates * code) - 1.0;
+    float piece = max(until - t, 0.0);
+    sum += piece * dense;
+    LIT(least * dense, piece);
     if (until >= end || least * least3(sum) > BLACK) break;
     t = max(t, until);
     cell += stride * ivec3(lessThanEqual(next, vec3(until)));
@@ -156,11 +162,31 @@ void main() {
   shown = vec4(linear ? mean : toDisplay(mean), 1.0);
 }`;
 
+/** Screens whose light is drawn in the air at most: more would hide the room. */
+export const MOST_BEAMS = 6;
+
 /**
  * The room. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
  * light behind the cube's glass, or on a veil before it. The things' layout is gpu.js's `thingTable`.
  */
-export const ROOM = `${HEAD}${TRANSFER}${GLASS}
+const EMBERS = `
+vec3 embers = vec3(0.0);  // light that the glass itself throws to the eye, so far
+float unveiled = 1.0;     // and how much of what lies behind still does
+
+/* A voxel under the lamp shines in its own colour, the purer the more; one that is black or clear does not. */
+void shine(vec3 dense, float piece) {
+  float most = max(dense.x, max(dense.y, dense.z)), grey = min(dense.x, min(dense.y, dense.z));
+  float pure = most - grey;
+  if (pure <= 0.0) return;
+  float part = 1.0 - exp(-piece * 0.1 * log(1.0 + 6.0 * pure));
+  embers += unveiled * part * (most - dense) / pure;
+  unveiled *= 1.0 - part;
+}
+#define LIT(dense, piece) shine(dense, piece)
+`;
+
+export const ROOM = `${HEAD}${TRANSFER}${EMBERS}${GLASS}
+const int MOST_BEAMS = ${MOST_BEAMS};
 uniform vec2 canvas;      // pixels
 uniform mat3 sight;       // to the right edge, to the upper edge, ahead
 uniform mat3 inCube;      // mm in the room to voxel sides in the cube
@@ -174,11 +200,20 @@ layout(std140) uniform Things { vec4 things[1024]; };  // four numbers of four f
 uniform ivec3 counts;     // screens, lamps, lines
 uniform sampler2DArray shadows;
 uniform float parts;      // of theirs along a pixel's side
-uniform vec3 floorTone, farTone, gridTone, tableTone, rimTone, frameTone, backTone, offTone, markTone;
+uniform vec3 floorTone, farTone, gridTone, tableTone, rimTone, wallTone, backTone, offTone, markTone;
 uniform float shade;      // how dark shadows on the floor are
+uniform vec3 middle;      // of the cube
+uniform vec4 beams[MOST_BEAMS];  // of each screen its brightest lamp: how its light goes, 0, or where it is, 1
+uniform vec3 beamTones[MOST_BEAMS];  // that lamp's colour; black where no light falls
+uniform float glow;       // how much light the air shows
+uniform vec3 emberTone;   // of the glass under the lamp; black without one
+uniform vec3 bareTone;    // the light of all lamps, and
+uniform float bare;       // 0 glass as one likes to see it, 1 as light goes through it, before bare light
 uniform mat3 sheet;       // a corner of the marked row's beams, and two sides
 uniform int sheetKind;    // 0 none, 1 of parallel light, 2 of a lamp in that corner
 out vec4 shown;
+
+const float FAR = 300.0;  // widths of the cube: farther away numbers are not fine enough
 
 vec3 way, stepX, stepY;   // of this pixel, and on to its neighbours
 vec3 light;               // behind the glass
@@ -228,7 +263,7 @@ void drawFloor() {
   light = backdrop();
   solid = NEVER;
   Place place = placeOn(ground, vec3(unit, 0.0, 0.0), vec3(0.0, unit, 0.0));
-  if (way.z >= 0.0) return;
+  if (way.z >= 0.0 || place.depth > FAR * unit) return;
   solid = place.depth;
   float away = length(place.at);
   vec2 grain = place.grain;
@@ -238,6 +273,7 @@ void drawFloor() {
   vec3 hover = (table[0] - ground) / unit;
   float radius = length(table[1]) / unit;
   float dark = blob(max(length(place.at - hover.xy) - 0.8 * radius, 0.0), hover.z, 0.24);
+  vec3 spill = vec3(0.0); // what the pictures throw back
   for (int i = 0; i < counts.x; i++) {
     vec4 corner = things[4 * i], right = things[4 * i + 1];
     vec3 across = right.xyz * right.w / unit, below = things[4 * i + 2].xyz * corner.w / unit;
@@ -246,8 +282,10 @@ void drawFloor() {
     float aside = max(length(place.at - start.xy - part * across.xy) - 0.4 * length(below.xy), 0.0);
     float height = max(start.z - 0.5 * abs(below.z) - 0.5 * abs(across.z), 0.0);
     dark = max(dark, 0.7 * blob(aside, height, 0.16));
+    vec3 mean = toLinear(textureLod(shadows, vec3(0.5, 0.5, things[4 * i + 2].w), 20.0).rgb);
+    spill += 0.5 * glow * mean * exp(-2.5 * aside * aside);
   }
-  light = tone * (1.0 - shade * dark);
+  light = tone * (1.0 - shade * dark) + spill;
 }
 
 const float THROUGH = 0.35; // of a picture is seen through the screen's paper from behind
@@ -259,19 +297,27 @@ void drawScreen(int i) {
   if (place.depth <= 0.0 || place.depth > solid) return;
   vec2 pixels = vec2(right.w, corner.w);
   vec2 edge = 0.5 * pixels - abs(place.at - 0.5 * pixels);
-  vec2 rim = edge + facing.w / vec2(length(right.xyz), length(down.xyz));
+  vec2 wide = facing.w / vec2(length(right.xyz), length(down.xyz)); // of the wall, beyond the picture
+  vec2 rim = edge + wide;
   float inside = within(edge.x, place.grain.x) * within(edge.y, place.grain.y);
   float framed = within(rim.x, place.grain.x) * within(rim.y, place.grain.y);
   vec2 spot = clamp(parts * place.at, vec2(0.5), parts * pixels - 0.5) / vec2(textureSize(shadows, 0).xy);
   float coarse = log2(max(parts * max(place.grain.x, place.grain.y), 1.0));
   vec3 tone = toLinear(textureLod(shadows, vec3(spot, down.w), coarse).rgb);
-  if (dot(corner.xyz, facing.xyz) >= 0.0) tone = mix(backTone, tone, THROUGH);
-  light = mix(light, mix(frameTone, tone, inside), framed);
+  vec3 mean = toLinear(textureLod(shadows, vec3(0.5, 0.5, down.w), 20.0).rgb);
+  vec2 beside = max(-edge, 0.0) / (0.5 * pixels);
+  vec3 wall = wallTone + 0.22 * glow * mean * exp(-5.0 * dot(beside, beside));
+  if (dot(corner.xyz, facing.xyz) >= 0.0) {
+    tone = mix(backTone, tone, THROUGH);
+    wall = backTone;
+  }
+  light = mix(light, mix(wall, tone, inside), framed);
   if (framed > 0.5) solid = place.depth;
 }
 
 void drawTable(float frost) {
   Place place = placeOn(table[0], table[1], table[2]);
+  if (place.depth > FAR * unit) return;
   float radius = length(place.at), grain = max(place.grain.x, place.grain.y);
   float inside = within(1.0 - radius, grain);
   if (inside <= 0.0) return;
@@ -290,7 +336,7 @@ void drawTable(float frost) {
 void drawLamp(int row) {
   vec4 place = things[4 * row], colour = things[4 * row + 1];
   float away = length(gl_FragCoord.xy - place.xy), radius = place.w;
-  if (away > 6.0 * radius + 2.0) return;
+  if (away > 6.0 * radius + 2.0 || bare > 0.5) return; // there the eye is
   float depth = 1.0 / place.z;
   if (colour.w > 0.0) {
     float far = max(away / radius - 1.0, 0.0);
@@ -309,7 +355,7 @@ void drawLine(int row) {
   float cover = clamp(0.5 + 0.5 * start.w - length(from - part * along), 0.0, 1.0);
   if (cover <= 0.0) return;
   vec4 colour = things[4 * row + 2];
-  float strength = cover * mix(colour.w, things[4 * row + 3].x, part);
+  float strength = (1.0 - bare) * cover * mix(colour.w, things[4 * row + 3].x, part);
   float depth = 0.998 / mix(start.z, end.z, part);
   if (end.w == 0.0) lay(colour.rgb, strength, depth);
   else if (depth < solid) veil = vec4(mix(veil.rgb, colour.rgb, strength), veil.a * (1.0 - strength));
@@ -326,15 +372,88 @@ vec2 metSheet() {
   return vec2(0.16 * inside, place.depth < solid ? place.depth : -1.0);
 }
 
+/* Where the ray is in the light that falls on a screen: from, and to. */
+vec2 metBeam(int i, vec4 source, vec3 corner, vec3 across, vec3 below) {
+  float from = 0.0, to = solid;
+  vec3 inside = corner + 0.5 * (across + below);
+  for (int side = 0; side < 4; side++) {
+    vec3 along = side % 2 == 0 ? across : below;
+    vec3 at = side < 2 ? corner : corner + across + below;
+    vec3 normal = cross(along, source.w == 0.0 ? source.xyz : at - source.xyz);
+    normal *= sign(dot(normal, inside - at));
+    float rate = dot(normal, way), start = dot(normal, at);
+    if (rate > 0.0) from = max(from, start / rate);
+    else to = min(to, start / rate);
+  }
+  return vec2(from, to);
+}
+
+const int STEPS = 14;
+
+/* The light that dust in the air throws to the eye, behind the glass and before it: white up to the cube, then coloured. */
+void drawBeams() {
+  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float ahead = length(way);
+  for (int i = 0; i < min(counts.x, MOST_BEAMS); i++) {
+    if (beamTones[i] == vec3(0.0)) continue;
+    vec4 corner = things[4 * i], right = things[4 * i + 1], down = things[4 * i + 2], facing = things[4 * i + 3];
+    vec3 across = right.xyz * right.w, below = down.xyz * corner.w;
+    vec2 met = metBeam(i, beams[i], corner.xyz, across, below);
+    if (met.x >= met.y) continue;
+    float piece = (met.y - met.x) / float(STEPS);
+    for (int k = 0; k < STEPS; k++) {
+      float t = met.x + (float(k) + noise) * piece;
+      vec3 place = t * way;
+      if (t > enter && t < leave) continue;
+      vec3 source = beams[i].w == 0.0 ? beams[i].xyz : place - beams[i].xyz;
+      float left = dot(corner.xyz - place, facing.xyz) / dot(source, facing.xyz);
+      if (left < 0.0) continue; // behind the screen
+      vec3 hit = place + left * source - corner.xyz;
+      vec2 at = vec2(dot(hit, across) / dot(across, across), dot(hit, below) / dot(below, below));
+      bool passed = dot(place - middle, source) > 0.0;
+      vec2 spot = at * parts * vec2(right.w, corner.w) / vec2(textureSize(shadows, 0).xy);
+      float coarse = log2(max(parts * max(right.w, corner.w) / 12.0, 1.0));
+      vec3 tone = passed ? toLinear(textureLod(shadows, vec3(spot, down.w), coarse).rgb) : 0.55 * beamTones[i];
+      float faint = passed ? 1.0 : exp(-1.2 * length(place - middle) / unit);
+      vec3 shine = (1.0 - bare) * glow * faint * tone * piece * ahead / unit;
+      if (t > enter) light += shine;
+      else veil.rgb += shine;
+    }
+  }
+}
+
+/* Glass whose blacks are dark colours, so that one sees into it. */
+vec3 clearer(vec3 absorbance) {
+  float grey = least3(absorbance);
+  vec3 colour = absorbance - grey;
+  return pow(1.0 + grey / 0.8, -0.8) * exp(-1.1 * log(1.0 + colour / 1.1)) * vec3(1.0);
+}
+
+vec3 comesThrough(vec3 absorbance) { return mix(clearer(absorbance), exp(-absorbance), bare); }
+
+/* What the face that the ray meets first mirrors of the room. */
+void drawSheen() {
+  if (enter >= solid || enter <= 0.0) return;
+  vec3 inside = inCube * way, start = vec3(eyeWhole) + eyeRest;
+  vec3 first = min(-start / inside, (vec3(textureSize(voxels, 0)) - start) / inside);
+  vec3 face = vec3(first.x >= most3(first), first.y >= most3(first), first.z >= most3(first));
+  float slant = abs(dot(inside, face)) / length(inside);
+  float part = (0.03 + 0.5 * pow(1.0 - slant, 4.0)) * (1.0 - bare);
+  lay(farTone * 1.6 + 0.06 * face.z, part, enter);
+}
+
 /* The light that comes through the glass, past the part of the sheet that lies in it. */
 void drawGlass(vec2 beams) {
   vec3 inside = inCube * way;
   float scale = length(inside);
   float last = min(leave, solid);
+  light = mix(light, bareTone, enter < leave ? bare : 0.0);
   bool cut = beams.x > 0.0 && beams.y > enter && beams.y < last;
   for (int piece = cut ? 0 : 1; piece < 2; piece++) {
     float from = piece == 0 ? beams.y : enter, to = piece == 1 && cut ? beams.y : last;
-    light *= exp(-absorbed(eyeWhole, eyeRest, inside / scale, from * scale, to * scale));
+    vec3 absorbance = absorbed(eyeWhole, eyeRest, inside / scale, from * scale, to * scale);
+    light = light * comesThrough(absorbance) + (1.0 - bare) * emberTone * embers;
+    embers = vec3(0.0);
     if (piece == 0) light = mix(light, markTone, beams.x);
   }
   if (!cut) lay(markTone, beams.x, beams.y);
@@ -359,8 +478,10 @@ void main() {
   drawTable(plain ? 0.68 : 0.1);
   for (int i = 0; i < counts.z; i++) drawLine(counts.x + counts.y + i);
   for (int i = 0; i < counts.y; i++) drawLamp(counts.x + i);
-  vec2 beams = metSheet();
-  drawGlass(beams);
+  vec2 sheetMet = metSheet();
+  drawBeams();
+  drawGlass(sheetMet);
+  drawSheen();
   vec3 seen = toDisplay(clamp(veil.rgb + veil.a * light, 0.0, 1.0));
   // gradients without steps: noise of half a level (J. Jimenez, Next generation post processing, 2014)
   float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;

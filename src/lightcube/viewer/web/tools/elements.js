@@ -2,6 +2,8 @@
 
 /** Pixels of a canvas to a pixel of the page, at most. */
 const DENSEST = 2;
+/** Least decibels of a picture that is good, and of one that is fair. */
+const [GOOD, FAIR] = [33, 26];
 /** Lines of the icons, in a square of 24. */
 const ICONS = {
   play: "M8 5l11 7-11 7z",
@@ -13,6 +15,8 @@ const ICONS = {
   whole: "M4 8V4h4M16 4h4v4M20 16v4h-4M8 20H4v-4M9 9h6v6H9z",
   screen: "M9 4H4v5M15 4h5v5M20 15v5h-5M9 20H4v-5",
   theme: "M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16",
+  details: "M4 6h16M4 12h16M4 18h10",
+  eye: "M2.5 12s3.5-6 9.5-6 9.5 6 9.5 6-3.5 6-9.5 6-9.5-6-9.5-6zM12 9.5a2.5 2.5 0 1 0 0 5 2.5 2.5 0 0 0 0-5",
   help: "M9 9a3 3 0 1 1 4.2 2.8c-.8.4-1.2 1-1.2 2.2M12 17.5v.5",
   hand:
     "M9 12V5.5a1.5 1.5 0 0 1 3 0V11m0-1a1.5 1.5 0 0 1 3 0v1m0-.5a1.5 1.5 0 0 1 3 0V15a6 6 0 0 1-6 6h-1" +
@@ -73,6 +77,17 @@ export function iconButton(name, label, key, pressed, given = {}) {
   return element("button", { ...said, ...given }, icon(name));
 }
 
+/** A button with an icon and a word, that can be on; what it does is said on pointing at it. */
+export function wordButton(name, text, title, pressed) {
+  return element("button", { type: "button", class: "switch", "aria-pressed": "false", title, click: pressed },
+    icon(name), element("span", { text }));
+}
+
+/** Say of such a button whether it is on. */
+export function setPressed(button, on) {
+  button.setAttribute("aria-pressed", String(on));
+}
+
 /** Give a canvas as many pixels as it covers on the screen. */
 export function fitCanvas(canvas) {
   const density = Math.min(window.devicePixelRatio, DENSEST);
@@ -105,6 +120,12 @@ export function figuresText(value) {
 /** A score for people: 41.27 is "41.3 dB"; empty where there is none. */
 export function scoreText(psnr) {
   return psnr === null ? "" : `${oneDecimal(psnr)} dB`;
+}
+
+/** In a word how well a picture came out, by the light that the wall shows; empty where nothing was wanted. */
+export function qualityOf(psnr) {
+  if (psnr === null) return "";
+  return psnr >= GOOD ? "good" : psnr >= FAIR ? "fair" : "poor";
 }
 
 /** The nearest number in low..high. */
