@@ -55,6 +55,7 @@ __getattr__, __dir__, __all__ = when_used(
         "Result": "solvers.contract",
         "show": "viewer.notebook",
         "page": "viewer.page",
+        "film": "drawing.films",
     },
 )
 
