@@ -26,6 +26,9 @@ def play(
     even: Annotated[
         bool, typer.Option("--even", help="Turn evenly under a steady lamp: what flickers, flickers.")
     ] = False,
+    view: Annotated[
+        films.View, typer.Option(help="The pictures on the wall, or the room: lamps, glass, walls and beams.")
+    ] = "wall",
     shape: Annotated[
         Format | None,
         typer.Option(
@@ -61,9 +64,6 @@ def play(
     screens: Annotated[
         bool, typer.Option("--screens", help="Show all screens of a stage side by side; with --stops each stop once.")
     ] = False,
-    room: Annotated[
-        bool, typer.Option("--room", help="Show the room in perspective: cube, lamps, and screens with their pictures.")
-    ] = False,
     light: Annotated[
         Beams, typer.Option(help="What a wall shows, averaged over pixels, or the paper's thin beams.")
     ] = "area",
@@ -86,26 +86,25 @@ def play(
     movie.check()
     if shape is not None and scale is not None:
         raise InputError("--format and --scale both say how large the picture is: leave one of them out")
-    look, style = shows.Look(picture_only, check_zoom(zoom), light), _style(output, shape, captions, fps)
-    if room and (target or picture_only or screens or zoom > 1):
-        raise InputError("--room shows all there is: leave out --screens, --target, --picture-only and --zoom")
+    look, style = shows.Look(picture_only, check_zoom(zoom), light), _style(output, shape, captions, fps, view)
+    in_room = view == "room"
+    if in_room and (target or picture_only or screens or zoom > 1):
+        raise InputError("--view room shows all there is: leave out --screens, --target, --picture-only and --zoom")
     loaded = load(cube)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
         raise InputError(f"{cube} has several screens: leave out --target, and see score --sheet")
     turned = arguments.play_angles(loaded, angles_deg, start_deg, end_deg, count, stops=stops)
-    one_by_one = stops or angles_deg is not None
-    if one_by_one or room:
-        shown = np.unique(turned) if stops and (screens or room) else turned
-        if room:
-            show = shows.of_room(loaded, shown)
+    if stops or angles_deg is not None:
+        shown = np.unique(turned) if stops and (screens or in_room) else turned
+        if in_room:
+            film = films.in_room(loaded, style, shown)
         elif screens or (many and not stops):
-            show = shows.of_screens(loaded, shown, look)
+            film = films.styled(loaded, shows.of_screens(loaded, shown, look), style, shown)
         elif stops:
-            show = shows.of_stops(loaded, look, target=target)
+            film = films.styled(loaded, shows.of_stops(loaded, look, target=target), style, shown)
         else:
-            show = shows.of_turn(loaded, shown, look, target=target)
-        film = films.styled(loaded, show, style, shown)
+            film = films.styled(loaded, shows.of_turn(loaded, shown, look, target=target), style, shown)
     else:
         steady = even or not arguments.is_movie(output) or [start_deg, end_deg, count] != [None] * 3
         film = films.filmed(loaded, look, style, turned, even=steady, target=target, screens=screens)
@@ -135,11 +134,11 @@ def _told(output: str, film: films.Film, *, as_json: bool) -> None:
         err.print(f"note: {film.warning}")
 
 
-def _style(output: str, shape: Format | None, captions: bool, fps: float | None) -> films.Style:
+def _style(output: str, shape: Format | None, captions: bool, fps: float | None, view: films.View) -> films.Style:
     """How a movie looks; a GIF is a third as wide and as fast, so that it stays small."""
     small = shape is not None and output.lower().endswith(".gif")
     size = None if shape is None else films.size_of(shape, small=small)
-    return films.Style(size, captions, (films.FPS / 3 if small else films.FPS) if fps is None else fps)
+    return films.Style(size, captions, (films.FPS / 3 if small else films.FPS) if fps is None else fps, view)
 
 
 def _scale(output: str, film: films.Film, style: films.Style, asked: int | None) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,11 @@ Angles = NDArray[np.float64]
 FPS = 30.0
 #: Small frames are so many times less wide and high.
 _LESS = 3
+#: Rows and columns of a room's frames where nothing is said, and seconds that the table turns between two stops.
+_ROOM, _TURN_S = (540, 960), 0.7
+
+#: The pictures on the wall, or the room in which it stands.
+View = Literal["wall", "room"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +88,7 @@ def size_of(format: Format, *, small: bool = False) -> tuple[int, int]:  # noqa:
 def film(
     cube: Cube,
     *,
+    view: View = "wall",
     format: Format | None = None,  # noqa: A002 - what people call it
     captions: bool = False,
     even: bool = False,
@@ -97,6 +104,8 @@ def film(
 
     Parameters
     ----------
+    view
+        ``"room"``: the room in perspective, with lamps, glass, walls, and the light on its way between them.
     format
         ``"square"``, ``"portrait"`` or ``"wide"``: the picture large in the dark, 1080 x 1080, 1080 x 1920 or
         1920 x 1080 pixels; None = the whole screen, a pixel each.
@@ -118,7 +127,7 @@ def film(
     >>> len(film), film.said[:37]
     (120, 'the pictures flow into each other (0.')
     """
-    style = Style(None if format is None else size_of(format), captions, fps)
+    style = Style(None if format is None else size_of(format), captions, fps, view)
     return filmed(cube, Look(picture_only, zoom, light), style, turn(cube), even=even)
 
 
@@ -134,13 +143,18 @@ class Style:
         Whether names stand below the pictures.
     fps
         Frames a second.
+    view
+        The wall, or the room.
     """
 
     size: tuple[int, int] | None = None
     captions: bool = False
     fps: float = FPS
+    view: View = "wall"
 
     def __post_init__(self) -> None:
+        if self.captions and self.view == "room":
+            raise InputError("captions stand below pictures on the wall: leave them out, or show the wall")
         if self.captions and self.size is None:
             raise InputError("captions stand in the dark around a picture: give a format too, square, portrait or wide")
 
@@ -162,10 +176,17 @@ def filmed(
     beside = screens or len(cube.rig.screens.names) > 1
     share = shows.flickers(cube, turned, look) if len(turned) > 1 and not even else 0.0
     if even or (len(turned) > 1 and share <= Flicker.MUCH):
+        if style.view == "room":
+            steady = in_room(cube, style, turned)
+            return steady if even else replace(steady, said=_flows(share))
         show = shows.of_screens(cube, turned, look) if beside else shows.of_turn(cube, turned, look, target=target)
         steady = styled(cube, show, style, turned)
         return steady if even else replace(steady, said=_flows(share))
     stops = np.unique(cube.angles_deg)
+    if style.view == "room":
+        course = Course.of(len(stops), style.fps, 1.0, _TURN_S)
+        show = shows.resting_room(cube, course, style.size or _ROOM)
+        return Film(show, style.fps, cube.transfer, _rests(len(stops), course))
     show = shows.of_screens(cube, stops, look) if beside else shows.of_stops(cube, look, target=target)
     lit = styled(cube, show, style, stops if beside else cube.angles_deg)
     course = Course.of(show.count, style.fps, shows.brightest(cube) if style.size is None else 1.0)
@@ -178,6 +199,11 @@ def styled(cube: Cube, show: Show, style: Style, angles_deg: Angles) -> Film:
         names = shows.captions_of(cube, angles_deg) if style.captions else None
         show = shows.shaped(cube, show, style.size, names)
     return Film(show, style.fps, cube.transfer)
+
+
+def in_room(cube: Cube, style: Style, angles_deg: Angles) -> Film:
+    """The film whose frames are the room at some angles."""
+    return Film(shows.of_room(cube, angles_deg, style.size or _ROOM), style.fps, cube.transfer)
 
 
 def _flows(share: float) -> str:

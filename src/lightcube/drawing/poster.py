@@ -55,9 +55,9 @@ def _enlarged(
 ) -> Picture:
     """The part of a picture around its window, enlarged to a frame, dark where there is nothing: display values."""
     top, left, rows, columns = (int(number) for number in window)
-    iris = _iris(picture.shape[:2], (top, left, rows, columns))
+    kept = picture.astype(np.float32) * iris(picture.shape[:2], (top, left, rows, columns))
     margin = math.ceil(max(size) / scale)
-    padded = np.pad(picture.astype(np.float32) * iris, ((margin, margin), (margin, margin), (0, 0)))
+    padded = np.pad(kept, ((margin, margin), (margin, margin), (0, 0)))
     middle = np.array([left + columns / 2, top + rows / 2]) + margin
     half = np.array(size[::-1]) / 2 / scale
     box = (*(middle - half), *(middle + half))
@@ -68,7 +68,7 @@ def _enlarged(
     return np.maximum(np.stack(colours, axis=2), np.float32(0))
 
 
-def _iris(shape: tuple[int, int], window: tuple[int, int, int, int]) -> Picture:
+def iris(shape: tuple[int, int], window: tuple[int, int, int, int]) -> Picture:
     """``(row, column, 1)``: what an iris lets through, in display values; all within the window."""
     top, left, rows, columns = window
     half = math.hypot(rows, columns) / 2

@@ -21,7 +21,7 @@ from lightcube.optics.arrays import Counts
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Beams
 from lightcube.optics.rig import Rig
-from lightcube.optics.transfer import encode
+from lightcube.optics.transfer import decode, encode, to_uint8
 from lightcube.optics.views import Views
 from lightcube.pictures.fitting import targets_of
 
@@ -111,11 +111,33 @@ def of_screens(cube: Cube, angles_deg: NDArray[np.float64], look: Look) -> Show:
     return Show(beside(), len(angles_deg), look.zoom * int(rig.stops.window[:, 0].max()))
 
 
-def of_room(cube: Cube, angles_deg: NDArray[np.float64]) -> Show:
-    """The room in perspective at some angles."""
-    camera = camera_for(cube)
-    show = room_player(cube, camera)
-    return Show((show(float(angle_deg)) for angle_deg in angles_deg), len(angles_deg), camera.size[0])
+def of_room(cube: Cube, angles_deg: NDArray[np.float64], size: tuple[int, int]) -> Show:
+    """The room in perspective at some angles, in frames of so many rows and columns."""
+    show = room_player(cube, camera_for(cube, size))
+    return Show((show(float(angle_deg)) for angle_deg in angles_deg), len(angles_deg), size[0])
+
+
+def resting_room(cube: Cube, course: Course, size: tuple[int, int]) -> Show:
+    """The room, whose lamps fade in, rest and fade out at each stop while the table turns in what other light there is.
+
+    8-bit display levels.
+    """
+    stops = np.unique(cube.angles_deg)
+    show = room_player(cube, camera_for(cube, size))
+
+    def frames() -> Iterator[NDArray[np.uint8]]:
+        for here, there in zip(stops, [*stops[1:], stops[0] + 360], strict=True):
+            unlit, lit = show(here, lit=False), show(here)
+            parts = {p: decode(np.array(p, np.float32), cube.transfer) for p in course.lamp}
+            levels = {p: to_uint8(unlit + part * (lit - unlit), cube.transfer) for p, part in parts.items()}
+            for part in course.lamp[: len(course.lamp) - course.dark]:
+                yield levels[part]
+            for number in range(1, course.dark + 1):
+                gone = (1 - np.cos(np.pi * number / course.dark)) / 2
+                moved = show(here + gone * (there - here), lit=False) if len(stops) > 1 else unlit
+                yield to_uint8(moved, cube.transfer)
+
+    return Show(frames(), len(stops) * len(course.lamp), size[0])
 
 
 def flickers(cube: Cube, angles_deg: NDArray[np.float64], look: Look) -> float:

@@ -39,7 +39,7 @@ _MOST_WEBP = 16383
 #: Pictures that are made smaller keep more than so many pixels a side.
 _TINY = 64
 #: Pixels that a palette is chosen from, at most.
-_PALETTE_SAMPLE = 1 << 20
+_PALETTE_SAMPLE = 1 << 17
 _PALETTE = 256
 
 
