@@ -271,3 +271,20 @@ def test_cameras_that_see_nothing_are_refused() -> None:
     ):
         with pytest.raises(InputError, match="camera"):
             Camera(eye, (0, 0, 0), up, field, size)
+
+
+def test_a_beam_leads_from_a_lamp_to_the_screens_that_it_lights() -> None:
+    walls = (
+        Screen("ahead", (60, 0, 0), (24, 24), 4.0, (-1, 0, 0)),
+        Screen("aside", (0, 60, 0), (24, 24), 4.0, (0, -1, 0)),
+    )
+    lamps = Lamp("first", (1, 0, 0)), Lamp("second", (0, 1, 0))
+    shots = Shot("a", "ahead", ("first",)), Shot("b", "aside", ("second",))
+    cube = cube_on(Stage(GRID, lamps, walls, shots, cube_turns=False), homogeneous(0.02, 0.02, 0.02))
+    camera = Camera((-1, -2, 300), (0, 0, 0), (0, 1, 0), 40.0, (90, 90))
+    show, room = room_player(cube, camera), standing(cube, 0.0)
+    more, canvas = show(0.0) - show(0.0, lit=False), Canvas(camera)
+    for i, j in product(range(2), repeat=2):
+        middle = 0.7 * room.lamps[i].place + 0.3 * room.screens[j].corners.mean(axis=0)
+        column, row, _ = canvas.seen(middle)[0] / FINE
+        assert (more[int(row), int(column)].max() > 0.01) == (i == j)

@@ -90,12 +90,13 @@ def room_player(cube: Cube, camera: Camera) -> Callable[..., Floats]:
             _absorb(canvas, cube, glass, now.turn, absorbed)
         _overlay(canvas, cube.grid, now, table, front=True)
         if lit:
-            off = off_pictures(canvas, now.screens)
-            windows = cube.rig.at([angle_deg])[0].places_in(whole.at([angle_deg])[0])
-            for screen, picture, (top, left) in zip(now.screens, pictures, windows, strict=True):
+            off, rig = off_pictures(canvas, now.screens), cube.rig.at([angle_deg])[0]
+            windows = rig.places_in(whole.at([angle_deg])[0])
+            lamps = dict(zip(np.unique(cube.rig.sums.lamp), now.lamps, strict=True))
+            for number, (screen, picture, (top, left)) in enumerate(zip(now.screens, pictures, windows, strict=True)):
                 own = picture[top:, left:][: screen.pixels[0], : screen.pixels[1]]
-                for lamp in now.lamps:
-                    draw_beam(canvas, cube.grid, lamp, screen, own, off)
+                for lamp in np.unique(rig.sums.lamp[(rig.sums.picture == number) & np.any(rig.sums.share > 0, axis=1)]):
+                    draw_beam(canvas, cube.grid, lamps[lamp], screen, own, off)
         return canvas.picture()
 
     return show
