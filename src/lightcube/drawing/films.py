@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -153,6 +154,8 @@ class Style:
     view: View = "wall"
 
     def __post_init__(self) -> None:
+        if not (math.isfinite(self.fps) and 1e-3 <= self.fps <= 1000):
+            raise InputError(f"frames per second must be a number from 0.001 to 1000, not {self.fps}")
         if self.captions and self.view == "room":
             raise InputError("captions stand below pictures on the wall: leave them out, or show the wall")
         if self.captions and self.size is None:
