@@ -202,6 +202,13 @@ def test_formats_are_small_files_that_a_second_decoder_reads(tmp_path: Path, for
     assert path.stat().st_size / (len(bright) / 3) < 700_000
 
 
+def test_an_mp4_to_be_sent_is_small_even_of_noise(tmp_path: Path) -> None:
+    frames = np.random.default_rng(2).integers(0, 255, (30, 300, 401, 3), np.uint8)
+    sizes = [lc.save(frames, tmp_path / f"{way}.mp4", fps=30, shared=way).stat().st_size for way in (False, True)]
+    assert sizes[0] > 2_000_000
+    assert sizes[1] < 700_000
+
+
 def test_a_gif_to_be_sent_becomes_smaller_until_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     frames = np.random.default_rng(2).integers(0, 255, (5, 200, 150, 3), np.uint8)
     frames[2] = frames[1]
