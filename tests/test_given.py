@@ -71,6 +71,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "load": {"path": "no.zarr"},
     "page": {"cube": CUBE, "title": "a"},
     "plan": {"pictures": PICTURES, "n": 6, "picture_width": 0.5},
+    "film": {"cube": CUBE},
     "play": {"cube": CUBE},
     "player": {"cube": CUBE},
     "predict": {"targets": TARGETS, "grid": GRID},

@@ -56,6 +56,7 @@ __getattr__, __dir__, __all__ = when_used(
         "show": "viewer.notebook",
         "Label": "viewer.label",
         "page": "viewer.page",
+        "film": "drawing.films",
     },
 )
 

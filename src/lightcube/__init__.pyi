@@ -5,6 +5,7 @@ from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution
 from lightcube.backward.solving import solve
 from lightcube.cores import threads
+from lightcube.drawing.films import film
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
 from lightcube.io import read_pictures, read_scene, read_stage, read_stage_targets, save
@@ -64,6 +65,7 @@ __all__ = [
     "cast",
     "check",
     "dot_test",
+    "film",
     "fit",
     "load",
     "page",

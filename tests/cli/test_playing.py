@@ -1,12 +1,15 @@
 """`play` on the command line: the whole screen or the picture, beside what was wanted, in parts, and in folders."""
 
+import json
 from pathlib import Path
 from typing import Any
 
+import av
 import numpy as np
 import pytest
+from PIL import Image
 
-from lightcube import load, read_pictures
+from lightcube import Cube, Grid, load, read_pictures, save, turntable
 from lightcube.forward import casting
 from lightcube.pictures.fitting import targets_of
 from tests.cli.test_cli import cube, pictures, run
@@ -91,3 +94,57 @@ def test_a_folder_of_pictures_is_read_again_where_it_has_nothing_else(run, playe
         assert {image.shape[1::-1] for image in read.images} == {size}
         assert read.angles_deg == pytest.approx(cube.angles_deg)
     assert run("solve", tmp_path / "shown1", "-o", tmp_path / "b.npz", "--n", 6, "--iterations", 2).code == 0
+
+
+@pytest.fixture
+def unlike(tmp_path: Path) -> Path:
+    """A cube whose shadows have nothing to do with each other."""
+    grid = Grid((8, 10, 12), 2.0)
+    extinction = 3 * (np.random.default_rng(3).random((3, *grid.shape)) < 0.1).astype(np.float32)
+    rig = turntable(grid, [10.0, 100.0], elevation_deg=20.0, picture_shape=(4, 6))
+    cube = Cube(extinction, grid, rig, lamp_powers=np.full((2, 3), 2.0), names=("one", "two"))
+    return save(cube, tmp_path / "unlike.npz")
+
+
+def test_a_movie_rests_on_the_stops_and_says_so(run, unlike: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("play", unlike, "-o", tmp_path / "a.mp4", "--json")
+    said = json.loads(done.out.splitlines()[-1])
+    assert (done.code, said["count"]) == (0, 2 * (18 + 30 + 18 + 8))
+    assert "at each of 2 stops the lamp fades in" in said["how"]
+    assert said["flicker"] <= 0.03
+    even = run("play", unlike, "-o", tmp_path / "b.mp4", "--even")
+    assert (even.code, even.err.count("this flickers")) == (0, 1)
+    assert "fades" not in even.out
+    for more in (("--count", "5"), ("--angles-deg", "0,20"), ("--stops",)):
+        assert run("play", unlike, "-o", tmp_path / "c.gif", "--overwrite", *more).code == 0
+        with av.open(str(tmp_path / "c.gif")) as container:
+            assert len(list(container.decode(video=0))) == {"--count": 5}.get(more[0], 2)
+
+
+def test_formats_of_the_command_line(run, unlike: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("play", unlike, "-o", tmp_path / "a.gif", "--format", "portrait", "--captions")
+    assert done.code == 0, done.err
+    with av.open(str(tmp_path / "a.gif")) as container:
+        stream = container.streams.video[0]
+        assert (stream.height, stream.width) == (640, 360)
+        times = [frame.time for frame in container.decode(video=0)]
+    assert times[6:8] == [pytest.approx(0.6), pytest.approx(1.6)]  # it rests for a second
+    still = run("play", unlike, "-o", tmp_path / "a.png", "--format", "square", "--angles-deg", "10")
+    assert still.code == 0, still.err
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size == (1080, 1080)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--captions"], "give a format too"),
+        (["--format", "square", "--scale", "2"], "leave one of them out"),
+        (["--format", "round"], "square"),
+    ],
+)
+def test_formats_that_cannot_be_are_refused(run, unlike: Path, tmp_path: Path, options: list[str], said: str) -> None:  # type: ignore[no-untyped-def]
+    done = run("play", unlike, "-o", tmp_path / "a.mp4", *options)
+    assert (done.code, done.out) == (2, "")
+    assert said in done.err
+    assert not list(tmp_path.glob("a*"))

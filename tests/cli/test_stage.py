@@ -91,7 +91,7 @@ def test_a_stage_goes_through_all_commands(run, stage: Path) -> None:  # type: i
         (["--stops", "--screens"], 2, (6, 3 + 2 + 5)),
         (["--angles-deg", "0,50,90"], 3, (6, 3 + 2 + 5)),
         (["--angles-deg", "0,50", "--light", "thin"], 2, (6, 10)),
-        (["--angles-deg", "10,20", "--room"], 2, (540, 960)),
+        (["--angles-deg", "10,20", "--view", "room"], 2, (540, 960)),
     ],
 )
 def test_play_shows_screens_and_the_room(run, stage: Path, options: list[str], count: int, shape) -> None:  # type: ignore[no-untyped-def]
@@ -131,10 +131,8 @@ def test_a_cubes_room_is_drawn_as_it_is_played(run, stage: Path) -> None:  # typ
     cube, out = solved(run, stage), stage.parent / "room.png"
     for more, angle_deg in (((), 10), (("--angle-deg", 25), 25)):
         assert run("draw", cube, "-o", out, "--overwrite", *more).code == 0
-        assert (
-            run("play", cube, "-o", stage.parent / "still.png", "--room", "--angles-deg", angle_deg, "--overwrite").code
-            == 0
-        )
+        still = ("-o", stage.parent / "still.png", "--view", "room", "--angles-deg", angle_deg, "--overwrite")
+        assert run("play", cube, *still).code == 0
         with Image.open(out) as drawn, Image.open(stage.parent / "still.png") as played:
             np.testing.assert_array_equal(np.asarray(drawn), np.asarray(played))
     done = run("draw", cube, "-o", stage.parent / "other.svg")
@@ -209,10 +207,10 @@ def test_a_turntables_cube_is_played_as_a_stages(run, stage: Path) -> None:  # t
         assert run("play", cube, "-o", stage.parent / f"{name}.npy", *options).code == 0
         shown[name] = np.load(stage.parent / f"{name}.npy")
     np.testing.assert_allclose(shown["screens"], shown["stops"], rtol=1e-5)
-    done = run("play", cube, "-o", stage.parent / "x.npy", "--room", "--target")
+    done = run("play", cube, "-o", stage.parent / "x.npy", "--view", "room", "--target")
     assert done.code == 2
-    assert "--room shows all" in done.err
-    assert run("play", cube, "-o", stage.parent / "room.npy", "--room", "--angles-deg", "5").code == 0
+    assert "--view room shows all" in done.err
+    assert run("play", cube, "-o", stage.parent / "room.npy", "--view", "room", "--angles-deg", "5").code == 0
     done = run("score", cube, stage)
     assert done.code == 2
     assert "was not made on the stage" in done.err

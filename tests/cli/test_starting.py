@@ -85,7 +85,7 @@ def test_help_of_a_command_and_options_that_it_lacks_load_no_compiler(name: str)
         ("info", "{tmp}/none.zarr"),
         ("play", "{tmp}/none.zarr", "-o", "{tmp}/a.mp4"),
         ("play", "{cube}", "-o", "{tmp}/a.doc"),
-        ("play", "{cube}", "-o", "{tmp}/a.gif", "--room", "--picture-only"),
+        ("play", "{cube}", "-o", "{tmp}/a.gif", "--view", "room", "--picture-only"),
         ("view", "{tmp}/none.zarr", "-o", "{tmp}/a.html"),
         ("report", "{tmp}/none.npz", "-o", "{tmp}/a.html"),
         ("score", "{tmp}/none.zarr"),

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.ndimage import binary_erosion
 
-from lightcube.drawing.camera import Camera, fitting
+from lightcube.drawing.camera import FINE, Camera, Canvas, fitting
 from lightcube.drawing.room import camera_for, room_picture, room_player
 from lightcube.drawing.standing import extent, standing
 from lightcube.errors import InputError
@@ -78,9 +79,10 @@ def test_the_cube_dims_a_white_screen_behind_it_along_each_chord(angle_deg: floa
         room_picture(cube_on(stage, homogeneous(*each)), angle_deg, camera) for each in ((0, 0, 0), (0.02, 0.05, 0.1))
     )
     lengths = chords(camera, standing(cube_on(stage), angle_deg).turn)
-    white = np.all(np.abs(clear - 1) < 1e-6, axis=2)  # elsewhere are edges, the table and the lamp
+    white = np.all(np.abs(clear - 1) < 1e-6, axis=2)  # elsewhere are edges, the table, the lamp and its beam
+    white = binary_erosion(white)  # at whose border beams make pixels white too
     assert np.sum(white & (lengths > 5)) > 700
-    assert np.mean(white[lengths > 0]) > 0.4
+    assert np.mean(white[lengths > 0]) > 0.3
     expected = np.exp(-lengths[..., None] * (0.02, 0.05, 0.1))
     np.testing.assert_allclose(dim[white], expected[white], rtol=1e-4)
 
@@ -97,7 +99,41 @@ def test_what_stands_before_the_cube_is_not_dimmed() -> None:
     assert np.sum(card) > 60
     np.testing.assert_allclose(seen[card], 1, rtol=1e-6)
     beside = chords(camera, np.eye(3)) > 5
-    assert np.median(seen[beside & ~((np.abs(rows)[:, None] < 4) & (np.abs(columns) < 4))]) < 1e-3
+    assert np.median(seen[beside & ~((np.abs(rows)[:, None] < 4) & (np.abs(columns) < 4))]) < 0.2
+
+
+def test_dense_glass_is_drawn_thinner_so_that_one_sees_into_it() -> None:
+    stage = one(Screen("wall", (60, 0, 0), (90, 80), 10.0, (-1, 0, 0)), Lamp("sun", (0.1, 1, 0)))
+    camera = Camera((-50, 9, 14), (0, 0, 0), UP, 30.0, (60, 72))
+    clear, dim, denser = (room_picture(cube_on(stage, homogeneous(*(3 * [each]))), 0.0, camera) for each in (0, 0.5, 5))
+    np.testing.assert_allclose(dim, denser, atol=1e-5)
+    lengths = chords(camera, np.eye(3))
+    white = binary_erosion(np.all(np.abs(clear - 1) < 1e-6, axis=2)) & (lengths > 5)
+    size = np.array(GRID.size_mm)
+    chord = 4 * np.prod(size) / (2 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]))
+    np.testing.assert_allclose(dim[white][:, 0], np.exp(-0.7 * lengths[white] / chord), rtol=1e-3)
+
+
+def test_beams_are_seen_between_lamp_cube_and_wall_and_cover_no_picture() -> None:
+    """Of a dark room with its lamps on; what changes away from the picture and the cube is the beam."""
+    rig = turntable(GRID, [20.0, 100.0], elevation_deg=20.0, picture_shape=(3, 5))
+    cube = Cube(homogeneous(0.05, 0.05, 0.05), GRID, rig, lamp_powers=np.tile((0.9, 0.2, 0.1), (2, 1)))
+    camera = camera_for(cube, (90, 160))
+    show, room = room_player(cube, camera), standing(cube, 20.0)
+    lit, unlit = show(20.0), show(20.0, lit=False)
+    np.testing.assert_allclose(unlit, show(20.0, lit=False), atol=0)  # also where it is kept
+    canvas = Canvas(camera)
+    middle = room.screens[0].corners.mean(axis=0)
+    for part in (0.25, 0.4, 0.85):
+        column, row, _ = canvas.seen(middle + part * (room.lamps[0].place - middle))[0] / FINE
+        more = (lit - unlit)[int(row), int(column)]
+        assert more[0] > 0.01
+        assert more[0] > 1.5 * more[2]
+    column, row, _ = canvas.seen(middle)[0] / FINE
+    cast = play(cube, [20.0])[0]
+    share = (lit - unlit)[int(row), int(column)] / cast[1, 2]  # the table's glass lies before it
+    assert np.ptp(share) < 0.01
+    assert 0.7 < share[0] < 1.01
 
 
 def test_the_back_of_a_screen_is_one_grey() -> None:
@@ -235,3 +271,20 @@ def test_cameras_that_see_nothing_are_refused() -> None:
     ):
         with pytest.raises(InputError, match="camera"):
             Camera(eye, (0, 0, 0), up, field, size)
+
+
+def test_a_beam_leads_from_a_lamp_to_the_screens_that_it_lights() -> None:
+    walls = (
+        Screen("ahead", (60, 0, 0), (24, 24), 4.0, (-1, 0, 0)),
+        Screen("aside", (0, 60, 0), (24, 24), 4.0, (0, -1, 0)),
+    )
+    lamps = Lamp("first", (1, 0, 0)), Lamp("second", (0, 1, 0))
+    shots = Shot("a", "ahead", ("first",)), Shot("b", "aside", ("second",))
+    cube = cube_on(Stage(GRID, lamps, walls, shots, cube_turns=False), homogeneous(0.02, 0.02, 0.02))
+    camera = Camera((-1, -2, 300), (0, 0, 0), (0, 1, 0), 40.0, (90, 90))
+    show, room = room_player(cube, camera), standing(cube, 0.0)
+    more, canvas = show(0.0) - show(0.0, lit=False), Canvas(camera)
+    for i, j in product(range(2), repeat=2):
+        middle = 0.7 * room.lamps[i].place + 0.3 * room.screens[j].corners.mean(axis=0)
+        column, row, _ = canvas.seen(middle)[0] / FINE
+        assert (more[int(row), int(column)].max() > 0.01) == (i == j)

@@ -218,6 +218,16 @@ def test_clipped_values_are_counted_once(tmp_path: Path, suffix: str) -> None:
     assert caught[0].filename == __file__
 
 
+@pytest.mark.parametrize("suffix", [*EXACT, ".npy"])
+def test_display_levels_are_written_as_they_are(tmp_path: Path, suffix: str) -> None:
+    wanted = levels(3)
+    save(wanted, tmp_path / f"a{suffix}")
+    if suffix == ".npy":
+        np.testing.assert_array_equal(np.load(tmp_path / "a.npy"), from_levels(wanted))
+    else:
+        np.testing.assert_array_equal(read_levels(tmp_path / f"a{suffix}"), wanted)
+
+
 def test_a_folder_holds_its_views(tmp_path: Path) -> None:
     wanted = levels(11)
     names = ['"quoted"', "back\\slash", "tab\tnew\nline", "\x7f", "ünï 日本 🎈", *"678901"]

@@ -78,23 +78,22 @@ def play_angles(
         said = check_angles(numbers(angles_deg, "--angles-deg"))
         doubt_angles(said, "--angles-deg", stacklevel=1)
         return said
-    if not turn and not np.any(cube.rig.turning.turns):
-        return cube.angles_deg[:1]  # nothing turns: all angles look alike
-    first, last, pictures = (
-        start or 0.0,
-        360.0 if end is None else end,
-        max(120, 2 * len(cube.names)) if count is None else count,
-    )
-    if pictures < 1:
-        raise InputError(f"--count {pictures}: give at least 1 picture")
+    first, last = start or 0.0, 360.0 if end is None else end
+    if count is not None and count < 1:
+        raise InputError(f"--count {count}: give at least 1 picture")
     if not (np.isfinite([first, last]).all() and first != last):
         raise InputError(f"--from-deg {first} --to-deg {last}: give two different finite numbers of degrees")
-    return turning.turn(cube, pictures, first, last)
+    return turning.turn(cube, count, first, last)
+
+
+def is_movie(output: str) -> bool:
+    """Whether what is written is looked at as it moves: no single pictures, no numbers."""
+    return PurePath(output).suffix.lower() not in ("", ".npy", ".png")
 
 
 def movie_scale(output: str, rows: int) -> int:
     """An even scale that makes a movie at least 256 pixels high; single pictures and numbers stay as they are."""
-    return 1 if PurePath(output).suffix.lower() in ("", ".npy", ".png") else 2 * -(-128 // rows) if rows < 256 else 1
+    return 2 * -(-128 // rows) if is_movie(output) and rows < 256 else 1
 
 
 def short(value: object) -> str:

@@ -15,8 +15,9 @@ from lightcube.backward import solving
 from lightcube.backward.recipe import Recipe
 from lightcube.cli.console import compiling, out, progress
 from lightcube.cli.options import threaded
+from lightcube.drawing.films import film
 from lightcube.drawing.sheet import contact_sheet
-from lightcube.forward import casting, turning
+from lightcube.forward import casting
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns, volume_from_columns
 from lightcube.optics.absorption import extinction, transmittance
 from lightcube.optics.grid import Grid, raster_shape
@@ -95,9 +96,8 @@ def _one(name: str, targets: Targets, grid: Grid, folder: Path, recipe: Recipe) 
     io.save(
         stops, folder / f"{name}-stops.mp4", count=len(targets), fps=min(10, len(targets) / 4), scale=6, overwrite=True
     )
-    turn = turning.turn(cube, 180)
-    shadows = _on_a_screen(casting.screens(cube, picture_only=False, zoom=1, light="area")(turn))
-    io.save(shadows, folder / f"{name}-turn.mp4", count=len(turn), fps=20, scale=4, overwrite=True)
+    movie = film(cube, format="square", captions=True)
+    io.save(movie, folder / f"{name}-turn.mp4", fps=movie.fps, shared=True, overwrite=True)
     io.save(page(cube, name), folder / f"{name}.html", overwrite=True)
     rows, columns = targets.rig.picture_shape
     return {

@@ -5,28 +5,48 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.cli import arguments
 from lightcube.cli.console import done, err, progress
-from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, threaded
+from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
+from lightcube.drawing import films, shows
+from lightcube.drawing.poster import Format
+from lightcube.drawing.shows import Frame
 from lightcube.errors import InputError
 from lightcube.jobs.reading import load
 from lightcube.optics.light import Beams, check_zoom
-from lightcube.verbs import playing, words
+from lightcube.verbs import words
 
 
 @threaded
 def play(
     cube: Annotated[str, typer.Argument(help="A cube.")],
     output: Annotated[str, OUT],
-    angles_deg: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
-    start_deg: Annotated[float | None, typer.Option("--from-deg", help="First angle in degrees.  [default: 0]")] = None,
-    end_deg: Annotated[
-        float | None, typer.Option("--to-deg", help="Where the turn ends, in degrees.  [default: 360]")
+    even: Annotated[
+        bool, typer.Option("--even", help="Turn evenly under a steady lamp: what flickers, flickers.")
+    ] = False,
+    view: Annotated[
+        films.View, typer.Option(help="The pictures on the wall, or the room: lamps, glass, walls and beams.")
+    ] = "wall",
+    shape: Annotated[
+        Format | None,
+        typer.Option(
+            "--format",
+            help="Large in the dark, to share: 1080 x 1080, 1080 x 1920 or 1920 x 1080 pixels; GIFs a third.",
+        ),
     ] = None,
-    count: Annotated[int | None, typer.Option(help="Number of pictures of the turn.  [default: 120 or more]")] = None,
+    captions: Annotated[bool, typer.Option("--captions", help="Put names below the pictures of a --format.")] = False,
+    angles_deg: Annotated[str | None, typer.Option(help="Turntable angles in degrees, A,B,C.")] = None,
+    start_deg: Annotated[
+        float | None, typer.Option("--from-deg", help="First angle of an even turn, in degrees.  [default: 0]")
+    ] = None,
+    end_deg: Annotated[
+        float | None, typer.Option("--to-deg", help="Where an even turn ends, in degrees.  [default: 360]")
+    ] = None,
+    count: Annotated[
+        int | None, typer.Option(help="Number of pictures of an even turn.  [default: 120 or more]")
+    ] = None,
     stops: Annotated[bool, typer.Option("--stops", help="Play just the pictures that the cube was made for.")] = False,
     zoom: Annotated[
         int, typer.Option(help="Show each pixel in K x K parts, each the mean of its own light: finer, 1 to 16.")
@@ -44,57 +64,91 @@ def play(
     screens: Annotated[
         bool, typer.Option("--screens", help="Show all screens of a stage side by side; with --stops each stop once.")
     ] = False,
-    room: Annotated[
-        bool, typer.Option("--room", help="Show the room in perspective: cube, lamps, and screens with their pictures.")
-    ] = False,
     light: Annotated[
         Beams, typer.Option(help="What a wall shows, averaged over pixels, or the paper's thin beams.")
     ] = "area",
-    fps: Annotated[float, FPS] = 25.0,
+    fps: Annotated[
+        float | None,
+        typer.Option(help="Pictures per second of a movie.  [default: 30; 10 in a GIF of a --format]"),
+    ] = None,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.
 
+    In a movie the lamp fades in on each stop, rests for a second and fades out, and the table turns in the dark to the
+    next: what a wall shows under a lamp that is dimmed. Where pictures flow into each other it turns evenly. PNGs and
+    .npy have an even turn.
+
     Shows the whole screen: the picture, its mat, and what stands around it. A screen with edges is its picture.
     """
     movie = io.Output(output, "pictures", overwrite)
     movie.check()
-    look = playing.Look(picture_only, check_zoom(zoom), light)
-    if room and (target or picture_only or screens or zoom > 1):
-        raise InputError("--room shows all there is: leave out --screens, --target, --picture-only and --zoom")
+    if shape is not None and scale is not None:
+        raise InputError("--format and --scale both say how large the picture is: leave one of them out")
+    look, style = shows.Look(picture_only, check_zoom(zoom), light), _style(output, shape, captions, fps, view)
+    in_room = view == "room"
+    if in_room and (target or picture_only or screens or zoom > 1):
+        raise InputError("--view room shows all there is: leave out --screens, --target, --picture-only and --zoom")
     loaded = load(cube)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
         raise InputError(f"{cube} has several screens: leave out --target, and see score --sheet")
     turned = arguments.play_angles(loaded, angles_deg, start_deg, end_deg, count, stops=stops)
-    if room:
-        show = playing.of_room(loaded, np.unique(turned) if stops else turned)
-    elif screens or (many and not stops):
-        show = playing.of_screens(loaded, np.unique(turned) if stops else turned, look)
-    elif stops:
-        show = playing.of_stops(loaded, look, target=target)
+    if stops or angles_deg is not None:
+        shown = np.unique(turned) if stops and (screens or in_room) else turned
+        if in_room:
+            film = films.in_room(loaded, style, shown)
+        elif screens or (many and not stops):
+            film = films.styled(loaded, shows.of_screens(loaded, shown, look), style, shown)
+        elif stops:
+            film = films.styled(loaded, shows.of_stops(loaded, look, target=target), style, shown)
+        else:
+            film = films.styled(loaded, shows.of_turn(loaded, shown, look, target=target), style, shown)
     else:
-        show = playing.of_turn(loaded, turned, look, target=target)
+        steady = even or not arguments.is_movie(output) or [start_deg, end_deg, count] != [None] * 3
+        film = films.filmed(loaded, look, style, turned, even=steady, target=target, screens=screens)
     for sentence in words.unsampled(loaded.rig, light):
         if not as_json:
             err.print(sentence)
     with progress("playing", as_json=as_json) as advance:
         movie.write(
-            _counted(show.pictures, show.count, advance),
-            count=show.count,
+            _counted(film, len(film), advance),
+            count=len(film),
             transfer=loaded.transfer,
-            fps=fps,
-            scale=arguments.movie_scale(output, show.rows) if scale is None else scale,
-            views=show.views,
-            names=show.names,
+            fps=film.fps,
+            scale=_scale(output, film, style, scale),
+            shared=shape is not None,
+            views=film.show.views,
+            names=film.show.names,
         )
-    done(as_json, f"{show.count} pictures in {output}", out=str(output), count=show.count)
+    _told(output, film, as_json=as_json)
 
 
-def _counted(
-    pictures: Iterable[NDArray[np.float32]], count: int, advance: Callable[..., None]
-) -> Iterator[NDArray[np.float32]]:
-    for number, picture in enumerate(pictures, 1):
-        yield picture
+def _told(output: str, film: films.Film, *, as_json: bool) -> None:
+    """Say what was made, how it goes, and what is wrong with it."""
+    how = f"\n{film.said}" if film.said else ""
+    flicker = film.flicker.share if arguments.is_movie(output) else None
+    done(as_json, f"{len(film)} pictures in {output}{how}", out=output, count=len(film), how=film.said, flicker=flicker)
+    if film.warning and arguments.is_movie(output) and not as_json:
+        err.print(f"note: {film.warning}")
+
+
+def _style(output: str, shape: Format | None, captions: bool, fps: float | None, view: films.View) -> films.Style:
+    """How a movie looks; a GIF is a third as wide and as fast, so that it stays small."""
+    small = shape is not None and output.lower().endswith(".gif")
+    size = None if shape is None else films.size_of(shape, small=small)
+    return films.Style(size, captions, (films.FPS / 3 if small else films.FPS) if fps is None else fps, view)
+
+
+def _scale(output: str, film: films.Film, style: films.Style, asked: int | None) -> int:
+    """How large a pixel is drawn."""
+    if style.size is not None:
+        return 1
+    return arguments.movie_scale(output, film.show.rows) if asked is None else asked
+
+
+def _counted(frames: Iterable[Frame], count: int, advance: Callable[..., None]) -> Iterator[Frame]:
+    for number, frame in enumerate(frames, 1):
+        yield frame
         advance(number, count)

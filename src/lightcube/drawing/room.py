@@ -1,13 +1,16 @@
 """A picture of the room in perspective: the cube of glass, its lamps, and the screens that carry its shadows."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.drawing.beam import draw_beam, off_pictures
 from lightcube.drawing.camera import FINE, Camera, Canvas, Floats, Reals, Region, fitting
+from lightcube.drawing.poster import iris
 from lightcube.drawing.standing import (
     PlacedLamp,
     PlacedScreen,
@@ -18,10 +21,11 @@ from lightcube.drawing.standing import (
     standing,
     table_of,
 )
-from lightcube.forward.casting import player
+from lightcube.forward.casting import screens
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.transfer import decode
 from lightcube.optics.views import Views, unit
 from lightcube.projection.projector import Projector
 
@@ -38,39 +42,95 @@ _RIGHT = 0.03
 #: A lamp's radius, in widths of the cube.
 _LAMP = 0.036
 #: Linear light of the room and of what stands in it.
-_FLOOR, _FAR, _GRID = (0.14, 0.144, 0.154), (0.026, 0.028, 0.033), (0.25, 0.255, 0.27)
-_BACK, _FRAME, _TABLE, _RIM = (0.07, 0.07, 0.074), (0.3, 0.3, 0.31), (0.3, 0.3, 0.31), (0.5, 0.5, 0.5)
+_FLOOR, _FAR, _GRID = (0.05, 0.052, 0.058), (0.009, 0.0095, 0.0115), (0.1, 0.103, 0.11)
+_BACK, _FRAME, _TABLE, _RIM = (0.03, 0.03, 0.032), (0.09, 0.09, 0.095), (0.16, 0.16, 0.165), (0.25, 0.25, 0.25)
+#: A wall reaches so many widths of the cube beyond its picture on each side; what it shows of the room.
+_WALL, _UNLIT = 2.2, (0.05, 0.052, 0.058)
+#: Glass that is denser is drawn thinner: the absorbance of a mean chord through the cube, at most.
+_DENSE = 0.7
 _EDGE, _DARK_LAMP = (0.75, 0.86, 1.0), (0.16, 0.16, 0.17)
 
 
-def room_picture(cube: Cube, angle_deg: float, camera: Camera) -> NDArray[np.float32]:
+def room_picture(cube: Cube, angle_deg: float, camera: Camera) -> Floats:
     """The room at a turntable angle (degrees), ``(row, column, 3)`` linear light, 1 = white."""
     return room_player(cube, camera)(angle_deg)
 
 
-def room_player(cube: Cube, camera: Camera) -> Callable[[float], NDArray[np.float32]]:
-    """Make a function of the angle (degrees) that shows what `room_picture` does, for a movie.
+def room_player(cube: Cube, camera: Camera) -> Callable[..., Floats]:
+    """Make a function of the angle (degrees) that shows what `room_picture` does; with ``lit=False`` lamps are off.
 
     What does not turn is drawn once, and the cube is laid out for casting once.
     """
-    cast = player(cube, picture_only=True)
-    glass = columns_from_volume(cube.extinction)
+    cast = screens(cube, picture_only=False, zoom=1, light="area")
+    glass = columns_from_volume(cube.extinction) * _thinner(cube)
+    whole = cube.rig.whole(cube.grid)
+    dark = np.zeros((*whole.picture_shape, 3), np.float32)
     low = min(float(extent(cube.grid, standing(cube, angle_deg))[:, 2].min()) for angle_deg in _AROUND)
     empty = Canvas(camera)
     _floor(empty, cube.grid, low - 0.02 * size_of(cube.grid))
 
-    def show(angle_deg: float) -> NDArray[np.float32]:
-        canvas, now = empty.copy(), standing(cube, angle_deg)
-        for screen, picture in zip(now.screens, cast([angle_deg]), strict=True):
-            _show_screen(canvas, screen, picture)
+    known: tuple[Reals, Canvas] | None = None  # where screens stood, and the room with them, without lamps
+
+    def show(angle_deg: float, *, lit: bool = True) -> Floats:
+        nonlocal known
+        now = standing(cube, angle_deg)
+        if not lit:
+            now = replace(now, lamps=tuple(replace(lamp, light=0 * lamp.light) for lamp in now.lamps))
+        pictures = list(cast([angle_deg])) if lit else [dark] * len(now.screens)
+        places = np.array([screen.corners for screen in now.screens])
+        if lit or known is None or not np.allclose(known[0], places):
+            canvas = empty.copy()
+            for screen, picture in _on_walls(cube, angle_deg, now.screens, pictures):
+                _show_screen(canvas, screen, picture)
+            known = known if lit else (places, canvas.copy())
+        else:
+            canvas = known[1].copy()
         absorbed = _enter(canvas, cube.grid, now.turn)
-        _overlay(canvas, cube.grid, now, front=False)
+        table = _table(canvas, cube.grid, now)
+        _overlay(canvas, cube.grid, now, table, front=False)
         if absorbed is not None:
             _absorb(canvas, cube, glass, now.turn, absorbed)
-        _overlay(canvas, cube.grid, now, front=True)
+        _overlay(canvas, cube.grid, now, table, front=True)
+        if lit:
+            off, rig = off_pictures(canvas, now.screens), cube.rig.at([angle_deg])[0]
+            windows = rig.places_in(whole.at([angle_deg])[0])
+            lamps = dict(zip(np.unique(cube.rig.sums.lamp), now.lamps, strict=True))
+            for number, (screen, picture, (top, left)) in enumerate(zip(now.screens, pictures, windows, strict=True)):
+                own = picture[top:, left:][: screen.pixels[0], : screen.pixels[1]]
+                for lamp in np.unique(rig.sums.lamp[(rig.sums.picture == number) & np.any(rig.sums.share > 0, axis=1)]):
+                    draw_beam(canvas, cube.grid, lamps[lamp], screen, own, off)
         return canvas.picture()
 
     return show
+
+
+def _thinner(cube: Cube) -> np.float32:
+    """So much thinner is glass drawn than it is, so that one sees into it."""
+    size = np.array(cube.grid.size_mm)
+    chord = 2 * np.prod(size) / np.sum(np.prod(size) / size)  # four times the volume over the surface
+    return np.float32(min(1.0, _DENSE / max(float(np.mean(cube.extinction)) * chord, 1e-9)))
+
+
+def _on_walls(
+    cube: Cube, angle_deg: float, placed: tuple[PlacedScreen, ...], light: Sequence[Floats]
+) -> list[tuple[PlacedScreen, Floats]]:
+    """Each screen with what it shows; one without edges on a wall, with an iris that keeps light to picture and mat."""
+    whole, now = cube.rig.whole(cube.grid), cube.rig.at([angle_deg])[0]
+    if whole is cube.rig:
+        return list(zip(placed, light, strict=True))
+    shown = []
+    for screen, picture, place in zip(placed, light, now.places_in(whole.at([angle_deg])[0]), strict=True):
+        pixel = float(np.linalg.norm(screen.right)), float(np.linalg.norm(screen.down))
+        left, top = (math.ceil(_WALL * size_of(cube.grid) / side) for side in pixel)
+        corner = screen.corner - left * screen.right - top * screen.down
+        wall = replace(screen, corner=corner, pixels=(screen.pixels[0] + 2 * top, screen.pixels[1] + 2 * left))
+        around = np.pad(picture, ((top, top), (left, left), (0, 0)))
+        part = around[place[0] :, place[1] :][: wall.pixels[0], : wall.pixels[1]]
+        open_part = iris(wall.pixels, (top, left, *screen.pixels))
+        away = np.linalg.norm((np.indices(wall.pixels).T + 0.5 - np.divide(wall.pixels, 2)) * pixel[::-1], axis=-1).T
+        unlit = np.exp(-((away / size_of(cube.grid) / 1.6) ** 2))[..., None] * np.array(_UNLIT)
+        shown.append((wall, (part * decode(open_part, cube.transfer) + unlit).astype(np.float32)))
+    return shown
 
 
 def camera_for(cube: Cube, size: tuple[int, int] = (540, 960)) -> Camera:
@@ -248,9 +308,11 @@ def _absorb(canvas: Canvas, cube: Cube, glass: Floats, turn: Reals, region: Regi
         light *= np.where(behind[i::FINE, j::FINE, None], left, np.float32(1))
 
 
-def _overlay(canvas: Canvas, grid: Grid, room: Standing, *, front: bool) -> None:
+def _overlay(canvas: Canvas, grid: Grid, room: Standing, table: "_Table", *, front: bool) -> None:
     """Draw the table, the lamps and thin lines: those that lie before the cube's glass, or those behind it."""
-    _draw_table(canvas, grid, room, front)
+    region, near, layers = table
+    for light, part in layers:
+        canvas.blend(region, near, light, part, front)
     for screen in room.screens:
         for start, end in zip(screen.corners, np.roll(screen.corners, -1, axis=0), strict=True):
             canvas.line(start, end, _FRAME, 0.9, 1.2, front)
@@ -260,7 +322,11 @@ def _overlay(canvas: Canvas, grid: Grid, room: Standing, *, front: bool) -> None
         _draw_edges(canvas, grid, room.turn)
 
 
-def _draw_table(canvas: Canvas, grid: Grid, room: Standing, front: bool) -> None:
+#: Where a table is in the picture, its inverse depth, and light to lay over it with its strength.
+_Table = tuple[Region, Floats, list[tuple[tuple[float, float, float], Floats]]]
+
+
+def _table(canvas: Canvas, grid: Grid, room: Standing) -> _Table:
     """A disc of frosted glass, with a rim and marks that turn with the cube."""
     middle, right, down = table_of(grid, room)
     region = canvas.around(middle + np.array(list(product((-1, 1), repeat=2))) @ np.stack([right, down]))
@@ -268,13 +334,11 @@ def _draw_table(canvas: Canvas, grid: Grid, room: Standing, front: bool) -> None
     radius = np.hypot(x, y)
     grain = 1 / np.maximum(near * np.float32(canvas.focal * np.linalg.norm(right)), 1e-9)
     inside = np.clip(0.5 + (1 - radius) / grain, 0, 1)
-    canvas.blend(region, near, _TABLE, 0.25 * inside, front)
     rim = np.clip(0.5 + (radius - 0.975) / grain, 0, 1) * inside
-    canvas.blend(region, near, _RIM, 0.6 * rim, front)
     turn = np.arctan2(y, x) / (np.pi / 6)
     aside = np.abs(turn - np.rint(turn)) * (np.pi / 6) * radius
     marks = np.clip(0.5 + (0.012 - aside) / grain, 0, 1) * np.clip(0.5 + (radius - 0.9) / grain, 0, 1) * inside
-    canvas.blend(region, near, _RIM, 0.5 * marks, front)
+    return region, near, [(_TABLE, 0.25 * inside), (_RIM, 0.6 * rim), (_RIM, 0.5 * marks)]
 
 
 def _draw_lamp(canvas: Canvas, grid: Grid, lamp: PlacedLamp, front: bool) -> None:

@@ -1,12 +1,13 @@
 """One function per kind of movie: 8-bit pictures in, a file out, one picture in memory at a time."""
 
 import io
+import math
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import IO, TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,8 +36,10 @@ _MOST_GIF_RATE = 50
 #: A delay is at most so many hundredths of a second.
 _LEAST_GIF_RATE = Fraction(100, 65535)
 _MOST_WEBP = 16383
+#: Pictures that are made smaller keep more than so many pixels a side.
+_TINY = 64
 #: Pixels that a palette is chosen from, at most.
-_PALETTE_SAMPLE = 1 << 20
+_PALETTE_SAMPLE = 1 << 17
 _PALETTE = 256
 
 
@@ -54,6 +57,11 @@ class _Codec:
 _MP4 = _Codec("mp4", "libx264", "yuv444p", {"crf": "4", "preset": "medium"}, {"movflags": "+faststart"})
 #: The same with half the colour resolution, which every player knows.
 _MP4_COMMON = replace(_MP4, pixels="yuv420p")
+#: For sending: hardly less to see, and 4.4 Mbit a second at most (0.55 MB), with a little more in the first: of
+#: nothing but noise one second has 0.61 MB, and three have 0.58 each.
+_MP4_SHARED = replace(
+    _MP4_COMMON, codec_options={"crf": "17", "preset": "veryfast", "maxrate": "4400k", "bufsize": "1500k"}
+)
 _WEBM = _Codec("webm", "libvpx-vp9", "gbrp", {"lossless": "1", "row-mt": "1", "cpu-used": "4"}, {})
 _APNG = _Codec("apng", "apng", "rgb24", {"pred": "mixed"}, {"plays": "0"})
 _GIF = _Codec("gif", "gif", "pal8", {"gifflags": "0"}, {"loop": "0"})
@@ -67,6 +75,12 @@ def encode_mp4(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
 def encode_doubled_mp4(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
     """Squares of 2 x 2 pixels alike, without loss at half the colour resolution, 4:2:0, which every player knows."""
     _encode(path, (_coded_frame(picture, _MP4_COMMON) for picture in pictures), fps, _MP4_COMMON)
+
+
+def encode_shared_mp4(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
+    """H.264 (BT.709), 4:2:0, of even width and height, at most 0.7 MB a second."""
+    even = (np.pad(p, [(0, size % 2) for size in p.shape[:2]] + [(0, 0)], "edge") for p in pictures)
+    _encode(path, (_coded_frame(picture, _MP4_SHARED) for picture in even), fps, _MP4_SHARED)
 
 
 def _coded_frame(picture: Levels, codec: _Codec) -> "av.VideoFrame":
@@ -97,29 +111,88 @@ def encode_apng(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
 
 def encode_gif(path: Path, pictures: Iterable[Levels], fps: Fraction) -> None:
     """GIF, looping, with one palette for all: exact up to 256 colours, else chosen from all and dithered."""
+    _check_gif(fps)
+    with tempfile.TemporaryFile(dir=path.parent) as spool:
+        spooled = _Spooled(spool, pictures)
+        colours = _few_colours(spooled)
+        palette = _chosen_colours(spooled) if colours is None else colours
+        indices = _dithered(spooled, palette) if colours is None else _looked_up(spooled, palette)
+        _encode(path, (_palette_frame(index, palette) for index in indices), fps, _GIF)
+
+
+def encode_shared_gif(
+    path: Path, pictures: Iterable[Levels], fps: Fraction, most_bytes: int
+) -> tuple[tuple[int, int], tuple[int, int]]:
+    """GIF, looping, of so many bytes at most: the pictures become smaller until it is, or until they are tiny.
+
+    Each picture has a palette of its own, and is not dithered, which is smaller and smoother. What stands still is one
+    picture that stays.
+
+    Returns
+    -------
+    Rows and columns that were given, and that were written.
+    """
+    _check_gif(fps)
+    with tempfile.TemporaryFile(dir=path.parent) as spool:
+        spooled = _Spooled(spool, pictures)
+        rows, columns, _ = spooled.shape
+        size = rows, columns
+        while True:
+            _encode(path, _own_palettes(spooled, size, fps), fps, _GIF)
+            if path.stat().st_size <= most_bytes or min(size) <= _TINY:
+                return (rows, columns), size
+            part = min(0.95, 0.98 * (most_bytes / path.stat().st_size) ** 0.5)
+            size = max(1, round(part * size[0])), max(1, round(part * size[1]))
+
+
+def _check_gif(fps: Fraction) -> None:
+    """Raise `InputError` where a GIF cannot be so fast or slow."""
     if fps > _MOST_GIF_RATE:
         raise InputError(f"a GIF shows at most {_MOST_GIF_RATE} pictures a second, not {float(fps):g}: lower the rate")
     if fps < _LEAST_GIF_RATE:
         raise InputError(f"a GIF shows a picture for at most 655 seconds, not {float(1 / fps):g}: raise the rate")
-    with tempfile.TemporaryFile(dir=path.parent) as spool:
-        shape: tuple[int, ...] = ()
+
+
+def _own_palettes(spooled: "_Spooled", size: tuple[int, int], fps: Fraction) -> Iterator["av.VideoFrame"]:
+    """Each picture that differs from the one before, in its own colours, at its time."""
+    time = 0
+    for picture, times in spooled.runs():
+        image = Image.fromarray(picture).resize(size[::-1], Image.Resampling.BOX)
+        own = image.quantize(_PALETTE, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+        frame = _palette_frame(np.asarray(own), np.array(own.getpalette("RGB"), np.uint8).reshape(-1, 3))
+        frame.pts, frame.time_base = time, 1 / fps
+        yield frame
+        time += times
+
+
+class _Spooled:
+    """Pictures that can be gone through again and again, on the disk; one that is like the one before is there once."""
+
+    def __init__(self, spool: IO[bytes], pictures: Iterable[Levels]) -> None:
+        self._spool, self._times = spool, list[int]()
+        self.shape: tuple[int, ...] = ()
+        last: bytes | None = None
         for picture in pictures:
-            shape = picture.shape
-            spool.write(picture.tobytes())
-        size = int(np.prod(shape))
+            self.shape, now = picture.shape, picture.tobytes()
+            if now == last:
+                self._times[-1] += 1
+            else:
+                spool.write(now)
+                self._times.append(1)
+            last = now
 
-        def again() -> Iterator[Levels]:
-            spool.seek(0)
-            while data := spool.read(size):
-                yield np.frombuffer(data, np.uint8).reshape(shape)
+    def runs(self) -> Iterator[tuple[Levels, int]]:
+        """Yield each picture that differs from the one before, and how many times it comes."""
+        self._spool.seek(0)
+        for times in self._times:
+            data = self._spool.read(math.prod(self.shape))
+            yield np.frombuffer(data, np.uint8).reshape(self.shape), times
 
-        colours = _few_colours(again())
-        palette = _chosen_colours(again(), spool.tell()) if colours is None else colours
-        indices = _dithered(again(), palette) if colours is None else _looked_up(again(), palette)
-        opaque = np.full((_PALETTE, 4), 255, np.uint8)
-        opaque[:, 1:] = palette[-1]
-        opaque[: len(palette), 1:] = palette
-        _encode(path, (_palette_frame(index, opaque) for index in indices), fps, _GIF)
+    def __iter__(self) -> Iterator[Levels]:
+        """Yield all pictures."""
+        for picture, times in self.runs():
+            for _ in range(times):
+                yield picture
 
 
 def png(picture: Levels) -> memoryview:
@@ -197,10 +270,13 @@ def _rgb_frame(picture: Levels) -> "av.VideoFrame":
 
 
 def _palette_frame(index: Levels, palette: Levels) -> "av.VideoFrame":
-    """Indices ``(row, column)`` into a palette ``(256, 4)`` of opacity, red, green, blue."""
+    """Indices ``(row, column)`` into a palette ``(colours, 3)``."""
     import av
 
-    return av.VideoFrame.from_ndarray((index, palette), format="pal8")  # type: ignore[arg-type]  # PyAV wants a pair
+    opaque = np.full((_PALETTE, 4), 255, np.uint8)
+    opaque[:, 1:] = palette[-1]
+    opaque[: len(palette), 1:] = palette
+    return av.VideoFrame.from_ndarray((index, opaque), format="pal8")  # type: ignore[arg-type]  # PyAV wants a pair
 
 
 def _packed(picture: Levels) -> NDArray[np.uint32]:
@@ -227,9 +303,9 @@ def _looked_up(pictures: Iterable[Levels], palette: Levels) -> Iterator[Levels]:
         yield np.searchsorted(known, _packed(picture)).astype(np.uint8)
 
 
-def _chosen_colours(pictures: Iterable[Levels], total_bytes: int) -> Levels:
+def _chosen_colours(pictures: Iterable[Levels]) -> Levels:
     """256 colours ``(256, 3)`` for all pictures, from an even sample of their pixels (median cut, then k-means)."""
-    every = -(-total_bytes // 3 // _PALETTE_SAMPLE)
+    every = -(-sum(picture.size // 3 for picture in pictures) // _PALETTE_SAMPLE)
     sample = np.concatenate([picture.reshape(-1, 3)[index % every :: every] for index, picture in enumerate(pictures)])
     cut = Image.fromarray(sample[None]).quantize(_PALETTE, Image.Quantize.MEDIANCUT, kmeans=1)
     return np.array(cut.getpalette("RGB"), np.uint8).reshape(-1, 3)

@@ -27,7 +27,7 @@ Given = TypeVar("Given", bound=str | Path)
 Kind = Literal["cube", "pictures", "page", "drawing", "plot", "picture", "document"]
 
 #: Whatever is of one of the kinds.
-Thing: TypeAlias = "Cube | str | movies.Picture | Iterable[movies.Picture] | Mapping[str, Any] | movies.Levels | Figure"
+Thing: TypeAlias = "Cube | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any] | movies.Levels | Figure"
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,8 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
     thing
         * A cube: ``.zarr`` (a folder, OME-Zarr 0.5: napari and others open it as it is), ``.zarr.zip`` (the same in
           one file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
-        * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white:
+        * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white,
+          or 8-bit display levels, which are written as they are:
           ``.png`` for a single one, ``.mp4`` (H.264, visually lossless; at an even `scale` in 4:2:0, which every player
           knows, else in 4:4:4), ``.webm`` (VP9, lossless), ``.gif`` (256 colours for all pictures), ``.webp`` and
           ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no suffix for a folder of PNGs, with
@@ -139,7 +140,7 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
         Whether an existing file, or an existing folder with a cube or with pictures in it, is replaced.
     **options
         Of pictures, as `lightcube.io.movies.Options` lists them: `fps` (10), `scale` (1), `transfer` (sRGB), `views`,
-        `names`, and `count`, which pictures without a length need.
+        `names`, `shared`, and `count`, which pictures without a length need.
 
     Returns
     -------

@@ -1,0 +1,223 @@
+"""Movies: how the lamp comes and goes, what flickers, and frames in which a picture stands large."""
+
+from pathlib import Path
+from typing import Any
+
+import av
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import lightcube as lc
+from lightcube.drawing import films, shows
+from lightcube.drawing.poster import SIZES, poster
+from lightcube.errors import InputError
+from lightcube.forward.dimming import Course, dimmed
+from lightcube.forward.flicker import Flicker
+from lightcube.io import movies
+from lightcube.optics.transfer import Transfer, decode, encode, to_uint8
+
+GRID = lc.Grid((8, 10, 12), 2.0)
+Levels = NDArray[np.uint8]
+
+
+def noisy(angles_deg: list[float], **options: Any) -> lc.Cube:
+    """A cube whose shadows have nothing to do with each other, under a strong lamp."""
+    rig = lc.turntable(GRID, angles_deg, elevation_deg=20.0, picture_shape=(4, 6), **options)
+    extinction = 3 * (np.random.default_rng(3).random((3, *GRID.shape)) < 0.1).astype(np.float32)
+    return lc.Cube(extinction, GRID, rig, lamp_powers=np.full((len(angles_deg), 3), 2.0))
+
+
+def frames_of(film: films.Film) -> Levels:
+    return np.stack([f if f.dtype == np.uint8 else to_uint8(np.asarray(f, np.float32)) for f in film])
+
+
+def flashes(frames: Levels, fps: float) -> int:
+    """The most flashes within a second of any 4 x 4 block: pairs of opposite changes of a tenth of the range."""
+    rows, columns = (size // 4 for size in frames.shape[1:3])
+    blocks = frames[:, : 4 * rows, : 4 * columns].mean(axis=3).reshape(len(frames), rows, 4, columns, 4)
+    light = blocks.mean(axis=(2, 4))
+    most = 0
+    for series in light.reshape(len(frames), -1).T:
+        turns, way, last = list[int](), 0, series[0]
+        for number, value in enumerate(series):
+            if way and (value - last) * way > 0:
+                last = value
+            elif abs(value - last) >= 25.5:
+                turns, way, last = [*turns, number], (1 if value > last else -1), value
+        most = max(most, *(sum(t <= u < t + fps for u in turns) for t in turns), 0) if turns else most
+    return most // 2
+
+
+@pytest.mark.parametrize("stops", [1, 3, 70])
+@pytest.mark.parametrize("fps", [10.0, 30.0, 60.0])
+def test_a_course_begins_and_ends_in_the_dark_and_rests_between(stops: int, fps: float) -> None:
+    course = Course.of(stops, fps)
+    lamp = np.array(course.lamp)
+    assert lamp[0] == lamp[-1] == 0
+    assert (np.sum(lamp == 1), len(lamp)) == (course.rest, 2 * course.fade + course.rest + course.dark)
+    assert np.max(np.abs(np.diff(np.tile(lamp, 2)))) < 0.2
+    assert course.seconds > 1 / 3 * 3
+    if stops < 4:
+        assert course.rest == fps
+    else:
+        assert stops * course.seconds < 120
+
+
+def test_a_strong_lamp_fades_more_slowly() -> None:
+    assert [Course.of(3, 30, bright).fade for bright in (1.0, 5.0, 99.0)] == [18, 26, 45]
+
+
+@pytest.mark.parametrize("transfer", ["srgb", "linear"])
+def test_what_is_dimmed_is_the_light_times_the_lamp(transfer: Transfer) -> None:
+    light = np.random.default_rng(1).exponential(0.6, (3, 5, 7, 3)).astype(np.float32)
+    course = Course(4, 2, 3, 30.0)
+    shown = list(dimmed(iter(light), course, transfer))
+    assert len(shown) == 3 * len(course.lamp)
+    for number, levels in enumerate(shown):
+        part = decode(np.array(course.lamp[number % len(course.lamp)]), transfer)
+        wanted = to_uint8(light[number // len(course.lamp)] * part, transfer)
+        assert np.max(np.abs(levels.astype(int) - wanted)) <= 1
+        assert np.mean(levels != wanted) < 0.04
+
+
+def test_a_film_rests_on_whole_screens_and_does_not_flicker() -> None:
+    cube = noisy([20.0, 100.0, 290.0])
+    film = lc.film(cube)
+    frames = frames_of(film)
+    course = Course.of(3, 30.0, shows.brightest(cube))
+    assert len(frames) == len(film) == 3 * len(course.lamp)
+    assert not frames[0].any()
+    assert not frames[-1].any()
+    for stop, wanted in enumerate(to_uint8(lc.play(cube))):
+        start = stop * len(course.lamp) + course.fade
+        assert np.max(np.abs(frames[start : start + 30].astype(int) - wanted)) <= 1
+    jumps = np.max(np.abs(np.diff(frames.astype(int), axis=0)), axis=3) >= 51
+    assert film.flicker.share == pytest.approx(np.mean(jumps), abs=1e-9)
+    assert film.flicker.share <= 0.03
+    assert film.warning == ""
+    assert flashes(frames, 30.0) <= 1
+    assert "rests for 1 s" in film.said
+
+
+def test_an_even_turn_of_unlike_pictures_is_told() -> None:
+    film = lc.film(noisy([20.0, 100.0, 290.0]), even=True)
+    frames = frames_of(film)
+    assert len(frames) == 120
+    assert film.said == ""
+    assert film.flicker.share > 0.03
+    assert "flickers" in film.warning
+    assert "leave out --even" in film.warning
+
+
+def test_flashes_are_counted() -> None:
+    blinking = np.zeros((30, 8, 8, 3), np.uint8)
+    blinking[::6] = 255
+    assert (flashes(blinking, 30.0), flashes(blinking, 12.0)) == (4, 2)
+
+
+def test_pictures_that_flow_into_each_other_turn_evenly() -> None:
+    rig = lc.turntable(GRID, [20.0, 100.0], elevation_deg=20.0, picture_shape=(4, 6))
+    cube = lc.Cube(np.full((3, *GRID.shape), 0.02, np.float32), GRID, rig)
+    film = lc.film(cube)
+    assert len(frames_of(film)) == 120
+    assert film.warning == ""
+    assert film.flicker.share <= 0.03
+    assert "flow into each other" in film.said
+
+
+def test_where_nothing_turns_the_one_stop_fades_in_and_out() -> None:
+    sun, wall = lc.Lamp("sun", (1, 0, -0.2)), lc.Screen("wall", (60, 0, -9), (20, 16), 4.0)
+    stage = lc.Stage(GRID, (sun,), (wall,), (lc.Shot("a", "wall", ("sun",)),), cube_turns=False)
+    film = lc.film(lc.Cube(noisy([5.0]).extinction, GRID, stage.rig()))
+    frames = frames_of(film)
+    assert (frames[0].any(), frames[-1].any(), len(film)) == (False, False, 18 + 30 + 18 + 8)
+    assert "on the one stop" in film.said
+
+
+def test_flicker_counts_what_jumps_by_a_fifth() -> None:
+    dark, part = np.zeros((10, 10, 3), np.uint8), np.zeros((10, 10, 3), np.uint8)
+    part[:3, :, 1], part[3:5, :, 2] = 51, 50
+    flicker = Flicker()
+    assert (flicker.share, flicker.is_much) == (0.0, False)
+    for frame in (dark, part, part):
+        flicker.see(frame)
+    assert flicker.share == pytest.approx(0.15)
+    assert flicker.is_much
+
+
+@pytest.mark.parametrize("size", SIZES.values())
+def test_a_poster_has_the_picture_large_in_its_middle_and_dark_around(size: tuple[int, int]) -> None:
+    picture = np.full((30, 20, 3), 5.0, np.float32)
+    picture[9:17, 5:13] = (0.5, 0.2, 0.7)
+    small = (size[0] // 6, size[1] // 6)
+    frame = poster(picture, np.array([9, 5, 8, 8]), small, "srgb")
+    assert frame.shape == (*small, 3)
+    wide = round(0.35 * min(small) / 2)
+    middle = frame[small[0] // 2 - wide : small[0] // 2 + wide, small[1] // 2 - wide : small[1] // 2 + wide]
+    np.testing.assert_allclose(middle, np.broadcast_to((0.5, 0.2, 0.7), middle.shape), rtol=2e-3)
+    assert frame[[0, 0, -1, -1], [0, -1, 0, -1]].max() < 0.02
+
+
+@pytest.mark.parametrize("name", ["a", "a_very " * 2000, "<b>", "שלום", "\n\t", "日本"])
+def test_captions_are_one_line_in_the_frame(name: str) -> None:
+    black = np.zeros((30, 20, 3), np.float32)
+    frame = poster(black, np.array([9, 5, 8, 8]), (180, 320), "srgb", name)
+    lit = np.argwhere(frame[..., 0] > 0.1)
+    if name.strip():
+        assert lit[:, 0].min() > 90 + 0.5 * 0.68 * 180 - 5
+        assert (lit[:, 0].max() < 180, lit[:, 1].min() > 9, lit[:, 1].max() < 311) == (True, True, True)
+        assert 0.6 < float(encode(frame.max(keepdims=True)).item()) <= 0.75 + 1e-6
+    else:
+        assert not len(lit)
+
+
+def test_captions_say_names_without_the_numbers_of_files() -> None:
+    cube = lc.Cube(noisy([1.0, 2.0]).extinction, GRID, noisy([1.0, 2.0]).rig, names=("07-a_cat", "1984"))
+    assert shows.captions_of(cube, cube.angles_deg) == ["a cat", "1984"]
+
+
+def test_captions_want_a_format() -> None:
+    with pytest.raises(InputError, match="give a format too"):
+        lc.film(noisy([3.0]), captions=True)
+
+
+@pytest.mark.parametrize("format", SIZES)
+def test_formats_are_small_files_that_a_second_decoder_reads(tmp_path: Path, format: Any) -> None:  # noqa: A002
+    film = lc.film(noisy([20.0]), format=format, captions=True, fps=3)
+    path = lc.save(film, tmp_path / "a.mp4", fps=3, shared=True)
+    flicker, bright = Flicker(), list[float]()
+    with av.open(str(path)) as container:
+        context = container.streams.video[0].codec_context
+        assert (context.height, context.width, context.pix_fmt) == (*SIZES[format], "yuv420p")
+        assert (context.colorspace, context.color_primaries, context.color_trc, context.color_range) == (1, 1, 13, 1)
+        for frame in container.decode(video=0):
+            shown = np.asarray(frame.to_ndarray(format="rgb24"), np.uint8)
+            flicker.see(shown)
+            bright.append(float(shown.max()))
+    assert len(bright) == len(film) == 6 + 3 + 6 + 1
+    assert max(bright[0], bright[-1]) <= 2
+    assert max(bright) > 150
+    assert flicker.share <= 0.03
+    assert path.stat().st_size / (len(bright) / 3) < 700_000
+
+
+def test_an_mp4_to_be_sent_is_small_even_of_noise(tmp_path: Path) -> None:
+    frames = np.random.default_rng(2).integers(0, 255, (30, 300, 401, 3), np.uint8)
+    sizes = [lc.save(frames, tmp_path / f"{way}.mp4", fps=30, shared=way).stat().st_size for way in (False, True)]
+    assert sizes[0] > 2_000_000
+    assert sizes[1] < 700_000
+
+
+def test_a_gif_to_be_sent_becomes_smaller_until_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    frames = np.random.default_rng(2).integers(0, 255, (5, 200, 150, 3), np.uint8)
+    frames[2] = frames[1]
+    monkeypatch.setattr("lightcube.io.movies.SHARED_GIF", 60_000)
+    with pytest.warns(movies.SmallerPictures, match=r"at 150 x 200 pixels and has \d+ x \d+: write .mp4"):
+        path = lc.save(frames, tmp_path / "a.gif", fps=5, shared=True)
+    assert path.stat().st_size <= 60_000
+    with av.open(str(path)) as container:
+        shown = list(container.decode(video=0))
+    assert [frame.time for frame in shown] == [0.0, 0.2, 0.6, 0.8]  # what stands still is one picture that stays
+    assert shown[0].width / shown[0].height == pytest.approx(0.75, abs=0.02)
+    assert min(shown[0].width, shown[0].height) > 40
