@@ -65,12 +65,17 @@ def visit(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
     """A function that opens a page and waits until it shows its cube; what it complained of fails the test."""
     tabs = []
 
-    def go(name: str = "turntable", *, width: int = 920, height: int = 440, **context: Any) -> Any:
+    def go(
+        name: str = "turntable", *, width: int = 920, height: int = 440, details: bool = False, **context: Any
+    ) -> Any:
         context.setdefault("device_scale_factor", 0.25)  # fewer pixels: the room may be drawn in software
         tab, heard = opened(browser, pages[name], width=width, height=height, **context)
         tabs.append((tab, heard))
         until(tab, CUBE)
         rested(tab)
+        if details:
+            tab.keyboard.press("d")
+            rested(tab)
         return tab
 
     yield go

@@ -152,13 +152,13 @@ def test_with_no_pixel_one_comes_near_to_the_middle(evaluate: Evaluate) -> None:
 
 @pytest.mark.parametrize("how", ["wheel", "keys"])
 def test_the_pixel_that_is_pointed_at_stays_under_the_pointer(visit: Open, how: str) -> None:
-    tab = visit(width=1280, height=800, device_scale_factor=0.25, reduced_motion="reduce")
+    tab = visit(width=1280, height=800, details=True, reduced_motion="reduce")
     box = tab.locator("canvas.room").bounding_box()
     row_said = tab.locator(".scanline header .facts")
     place = next(
         (box["x"] + x * box["width"], box["y"] + y * box["height"])
         for y in np.linspace(0.4, 0.9, 26)
-        for x in np.linspace(0.05, 0.3, 26)
+        for x in np.linspace(0.5, 0.95, 26)
         if points_at(tab, box["x"] + x * box["width"], box["y"] + y * box["height"])
     )
     rested(tab)

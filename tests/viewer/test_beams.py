@@ -33,7 +33,7 @@ __all__ = ["pages", "visit"]
 
 
 def test_the_shown_picture_is_a_mean_over_pixels(visit: Open) -> None:
-    tab, cube = visit(), turning()
+    tab, cube = visit(details=True), turning()
     for where in (10.0, 17.3, 130.0, 245.0):
         turned_to(tab, where)
         assert np.abs(shown(tab) - right(cube, where)[0]).max() <= 0.55
@@ -45,7 +45,7 @@ def test_the_shown_picture_is_a_mean_over_pixels(visit: Open) -> None:
 
 def test_a_switch_shows_thin_beams(visit: Open) -> None:
     """By mouse and by key, in its place beside the others; what was shown comes back."""
-    tab, cube = visit(), turning()
+    tab, cube = visit(details=True), turning()
     switch = tab.get_by_role("button", name="Thin beams")
     assert switch.get_attribute("aria-pressed") == "false"
     for turn_on, turn_off in (
@@ -55,18 +55,18 @@ def test_a_switch_shows_thin_beams(visit: Open) -> None:
         turn_on()
         assert np.abs(shown(tab) - right(cube, STOPS[0], thin=True)[0]).max() <= 0.55
         assert switch.get_attribute("aria-pressed") == "true"
-        assert tab.locator("figcaption").all_inner_texts() == ["wanted", "shown, thin beams"]
+        assert tab.locator(".compare figcaption").all_inner_texts() == ["wanted", "shown, thin beams"]
         assert "dB" not in tab.locator(".compare .facts").inner_text()  # a score is of all light
         turn_off()
         assert np.abs(shown(tab) - right(cube, STOPS[0])[0]).max() <= 0.55
         assert switch.get_attribute("aria-pressed") == "false"
-        assert tab.locator("figcaption").all_inner_texts() == ["wanted", "shown"]
+        assert tab.locator(".compare figcaption").all_inner_texts() == ["wanted", "shown"]
         assert "dB" in tab.locator(".compare .facts").inner_text()
     assert np.abs(right(cube, STOPS[0]) - right(cube, STOPS[0], thin=True)).max() > 10
 
 
 def test_a_stage_has_a_tab_for_every_screen(visit: Open) -> None:
-    tab, cube = visit("stage"), CUBES["stage"]()
+    tab, cube = visit("stage", details=True), CUBES["stage"]()
     assert tab.locator(".tabs button").all_inner_texts() == ["wall", "floor"]
     assert marked(tab) == ["1"]
     assert not tab.get_by_role("button", name="Whole shadow").is_visible()
@@ -81,9 +81,9 @@ def test_a_stage_has_a_tab_for_every_screen(visit: Open) -> None:
 
 
 def test_the_film_strip_finds_a_picture_on_its_screen(visit: Open) -> None:
-    tab, cube = visit("stage"), CUBES["stage"]()
+    tab, cube = visit("stage", details=True), CUBES["stage"]()
     for number in (4, 1, 3):  # wall and floor at each of three stops
-        tab.get_by_role("button", name=re.compile(f"^{number + 1} ")).click()
+        tab.get_by_role("button", name=re.compile(f"^{number + 1}, ")).click()
         stands(tab, float(cube.angles_deg[number]))
         assert marked(tab) == [str(number + 1)]
         screen = int(cube.rig.stops.screen[number])
@@ -94,7 +94,7 @@ def test_the_film_strip_finds_a_picture_on_its_screen(visit: Open) -> None:
 
 
 def test_the_whole_shadow_has_a_line_around_the_picture(visit: Open) -> None:
-    tab, cube = visit(), turning()
+    tab, cube = visit(details=True), turning()
     tab.keyboard.press("w")
     whole = shown(tab)
     box, frame = (tab.locator(each).bounding_box() for each in (".choose canvas", ".choose .frame"))
@@ -117,7 +117,7 @@ def passed(cube: Cube, views: Views, row: int, column: int, points: Points) -> t
 @pytest.mark.parametrize("thin", [False, True])
 @pytest.mark.parametrize("where", STOPS[:2])
 def test_a_pixel_says_what_its_light_passes(visit: Open, where: float, thin: bool) -> None:
-    tab, cube = visit(width=1440, height=900), turning()
+    tab, cube = visit(width=1440, height=900, details=True), turning()
     turned_to(tab, where)
     if thin:
         tab.keyboard.press("b")
@@ -138,7 +138,7 @@ def test_a_pixel_says_what_its_light_passes(visit: Open, where: float, thin: boo
 
 
 def test_the_keys_choose_a_row(visit: Open) -> None:
-    tab = visit()
+    tab = visit(details=True)
     chooser = tab.get_by_role("slider", name="Row of the shown picture")
     chooser.focus()
     for key, said in [("ArrowDown", "row 6 of 8"), ("ArrowUp", "row 5 of 8"), ("ArrowRight", "row 5 of 8, column 7")]:
@@ -151,7 +151,7 @@ def test_the_keys_choose_a_row(visit: Open) -> None:
 
 def test_pointing_at_the_slice_chooses_a_beam(visit: Open) -> None:
     """From above the light goes to the right and the picture's left is up."""
-    tab = visit()
+    tab = visit(details=True)
     box = tab.locator("canvas.slice").bounding_box()
     said = []
     for part in (0.45, 0.55):

@@ -253,7 +253,7 @@ def test_stops_have_ticks_that_stand_apart(evaluate: Open) -> None:
 
 
 def test_the_film_strip_turns_to_its_pictures(visit: Open) -> None:
-    tab = visit()
+    tab = visit(details=True)
     tab.locator(".thumbnail").nth(3).click()
     stands(tab, 200.0)
     assert marked(tab) == ["rocket"]
@@ -272,7 +272,7 @@ def touch(session: Any, kind: str, *points: tuple[float, float]) -> None:
 
 @pytest.mark.parametrize("selector", [".choose", ".slice"])
 def test_what_a_finger_pointed_at_stays(visit: Open, selector: str) -> None:
-    tab = visit(**PHONE)
+    tab = visit(**PHONE, details=True)
     tab.locator(selector).scroll_into_view_if_needed()
     fingers = tab.context.new_cdp_session(tab)
     box = tab.locator(selector).bounding_box()
@@ -287,7 +287,7 @@ def test_what_a_finger_pointed_at_stays(visit: Open, selector: str) -> None:
 
 
 def test_the_film_strip_keeps_the_row(visit: Open) -> None:
-    tab = visit()
+    tab = visit(details=True)
     chooser = tab.get_by_role("slider", name="Row of the shown picture")
     chooser.focus()
     tab.keyboard.press("ArrowDown")

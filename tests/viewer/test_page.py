@@ -102,6 +102,8 @@ def test_a_long_name_pushes_nothing_aside(browser: Any, tmp_path: Path, size: tu
     (tmp_path / "long.html").write_text(page(replace(turning(), names=names), "long"), encoding="utf-8")
     tab, heard = opened(browser, tmp_path / "long.html", width=size[0], height=size[1])
     until(tab, CUBE)
+    tab.keyboard.press("d")
+    rested(tab)
     for selector in (".side", "html"):
         assert tab.evaluate(f"(e => e.scrollWidth <= e.clientWidth)(document.querySelector('{selector}'))")
     for part in (".choose", ".lamps"):
@@ -117,9 +119,9 @@ def test_nobody_is_shut_out(visit: Open, theme: str, size: tuple[int, int]) -> N
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe-playwright-python is not installed")
     for name in CUBES:
         tab = visit(name, width=size[0], height=size[1], color_scheme=theme)
-        for open_help in (False, True):
-            if open_help:
-                tab.keyboard.press("?")
+        for key in ("", "d", "?"):  # as it opens, with details, with help
+            if key:
+                tab.keyboard.press(key)
             found = axe.Axe().run(tab)
             assert found.violations_count == 0, found.generate_report()
 

@@ -251,7 +251,8 @@ SEEN = f"""{START}
   const camera = cameraOf(fitted(orbitFrom(scene.camera), scene, [room], 1.5), 1.5);
   const painter = (kind === "flat" ? createFlat : createRenderer)(canvas, scene, cube);
   painter.cast(exposures(scene, angles_deg[0]), beams, parts);
-  painter.draw(room, camera, {{ dark: argument.dark, mark: argument.mark ?? null, scale: argument.scale ?? 1 }});
+  painter.draw(room, camera, {{ dark: argument.dark, mark: argument.mark ?? null, scale: argument.scale ?? 1,
+    bare: argument.bare ?? 0 }});
   const copy = Object.assign(document.createElement("canvas"), {{ width: 300, height: 200 }}).getContext("2d");
   copy.drawImage(canvas, 0, 0);
   const pixels = copy.getImageData(0, 0, 300, 200).data;
@@ -283,7 +284,7 @@ def chords(found: dict[str, Any], grid: Grid) -> NDArray[np.float64]:
 
 
 def test_glass_is_seen_by_the_eye(evaluate: Run) -> None:
-    """Light from behind an even cube is dimmed by the law of Beer and Lambert over each ray's chord."""
+    """For the lamp's eye light is dimmed by the law of Beer and Lambert over each ray's chord."""
     shape, extinction = (6, 8, 10), np.array([0.02, 0.06, 0.15])
     grid = Grid(shape, 1.3)
     rig = turntable(grid, [0.0, 70.0], elevation_deg=20.0, picture_shape=(6, 8))
@@ -291,7 +292,7 @@ def test_glass_is_seen_by_the_eye(evaluate: Run) -> None:
         Cube(np.broadcast_to(each[:, None, None, None], (3, *shape)).astype(np.float32), grid, rig)
         for each in (extinction, 0 * extinction)
     )
-    through, past = seen(evaluate, cube), seen(evaluate, clear)
+    through, past = seen(evaluate, cube, bare=1), seen(evaluate, clear, bare=1)
     chord = chords(through, grid)
     inside = (chord > 0.5) & (np.abs(through["levels"] - past["levels"]).max(axis=-1) > 0)
     kept = np.exp(-np.maximum(chord, 0)[..., None] * extinction)

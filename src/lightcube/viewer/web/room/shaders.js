@@ -219,6 +219,7 @@ vec3 way, stepX, stepY;   // of this pixel, and on to its neighbours
 vec3 light;               // behind the glass
 vec4 veil;                // before it: light, and the part that it lets through
 float solid, enter, leave;
+bool onPicture;           // whether the ray ends there, where nothing may cover the exact light
 
 struct Place { float depth; vec2 at; vec2 grain; };
 
@@ -312,7 +313,9 @@ void drawScreen(int i) {
     wall = backTone;
   }
   light = mix(light, mix(wall, tone, inside), framed);
-  if (framed > 0.5) solid = place.depth;
+  if (framed <= 0.5) return;
+  solid = place.depth;
+  onPicture = inside > 0.0;
 }
 
 void drawTable(float frost) {
@@ -394,6 +397,7 @@ const int STEPS = 14;
 void drawBeams() {
   float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   float ahead = length(way);
+  if (onPicture) return;
   for (int i = 0; i < min(counts.x, MOST_BEAMS); i++) {
     if (beamTones[i] == vec3(0.0)) continue;
     vec4 corner = things[4 * i], right = things[4 * i + 1], down = things[4 * i + 2], facing = things[4 * i + 3];
@@ -426,7 +430,7 @@ void drawBeams() {
 vec3 clearer(vec3 absorbance) {
   float grey = least3(absorbance);
   vec3 colour = absorbance - grey;
-  return pow(1.0 + grey / 0.8, -0.8) * exp(-1.1 * log(1.0 + colour / 1.1)) * vec3(1.0);
+  return pow(1.0 + grey / 0.8, -0.8) * pow(1.0 + colour / 1.1, vec3(-1.1));
 }
 
 vec3 comesThrough(vec3 absorbance) { return mix(clearer(absorbance), exp(-absorbance), bare); }
@@ -472,6 +476,7 @@ void main() {
   vec2 off = gl_FragCoord.xy / canvas - 0.5;
   light *= 1.0 - 0.42 * dot(off, off);
   float open = solid;
+  onPicture = false;
   for (int i = 0; i < counts.x; i++) drawScreen(i);
   bool plain = solid == open;
   if (!(enter < leave && enter < solid)) enter = leave = NEVER;
