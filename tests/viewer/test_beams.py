@@ -122,6 +122,7 @@ def test_a_pixel_says_what_its_light_passes(visit: Open, where: float, thin: boo
     if thin:
         tab.keyboard.press("b")
     views = cube.rig.views.take([STOPS.index(where)])
+    tab.locator(".choose canvas").scroll_into_view_if_needed()
     box = tab.locator(".choose canvas").bounding_box()
     for row, column in [(0, 0), (5, 2), (7, 9)]:
         tab.mouse.move(
@@ -152,6 +153,7 @@ def test_the_keys_choose_a_row(visit: Open) -> None:
 def test_pointing_at_the_slice_chooses_a_beam(visit: Open) -> None:
     """From above the light goes to the right and the picture's left is up."""
     tab = visit(details=True)
+    tab.locator("canvas.slice").scroll_into_view_if_needed()
     box = tab.locator("canvas.slice").bounding_box()
     said = []
     for part in (0.45, 0.55):

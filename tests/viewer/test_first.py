@@ -17,6 +17,7 @@ from lightcube.viewer.description import describe
 from lightcube.viewer.label import Label
 from lightcube.viewer.packing import pack
 from lightcube.viewer.page import page
+from tests.cli.test_cli import run
 from tests.helpers.browser import opened
 from tests.helpers.visiting import (
     CUBE,
@@ -34,7 +35,7 @@ from tests.helpers.visiting import (
 )
 from tests.viewer.test_shadows import given
 
-__all__ = ["pages", "visit"]
+__all__ = ["pages", "run", "visit"]
 
 WALL = """(() => {
   const wall = document.querySelector(".wall canvas");
@@ -45,8 +46,7 @@ WALL = """(() => {
   return [wall.height, wall.width, [...data]];
 })()"""
 SEES = """(async () => {
-  const { angle } = argument;
-  const scene = await readScene(fromBase64(argument.scene));
+  const { angle, scene } = argument;
   const cube = await readVoxels(fromBase64(argument.voxels), scene);
   const canvas = Object.assign(document.createElement("canvas"), { width: 480, height: 320 });
   const [room, shown] = [standing(scene, angle), exposures(scene, angle)];
@@ -210,6 +210,7 @@ def test_the_lamps_eye_sees_the_picture(evaluate: Open) -> None:
 def test_the_lamps_eye_is_a_key_and_a_way_back(visit: Open) -> None:
     tab = visit(width=900, height=600, reduced_motion="reduce")
     button, room = tab.get_by_role("button", name="Lamp's eye"), tab.locator("canvas.room")
+    tab.evaluate("document.querySelector('.hint').remove()")
     before = room.screenshot()
     tab.keyboard.press("l")
     rested(tab)

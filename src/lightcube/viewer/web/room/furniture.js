@@ -46,7 +46,7 @@ const FAR = 3;
 /** A lamp's radius, in widths of the cube. */
 const LAMP_RADIUS = 0.036;
 /** Width of a frame, in widths of the cube, and of a wall around a picture, in widths of that. */
-const [FRAME, WALL] = [0.014, 0.7];
+const [FRAME, WALL] = [0.014, 0.85];
 /** With more lamps than this, lines to the corners of all pictures would hide the room. */
 const MOST_HINTED = 6;
 
