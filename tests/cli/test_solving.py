@@ -247,7 +247,7 @@ def test_solve_goes_on_from_another_cube(run, pictures: Path, tmp_path: Path) ->
     options = ["--n", 8, "--picture-width", 0.5, "--hold-deg", 0, "--grain", 0, "--mat", "none"]
     first, again = tmp_path / "a.npz", tmp_path / "b.npz"
     assert run("solve", pictures, "-o", first, *options, "--iterations", 60).code == 0
-    assert run("solve", pictures, "-o", again, *options, "--iterations", 1, "--from", first).code == 0
+    assert run("solve", pictures, "-o", again, *options, "--iterations", 1, "--start-from", first).code == 0
     fresh = tmp_path / "c.npz"
     assert run("solve", pictures, "-o", fresh, *options, "--iterations", 1).code == 0
     psnr = [load(each).scores["psnr_mean"] for each in (first, again, fresh)]

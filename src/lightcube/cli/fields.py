@@ -52,4 +52,4 @@ def flag(name: str) -> typer.models.OptionInfo:
     """What makes a field of `Options` an option of the command line."""
     _, said = get_args(_FIELDS[name].type)
     assert isinstance(said, Option)  # noqa: S101 - every field says what it is
-    return typer.Option(f"--{name.replace('_', '-')}", help=said.help, min=said.least)
+    return typer.Option(f"--{name.replace('_', '-')}", help=said.help, min=said.least, rich_help_panel=said.group)

@@ -46,7 +46,9 @@ def application(words: Sequence[str]) -> typer.Typer:
     wanted = next((word for word in words if not word.startswith("-")), None)
     for name, said in COMMANDS.items():
         if name == wanted:
-            app.command(name)(_loaded(name))
+            from lightcube.cli.help import Laid  # here: only a command that is named has a help of its own
+
+            app.command(name, cls=Laid)(_loaded(name))
         else:
             app.command(name, help=said)(_elsewhere)
     return app

@@ -28,23 +28,37 @@ def solve(
     pictures: PICTURES,
     output: Annotated[str, OUT],
     options: Options,
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Say what memory and time it takes, no more.", rich_help_panel="Machine"),
+    ] = False,
     memory: Annotated[
-        str | None, typer.Option(help="Use at most so much, 2GB or 512MB, by solving in parts.  [default: 6GB]")
+        str | None,
+        typer.Option(
+            help="Use at most so much memory, 2GB or 512MB, by solving in parts.  [default: 6GB]",
+            rich_help_panel="Machine",
+        ),
     ] = None,
     unit: Annotated[
-        str | None, typer.Option(help="Solve only unit I of N, I/N; publish makes the cube when all are there.")
+        str | None,
+        typer.Option(
+            help="Solve only unit I of N, I/N; publish makes the cube when all are there.", rich_help_panel="Machine"
+        ),
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(help="Let the workers of a dask scheduler solve, tcp://HOST:PORT, or local ones: local."),
+        typer.Option(
+            help="Let the workers of a dask scheduler solve, tcp://HOST:PORT, or local ones: local.",
+            rich_help_panel="Machine",
+        ),
     ] = None,
     start_from: Annotated[
         str | None,
-        typer.Option("--from", help="Start from this cube, of as many voxels: one picture changed, another material."),
+        typer.Option(
+            help="Start from this cube, of as many voxels: one picture changed, another material.",
+            rich_help_panel="Quality",
+        ),
     ] = None,
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Say what memory and time it takes, and solve nothing.")
-    ] = False,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:

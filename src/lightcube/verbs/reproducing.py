@@ -215,7 +215,7 @@ def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
     if cube.status != "complete":
         doubts.append("The solver was stopped early; the command goes on to its end.")
     if "started_from" in made:
-        doubts.append("It was started from another cube, which is not kept: add --from with that one.")
+        doubts.append("It was started from another cube, which is not kept: add --start-from with that one.")
     if made.get("lightcube") != version("lightcube"):
         written = made.get("lightcube", "an unknown version")
         doubts.append(f"It was made by lightcube {written}; another version may come to other bits.")
