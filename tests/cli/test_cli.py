@@ -80,7 +80,9 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
     )
     assert solved.code == 0
     assert "not resampled" in solved.err
-    assert "PSNR" in solved.out
+    assert "well: all 4 pictures are " in solved.out
+    assert "PSNR" not in solved.out
+    assert f"turn it by hand: lightcube view {tmp_path / 'ball.zarr'}" in solved.out
     assert not (tmp_path / "ball.zarr.partial").exists()
     played = run("play", tmp_path / "ball.zarr", "-o", tmp_path / "ball.gif", "--count", 5, "--scale", 4)
     assert played.code == 0
@@ -144,7 +146,7 @@ def test_ctrl_c_keeps_what_was_reached(run, pictures: Path, tmp_path: Path, monk
     assert "hold was" in again.err
     published = run("publish", f"{out}.partial")
     assert published.code == 0
-    assert f"{out} holds 0 of 1 units, the rest is" in published.out
+    assert f"{out} holds 0 of 1 unit, the rest is" in published.out
     told = run("info", out)
     assert "interrupted" in told.out
     assert run("publish", f"{out}.partial").code == 2

@@ -6,14 +6,19 @@ import typer
 
 from lightcube.cli.console import err, json_document, out, telling
 from lightcube.cli.fields import one_by_one
-from lightcube.cli.options import JSON, PICTURES, threaded
+from lightcube.cli.options import JSON, PICTURES, VERBOSE, threaded
 from lightcube.verbs import checking, solving
 from lightcube.verbs.options import Options
 
 
 @threaded
 @one_by_one
-def check(pictures: PICTURES, options: Options, as_json: Annotated[bool, JSON] = False) -> None:
+def check(
+    pictures: PICTURES,
+    options: Options,
+    verbose: Annotated[bool, VERBOSE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
     """Say before solving what can be known: how good it will be, what contradicts itself, or on a stage cannot be.
 
     The exit code is 2 where anything on a stage is impossible.
@@ -26,7 +31,7 @@ def check(pictures: PICTURES, options: Options, as_json: Annotated[bool, JSON] =
     if as_json:
         json_document(found.facts)
     else:
-        for line in found.lines:
+        for line in [*found.lines, *(["", *found.figures] if verbose else [])]:
             out.print(line)
         for sentence in found.impossible:
             err.print(f"impossible: {sentence}")

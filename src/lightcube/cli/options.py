@@ -14,6 +14,7 @@ PICTURES = Annotated[str, typer.Argument(help="A folder of pictures, an animated
 
 OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.", rich_help_panel="Output")
 OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.", rich_help_panel="Output")
+VERBOSE = typer.Option("--verbose", help="Print all numbers too.", rich_help_panel="Output")
 JSON = typer.Option("--json", help="Print JSON for machines.", rich_help_panel="Output")
 FPS = typer.Option("--fps", help="Pictures per second of a movie.", rich_help_panel="Output")
 THREADS = Annotated[

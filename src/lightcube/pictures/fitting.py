@@ -18,6 +18,7 @@ from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import from_levels, to_uint16
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
+from lightcube.wording import counted
 
 Fit = Literal["crop", "pad", "stretch"]
 Picture = Images
@@ -56,7 +57,8 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
     fits = [ways] * len(pictures) if isinstance(ways, str) else list(ways)
     if not len(pictures) == len(fits) == len(rig):
         raise InputError(
-            f"{len(pictures)} pictures and {len(fits)} ways to fit them for {len(rig)} on the screens: give one of each"
+            f"{counted(len(pictures), 'picture')} and {len(fits)} ways to fit them for {len(rig)} on the screens: "
+            "give one of each"
         )
     fitted = np.ones((len(pictures), *rig.picture_shape, 3), np.float32)
     weights = np.zeros(fitted.shape[:3], np.float32)
@@ -70,7 +72,7 @@ def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] =
     target = targets.rig.picture_shape
     sizes = Counter((image.shape[0], image.shape[1]) for image in pictures.images)
     first = (pictures.images[0].shape[0], pictures.images[0].shape[1])
-    count = f"{len(pictures)} pictures"
+    count = counted(len(pictures), "picture")
     if set(sizes) == {target}:
         return f"{count} of {_size(target)}, not resampled"
     rows, columns = target
@@ -79,7 +81,7 @@ def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] =
     did = {words[check_fit(way)] for way in ([ways] if isinstance(ways, str) else ways)} if other_aspect else {"scaled"}
     done = " or ".join(sorted(did))
     others = len(sizes) - 1
-    more = f" and {others} other size{'s' if others > 1 else ''}" if others else ""
+    more = f" and {counted(others, 'other size')}" if others else ""
     rule = f", the aspect of {pictures.names[0]}" if other_aspect else ""
     return f"{count}, {done} from {_size(first)}{more} to {_size(target)}{rule}"
 

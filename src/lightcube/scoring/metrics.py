@@ -28,6 +28,10 @@ BEST_DB = 100.0
 #: Pictures of this PSNR, dB, are good: they are made small enough for it.
 GOOD_DB = 40.0
 
+#: What a picture of at least so many dB looks like, and a worse one.
+_NEARNESS = {GOOD_DB: "hard to tell from what is wanted", 30.0: "good", 25.0: "fair"}
+_FAR = "poor"
+
 Display = NDArray[np.floating[Any]]
 
 
@@ -38,6 +42,11 @@ _GRAINS = {"smooth": 0.03, "fine": 0.10}
 def grain_word(rms: float) -> str:
     """How light that varies so much inside pixels (display values) looks: smooth, fine or coarse."""
     return next((word for word, least in _GRAINS.items() if rms < least), "coarse")
+
+
+def nearness(decibels: float) -> str:
+    """What a picture of such a PSNR looks like, in a few words."""
+    return next((word for least, word in _NEARNESS.items() if decibels >= least), _FAR)
 
 
 def psnr(shown: Display, wanted: Display, weight: Display) -> float:

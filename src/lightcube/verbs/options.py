@@ -21,6 +21,8 @@ from lightcube.solvers import METHODS
 Surround = Literal["dark", "grey", "light", "none"]
 #: Voxels along the longest side of a cube, unless something else is said.
 DEFAULT_N = 128
+#: Pictures that are taken of a film, at most, unless something else is said.
+FILM_MOST = 32
 
 
 #: What options are about, in the order in which people are told of them.
@@ -47,6 +49,17 @@ class Options:
             "Pictures of another shape than the first: crop their edges, pad (leave the rest free), or stretch.",
         ),
     ] = "crop"
+    most: Annotated[
+        int | None,
+        Option(
+            "Pictures",
+            "Take at most so many pictures of a video or animation, evenly spread.  [default: 32, with --every all]",
+            1,
+        ),
+    ] = None
+    every: Annotated[int | None, Option("Pictures", "Take one of so many pictures of a video or animation.", 1)] = None
+    from_s: Annotated[float | None, Option("Pictures", "Where to begin in a video, in seconds.  [default: 0]")] = None
+    to_s: Annotated[float | None, Option("Pictures", "Where to end in a video, in seconds.  [default: its end]")] = None
     picture_width: Annotated[
         float | None,
         Option(
@@ -183,6 +196,18 @@ class Options:
         if not (np.isfinite(self.size_mm) and self.size_mm > 0):
             raise InputError(f"--size-mm {self.size_mm}: give a positive number of millimetres")
         return nz, ny, nx
+
+    @property
+    def film(self) -> dict[str, Any]:
+        """What is taken of a film, as `lightcube.read_pictures` takes it; what is all of it is left out."""
+        most = FILM_MOST if self.most is None and self.every is None else self.most
+        said = {"from_s": self.from_s, "to_s": self.to_s, "every": self.every, "most": most}
+        return {name: value for name, value in said.items() if value is not None}
+
+    @property
+    def is_of_a_film(self) -> bool:
+        """Whether something is said that only films have."""
+        return (self.most, self.every, self.from_s, self.to_s) != (None, None, None, None)
 
     @property
     def turntable(self) -> Turntable:

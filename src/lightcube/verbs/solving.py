@@ -2,7 +2,7 @@
 
 import json
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -36,7 +36,17 @@ _QUICK = 40
 #: Options that a stage file leaves no room for.
 _SAID_BY_STAGE = (
     *("n", "shape", "size_mm", "slices_tall", "picture_width", "pixel", "fit", "angles_deg", "span_deg"),
-    *("elevation_deg", "paper", "order", "shift", "lamp_power", "lamp_max", "black", "lamp_deg", "screen_mm"),
+    *(
+        "elevation_deg",
+        "paper",
+        "order",
+        "shift",
+        "lamp_power",
+        "lamp_max",
+        "black",
+        "lamp_deg",
+        "screen_mm",
+    ),
 )
 
 
@@ -68,6 +78,7 @@ def read(source: str, options: Options, *, told: bool = True) -> Planning:
 
 def _read_stage(source: str, options: Options) -> Callable[..., Plan]:
     """Read a stage file, which says all there is."""
+    part(source, options)
     recipe, nothing = options.recipe, Options()
     smooth = options.grain is None and not recipe.beams.is_thin
     for name in _SAID_BY_STAGE:
@@ -87,7 +98,7 @@ def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
     check_memory(memory_needed(recipe.solver, Grid(shape), (1, 1), 1, units=3))
     return partial(
         plan,
-        io.read_pictures(source, transfer=options.transfer),
+        io.read_pictures(source, transfer=options.transfer, **part(source, options)),
         max(shape),
         recipe,
         size_mm=options.size_mm,
@@ -103,6 +114,15 @@ def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
     )
 
 
+def part(source: str, options: Options) -> dict[str, Any]:
+    """What of a film is taken; `InputError` where something of that is said of what is none."""
+    if options.is_of_a_film and not io.is_film(source):
+        raise InputError(
+            f"--most, --every, --from and --to are for films and animations, not for {source}: leave them out"
+        )
+    return options.film if io.is_film(source) else {}
+
+
 def another_order(planned: Plan, small: Rehearsals) -> "Order | None":
     """The best order of a plan: its own, or one that is looked for where that does not take long; none of a stage."""
     if planned.order is not None or planned.stage is not None or len(planned.pictures) > _QUICK:
@@ -110,8 +130,18 @@ def another_order(planned: Plan, small: Rehearsals) -> "Order | None":
     return small.best_order(planned.targets, planned.grid, planned.recipe)
 
 
-def job(planned: Plan, *, memory: int | None = None, units: int | None = None, start: Cube | None = None) -> Job:
-    """Settle all that decides the cube; `InputError` where it cannot be, or does not fit into `memory` bytes."""
+def job(
+    planned: Plan,
+    *,
+    memory: int | None = None,
+    units: int | None = None,
+    start: Cube | None = None,
+    film: Mapping[str, Any] | None = None,
+) -> Job:
+    """Settle all that decides the cube; `InputError` where it cannot be, or does not fit into `memory` bytes.
+
+    `film` is what was taken of a film, where it was one: the cube remembers it.
+    """
     if planned.impossible:
         raise InputError(f"on this stage {planned.impossible[0]}")
     made = make_job(
@@ -121,7 +151,7 @@ def job(planned: Plan, *, memory: int | None = None, units: int | None = None, s
         units=units,
         memory=memory,
         start=start,
-        provenance=_origin(planned),
+        provenance=_origin(planned) | ({"film": dict(film)} if film else {}),
     )
     needed = job_memory(made)
     if memory is not None and needed > memory:
