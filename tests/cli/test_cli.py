@@ -14,14 +14,13 @@ import pytest
 from PIL import Image
 
 from lightcube import load
-from lightcube.cli import demo, main
+from lightcube.cli import main
 from lightcube.io import save
 from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
-from lightcube.pictures.samples import photographs
-from lightcube.planning.plan import plan
+from lightcube.verbs import wonders
 
 SCENE = """
 camera = {type = "shadow", cube_width = 4.0}
@@ -428,14 +427,26 @@ def test_help_names_every_command() -> None:
 
 def test_the_demo_leaves_what_it_says(run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     """As a whole, on cubes of a moment."""
-    monkeypatch.setattr(demo, "_SIDE", 10)
-    monkeypatch.setattr(demo, "photographs", lambda: photographs(2))
-    monkeypatch.setattr(demo, "_juggler", lambda grid: plan(photographs(3), 10, picture_width=0.5).targets)
+    monkeypatch.setattr(wonders, "SIDE", 10)
     done = run("demo", "-o", tmp_path / "out")
     assert done.code == 0, done.err
     figures = json.loads((tmp_path / "out/metrics.json").read_text())
-    for name, count in (("photographs", 2), ("juggler", 3)):
-        assert f"{count} of " in done.out
+    shown = (tmp_path / "out/index.html").read_text()
+    for name, count in (("photographs", 8), ("juggler", 24), ("walls", 8)):
         assert len(figures[name]["pictures"]) == count
-        for suffix in (".html", ".zarr", ".png", "-stops.mp4", "-turn.mp4"):
-            assert (tmp_path / f"out/{name}{suffix}").exists(), suffix
+        cube = load(tmp_path / f"out/{name}.zarr")
+        assert cube.grid.shape == (10, 10, 10)
+        assert shown.count(f'href="{name}.html"') == 2  # the picture and its title
+        made = {file.name for file in (tmp_path / "out").glob(f"{name}*")}
+        movie = {f"{name}-turn.mp4"} if name != "walls" else set()
+        assert made == {f"{name}.zarr", f"{name}.html", f"{name}.png", *movie}
+    assert "lightcube solve photos -o cube.zarr" in shown
+    assert "index.html in a browser" in done.out
+    assert not re.search(r"https?://|<script", shown)
+
+
+def test_the_paper_is_drawn(run, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("demo", "--paper", "-o", tmp_path / "out")
+    assert done.code == 0, done.err
+    assert f"drawn in {tmp_path}/out/paper.png" in done.out
+    assert sorted(each.name for each in (tmp_path / "out").iterdir()) == ["paper.gif", "paper.png"]

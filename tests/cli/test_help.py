@@ -1,13 +1,14 @@
 """What `--help` says: every option in a group and with its unit, and examples that can be typed."""
 
 import re
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 import typer
 
 from lightcube.cli import main
 from lightcube.cli.help import EXAMPLES, GROUPS, group_of
+from lightcube.verbs.options import Group
 
 #: What numbers are of; one of these stands in the text of each option that takes one.
 UNITS = r"\b(mm|degrees?|voxels?|pixels?|passes|seconds?|pictures?|points?|widths?|EV|1/mm|part of)\b"
@@ -22,6 +23,10 @@ def command(name: str) -> Any:
 
 def options(name: str) -> list[Any]:
     return [each for each in command(name).params if each.param_type_name == "option"]
+
+
+def test_the_groups_of_a_cubes_options_are_shown_in_their_order() -> None:
+    assert ("Output", *get_args(Group), "Machine") == GROUPS
 
 
 @pytest.mark.parametrize("name", ["solve", "check"])

@@ -4,9 +4,10 @@ from typing import Annotated
 
 import typer
 
+from lightcube import io
 from lightcube.cli.console import err, json_document, out, telling
 from lightcube.cli.fields import one_by_one
-from lightcube.cli.options import JSON, PICTURES, VERBOSE, threaded
+from lightcube.cli.options import JSON, OVERWRITE, PICTURES, VERBOSE, threaded
 from lightcube.verbs import checking, solving
 from lightcube.verbs.options import Options
 
@@ -16,6 +17,14 @@ from lightcube.verbs.options import Options
 def check(
     pictures: PICTURES,
     options: Options,
+    sheet: Annotated[
+        str | None,
+        typer.Option(
+            help="Draw what will be asked for: each picture, what is cut off, what is left (PNG, WebP or JPEG).",
+            rich_help_panel="Output",
+        ),
+    ] = None,
+    overwrite: Annotated[bool, OVERWRITE] = False,
     verbose: Annotated[bool, VERBOSE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
@@ -23,11 +32,17 @@ def check(
 
     The exit code is 2 where anything on a stage is impossible.
     """
+    sheet_file = None if sheet is None else io.Output(sheet, "picture", overwrite)
+    if sheet_file is not None:
+        sheet_file.check()
     planning = solving.read(pictures, options)
     with telling("planning", as_json=as_json) as tell:
         small = solving.rehearsals(None if as_json else tell)  # a document is all that is printed
         # all that would help contradicts the paper
-        found = checking.check(planning(small), small, advise=not options.paper)
+        planned = planning(small)
+        found = checking.check(planned, small, advise=not options.paper)
+    if sheet_file is not None:
+        sheet_file.write(checking.sheet(planned))
     if as_json:
         json_document(found.facts)
     else:

@@ -17,6 +17,7 @@ _FLAGS = {"from_s": "from", "to_s": "to"}
 #: Options that are written as a text: what it means.
 _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "shape": lambda text: arguments.whole_numbers(text, ",", "--shape", 3),
+    "focus": lambda text: arguments.two_numbers(text, "--focus"),
     "angles_deg": lambda text: arguments.numbers(text, "--angles-deg"),
     "grain": lambda text: arguments.number_or_auto(text, "--grain"),
 }

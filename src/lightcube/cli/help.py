@@ -1,14 +1,12 @@
 """How a command's help is laid out: options in groups, most used first, and examples at the end, in plain text."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, get_args
+from typing import Any
 
 from typer.core import TyperCommand
 
-from lightcube.verbs.options import Group
-
 #: The groups in the order in which they are shown: beside what may be said of a cube, where it goes and who computes.
-GROUPS: Sequence[str] = ("Output", *get_args(Group), "Machine")
+GROUPS = ("Output", "Pictures", "Geometry", "Lamp", "Material", "Quality", "Machine")
 #: What a command's own options stand under that are in no group.
 _OTHERS = "Options"
 
@@ -22,6 +20,10 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     ],
     "check": [
         ("lightcube check photos", "how good they will be, and what would help"),
+        (
+            "lightcube check photos --sheet wanted.png --focus 0.5,0.3",
+            "look at what will be cropped, a little higher up",
+        ),
         ("lightcube check photos --n 64 --lamp-max 4", "the same of a smaller cube and a weaker lamp"),
     ],
     "score": [

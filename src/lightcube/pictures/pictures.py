@@ -31,6 +31,9 @@ class Pictures:
         Elevation of the lamp in degrees that came with the pictures, or None.
     transfer
         How the display values were decoded.
+    focus
+        What stays in the middle, as far as it can, of pictures that are cropped: parts of their width and height, from
+        their upper left.
     """
 
     images: tuple[Images, ...]
@@ -38,6 +41,7 @@ class Pictures:
     angles_deg: Reals | None = None
     elevation_deg: float | None = None
     transfer: Transfer = "srgb"
+    focus: tuple[float, float] = (0.5, 0.5)
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -58,6 +62,9 @@ class Pictures:
                     "give one angle per picture"
                 )
             object.__setattr__(self, "angles_deg", angles_deg)
+        if not all(0 <= part <= 1 for part in self.focus):
+            x, y = self.focus
+            raise InputError(f"the focus {x:g},{y:g} is outside the picture: give two numbers from 0 to 1")
         if self.elevation_deg is not None:
             check_elevation(self.elevation_deg)
 

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
+from lightcube.drawing.sheet import wanted_sheet
+from lightcube.optics.arrays import Levels
 from lightcube.planning.plan import Plan
 from lightcube.planning.rehearsals import Rehearsals
 from lightcube.verbs import figures, solving, words
@@ -28,6 +30,12 @@ class Checked:
     lines: list[str]
     figures: list[str]
     impossible: list[str]
+
+
+def sheet(planned: Plan) -> Levels:
+    """What will be asked for, as one picture ``(row, column, 3)`` of display levels, crops and all."""
+    order = range(len(planned.targets)) if planned.order is None else list(map(int, planned.order.pictures))
+    return wanted_sheet(planned.pictures, planned.targets, planned.fit, order)
 
 
 def check(planned: Plan, small: Rehearsals, *, advise: bool = True) -> Checked:

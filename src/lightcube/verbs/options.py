@@ -49,6 +49,14 @@ class Options:
             "Pictures of another shape than the first: crop their edges, pad (leave the rest free), or stretch.",
         ),
     ] = "crop"
+    focus: Annotated[
+        tuple[float, float] | None,
+        Option(
+            "Pictures",
+            "X,Y that stays in the middle where pictures are cropped, as parts of their width and height from the "
+            "upper left, 0 to 1.  [default: 0.5,0.5]",
+        ),
+    ] = None
     most: Annotated[
         int | None,
         Option(
@@ -196,6 +204,20 @@ class Options:
         if not (np.isfinite(self.size_mm) and self.size_mm > 0):
             raise InputError(f"--size-mm {self.size_mm}: give a positive number of millimetres")
         return nz, ny, nx
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """What stays in the middle of cropped pictures; `InputError` where nothing is cropped, or it cannot be."""
+        if self.focus is not None and self.fit != "crop":
+            raise InputError(
+                f"--focus is for pictures that are cropped, not for --fit {self.fit}: leave out one of the two"
+            )
+        if self.focus is not None and not all(0 <= part <= 1 for part in self.focus):
+            x, y = self.focus
+            raise InputError(
+                f"--focus {x:g},{y:g} is outside the picture: give two numbers from 0 to 1, such as 0.5,0.3"
+            )
+        return self.focus or (0.5, 0.5)
 
     @property
     def film(self) -> dict[str, Any]:

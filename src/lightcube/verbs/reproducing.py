@@ -103,6 +103,8 @@ def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
     yield from _film(provenance)
     if provenance.get("fit", "crop") != "crop":
         yield from ("--fit", str(provenance["fit"]))
+    if "focus" in provenance:
+        yield from ("--focus", _listed(np.array(provenance["focus"])))
     if "order" in provenance:
         yield from ("--order", "best")
     if "shift" in provenance:

@@ -35,7 +35,7 @@ _QUICK = 40
 
 #: Options that a stage file leaves no room for.
 _SAID_BY_STAGE = (
-    *("n", "shape", "size_mm", "slices_tall", "picture_width", "pixel", "fit", "angles_deg", "span_deg"),
+    *("n", "shape", "size_mm", "slices_tall", "picture_width", "pixel", "fit", "focus", "angles_deg", "span_deg"),
     *(
         "elevation_deg",
         "paper",
@@ -96,9 +96,11 @@ def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
     if options.mat is None and recipe.solver.chooses_lamps and not recipe.beams.is_thin:
         recipe = replace(recipe, mat=Mat())
     check_memory(memory_needed(recipe.solver, Grid(shape), (1, 1), 1, units=3))
+    focus = options.middle
+    pictures = io.read_pictures(source, transfer=options.transfer, **part(source, options))
     return partial(
         plan,
-        io.read_pictures(source, transfer=options.transfer, **part(source, options)),
+        replace(pictures, focus=focus),
         max(shape),
         recipe,
         size_mm=options.size_mm,
@@ -167,6 +169,8 @@ def _origin(planned: Plan) -> dict[str, Any]:
     known: dict[str, Any] = {}
     if planned.stage is None:
         known["fit"] = planned.fit
+        if planned.pictures.focus != (0.5, 0.5):
+            known["focus"] = list(planned.pictures.focus)
     if planned.prediction.is_known:
         known["predicted"] = as_json(planned.prediction)
     if planned.shift:

@@ -39,10 +39,10 @@ _FROM_NEAR = {
 def in_short(planned: Plan, order: "Order | None") -> list[str]:
     """Lines that `solve` says before it starts; `order` is the best one, if it was looked for."""
     hold_deg, rig = planned.recipe.hold_deg, planned.targets.rig
-    held = f"; each picture stands for {hold_deg:g} degrees to either side of its stop" if hold_deg else ""
+    held = f"; each picture stands for {hold_deg:.2g} degrees to either side of its stop" if hold_deg else ""
     return [
         _wanted(planned),
-        f"cube of {voxels(planned.grid.shape)} voxels, {planned.grid.size_mm[2]:g} mm wide{held}",
+        f"cube of {voxels(planned.grid.shape)} voxels, {planned.grid.size_mm[2]:.3g} mm wide{held}",
         *expected(planned),
         *gain(planned, order),
         *(f"doubtful: {sentence}" for sentence in planned.doubtful),
