@@ -116,3 +116,10 @@ def test_long_films_are_looked_through_with_a_bound(film: Path, monkeypatch: pyt
     assert numbers(film, to_s=0.45, most=2) == [2, 4]
     monkeypatch.setattr("lightcube.io._video.MOST_PICTURES", 9)
     assert numbers(film, to_s=0.45, most=2) == [2, 4]  # what is not read is not counted
+
+
+def test_a_part_holds_what_begins_in_it() -> None:
+    """What is shown from its second on; the end is no part of it."""
+    times = [0.0, 0.5, 1.0, 1.5, 2.0]
+    for begin, end, found in ((0.5, 1.5, [1, 2]), (0.4, 1.6, [1, 2, 3]), (None, 0.5, [0]), (1.75, None, [4])):
+        assert Excerpt(begin, end).numbers(Path("a.mp4"), times) == (found, len(found))

@@ -80,8 +80,8 @@ def read_pictures(
     path
         A folder of PNG, JPEG, WebP, TIFF, AVIF or HEIC files, taken in natural order (2 before 10), whose `views.toml`,
         if there is one, gives angles, elevation and names; or an animated GIF, WebP, APNG or AVIF, or a TIFF of several
-        pages (thumbnails and masks are none); or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken.
-        HEIC takes the extra `heif`. It may be a URL.
+        pages (thumbnails and masks are none); or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken
+        unless a part is asked for. HEIC takes the extra `heif`. It may be a URL.
     transfer
         How display values become linear light.
     least
