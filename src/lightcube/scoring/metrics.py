@@ -28,9 +28,10 @@ BEST_DB = 100.0
 #: Pictures of this PSNR, dB, are good: they are made small enough for it.
 GOOD_DB = 40.0
 
-#: What a picture of at least so many dB looks like, and a worse one.
-_NEARNESS = {GOOD_DB: "hard to tell from what is wanted", 30.0: "good", 25.0: "fair"}
-_FAR = "poor"
+#: The least PSNR, dB, of a picture that is fair: recognisable, with faults that one sees. A worse one is poor.
+FAIR_DB = 26.0
+#: What a picture of at least so many dB looks like.
+_NEARNESS = {GOOD_DB: "hard to tell from what is wanted", 33.0: "good", FAIR_DB: "fair"}
 
 Display = NDArray[np.floating[Any]]
 
@@ -46,7 +47,7 @@ def grain_word(rms: float) -> str:
 
 def nearness(decibels: float) -> str:
     """What a picture of such a PSNR looks like, in a few words."""
-    return next((word for least, word in _NEARNESS.items() if decibels >= least), _FAR)
+    return next((word for least, word in _NEARNESS.items() if decibels >= least), "poor")
 
 
 def psnr(shown: Display, wanted: Display, weight: Display) -> float:

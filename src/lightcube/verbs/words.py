@@ -16,14 +16,12 @@ from lightcube.planning.consistency import advice, check
 from lightcube.planning.measured import is_measured
 from lightcube.planning.plan import Plan, narrower
 from lightcube.planning.rehearsals import Rehearsals
-from lightcube.scoring.metrics import grain_word, nearness
+from lightcube.scoring.metrics import FAIR_DB, grain_word, nearness
 from lightcube.wording import counted, in_ev
 
 if TYPE_CHECKING:
     from lightcube.planning.order import Order
 
-#: A picture below this PSNR, dB, is poor.
-POOR_DB = 25.0
 #: An order that gains so many dB is worth a word.
 _WORTH_DB = 1.0
 #: So many pictures are named; and so many characters of a name.
@@ -125,7 +123,7 @@ def gain(planned: Plan, order: "Order | None") -> list[str]:
 
 def is_poor(planned: Plan) -> bool:
     """Whether poor pictures are expected."""
-    return planned.prediction.is_known and planned.prediction.psnr_mean < POOR_DB
+    return planned.prediction.is_known and planned.prediction.psnr_mean < FAIR_DB
 
 
 def what_to_change(planned: Plan, remedies: Mapping[str, float]) -> list[str]:
@@ -141,7 +139,7 @@ def what_to_change(planned: Plan, remedies: Mapping[str, float]) -> list[str]:
 
 def _helps(remedies: Mapping[str, float]) -> list[str]:
     """What makes pictures better than poor, the best first; several changes together where none is enough."""
-    enough = [each for each in sorted(remedies.items(), key=lambda each: -each[1]) if each[1] >= POOR_DB]
+    enough = [each for each in sorted(remedies.items(), key=lambda each: -each[1]) if each[1] >= FAIR_DB]
     if remedies and not enough:
         return [f"try: several of these together, one is not enough: {', '.join(remedies)}"]
     return [f"try: {change}, then they will be {nearness(decibels)}" for change, decibels in enough]
