@@ -15,7 +15,7 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 
 #: Rooms from the ground up: a file imports from its own room and from lower storeys, never from a neighbour.
 STOREYS = [
-    ["errors", "events", "kernels", "loading"],
+    ["errors", "events", "kernels", "loading", "wording"],
     ["optics"],
     ["pictures", "projection", "solvers"],
     ["scene", "backward", "forward"],

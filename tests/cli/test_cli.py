@@ -14,14 +14,13 @@ import pytest
 from PIL import Image
 
 from lightcube import load
-from lightcube.cli import demo, main
+from lightcube.cli import main
 from lightcube.io import save
 from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
-from lightcube.pictures.samples import photographs
-from lightcube.planning.plan import plan
+from lightcube.verbs import wonders
 
 SCENE = """
 camera = {type = "shadow", cube_width = 4.0}
@@ -80,7 +79,9 @@ def test_from_a_scene_to_a_score(run, tmp_path: Path) -> None:  # type: ignore[n
     )
     assert solved.code == 0
     assert "not resampled" in solved.err
-    assert "PSNR" in solved.out
+    assert "well: all 4 pictures are " in solved.out
+    assert "PSNR" not in solved.out
+    assert f"turn it by hand: lightcube view {tmp_path / 'ball.zarr'}" in solved.out
     assert not (tmp_path / "ball.zarr.partial").exists()
     played = run("play", tmp_path / "ball.zarr", "-o", tmp_path / "ball.gif", "--count", 5, "--scale", 4)
     assert played.code == 0
@@ -144,7 +145,7 @@ def test_ctrl_c_keeps_what_was_reached(run, pictures: Path, tmp_path: Path, monk
     assert "hold was" in again.err
     published = run("publish", f"{out}.partial")
     assert published.code == 0
-    assert f"{out} holds 0 of 1 units, the rest is" in published.out
+    assert f"{out} holds 0 of 1 unit, the rest is" in published.out
     told = run("info", out)
     assert "interrupted" in told.out
     assert run("publish", f"{out}.partial").code == 2
@@ -251,9 +252,9 @@ BAD = [
     ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "0.1", "--light", "thin"),
     ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "0.1", "--method", "sirt"),
     ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--grain", "0.1", "--paper"),
-    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "12", "--from", "{cube}"),
-    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--from", "{none}"),
-    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--from", "{pictures}"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "12", "--start-from", "{cube}"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--start-from", "{none}"),
+    ("solve", "{pictures}", "-o", "{tmp}/a.zarr", "--n", "6", "--start-from", "{pictures}"),
     ("solve", "{pictures}"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--stops", "--angles-deg", "5"),
     ("play", "{cube}", "-o", "{tmp}/a.gif", "--angles-deg", "5", "--count", "3"),
@@ -426,14 +427,25 @@ def test_help_names_every_command() -> None:
 
 def test_the_demo_leaves_what_it_says(run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]
     """As a whole, on cubes of a moment."""
-    monkeypatch.setattr(demo, "_SIDE", 10)
-    monkeypatch.setattr(demo, "photographs", lambda: photographs(2))
-    monkeypatch.setattr(demo, "_juggler", lambda grid: plan(photographs(3), 10, picture_width=0.5).targets)
+    monkeypatch.setattr(wonders, "SIDE", 10)
     done = run("demo", "-o", tmp_path / "out")
     assert done.code == 0, done.err
     figures = json.loads((tmp_path / "out/metrics.json").read_text())
-    for name, count in (("photographs", 2), ("juggler", 3)):
-        assert f"{count} of " in done.out
+    shown = (tmp_path / "out/index.html").read_text()
+    for name, count in (("photographs", 8), ("juggler", 24), ("walls", 8)):
         assert len(figures[name]["pictures"]) == count
-        for suffix in (".html", ".zarr", ".png", "-stops.mp4", "-turn.mp4"):
-            assert (tmp_path / f"out/{name}{suffix}").exists(), suffix
+        cube = load(tmp_path / f"out/{name}.zarr")
+        assert cube.grid.shape == (10, 10, 10)
+        assert shown.count(f'href="{name}.html"') == 2  # the picture and its title
+        made = {file.name for file in (tmp_path / "out").glob(f"{name}*")}
+        assert made == {f"{name}.{suffix}" for suffix in ("zarr", "html", "png", "mp4")}
+    assert "lightcube solve photos -o cube.zarr" in shown
+    assert "index.html in a browser" in done.out
+    assert not re.search(r"https?://|<script", shown)
+
+
+def test_the_paper_is_drawn(run, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("demo", "--paper", "-o", tmp_path / "out")
+    assert done.code == 0, done.err
+    assert f"drawn in {tmp_path}/out/paper.png" in done.out
+    assert sorted(each.name for each in (tmp_path / "out").iterdir()) == ["paper.gif", "paper.png"]

@@ -1,6 +1,7 @@
 """`check` and what `solve` decides by itself: the paper's set-up, order, shift, quality, advice."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,10 @@ from tests.conftest import INTERPRETED
 from tests.helpers.wall import play
 
 __all__ = ["pictures", "run"]
+
+
+#: What no photographer says.
+JARGON = {"PSNR", "SSIM", "dB", "load", "centroids", "totals", "passes", "units", "moments", "rms", "E2000"}
 
 
 @pytest.fixture
@@ -34,8 +39,13 @@ def unlike(tmp_path: Path) -> Path:
 def test_check_says_what_to_expect_in_words_and_json(run, pictures: Path) -> None:  # type: ignore[no-untyped-def]
     told = run("check", pictures, "--n", 8)
     assert told.code == 0
-    for word in ("expected", "load", "mirrored pairs", "row conflicts", "cube of 8 x 8 x 8"):
-        assert word in told.out, word
+    assert not JARGON & set(re.findall(r"\w+", told.out))
+    for words in ("4 pictures", "cube of 8 x 8 x 8 voxels, 100 mm wide", "well: all 4 pictures will be "):
+        assert words in told.out, words
+    numbers = run("check", pictures, "--n", 8, "--verbose").out
+    assert numbers.startswith(told.out)
+    for words in ("PSNR expected", "load", "mirrored pairs", "row conflicts"):
+        assert words in numbers, words
     facts = json.loads(run("check", pictures, "--n", 8, "--json").out)
     assert facts["pictures"] == 4
     assert facts["elevation_deg"] == 35
@@ -152,9 +162,15 @@ def test_shifted_pictures_are_where_they_were_put(run, unlike: Path, tmp_path: P
 def test_poor_pictures_come_with_what_would_help(run, unlike: Path) -> None:  # type: ignore[no-untyped-def]
     told = run("check", unlike, "--n", 12, "--picture-width", 1.2, "--lamp-max", 1)
     assert told.code == 0
-    assert "--picture-width" in told.out
-    assert "--lamp-max 16:" in told.out
-    assert "3 of the pictures" in told.out
+    assert not JARGON & set(re.findall(r"\w+", told.out))
+    assert "wrong: all 6 pictures will be poor" in told.out
+    (helps,) = (line for line in told.out.splitlines() if line.startswith("try: "))
+    for change in ("--picture-width", "--lamp-max 16 (+4 EV)", "3 of the pictures"):
+        assert change in helps
+    asked = ["check", unlike, "--n", 12, "--picture-width", 1.2, "--lamp-max", 1]
+    remedies = json.loads(run(*asked, "--json").out)["remedies"]
+    assert len(remedies) == 3
+    assert run(*asked, "--verbose").out.count("with ") == 3
 
 
 @pytest.mark.parametrize("quality", ["draft", "normal", "best"])
@@ -247,7 +263,7 @@ def test_solve_goes_on_from_another_cube(run, pictures: Path, tmp_path: Path) ->
     options = ["--n", 8, "--picture-width", 0.5, "--hold-deg", 0, "--grain", 0, "--mat", "none"]
     first, again = tmp_path / "a.npz", tmp_path / "b.npz"
     assert run("solve", pictures, "-o", first, *options, "--iterations", 60).code == 0
-    assert run("solve", pictures, "-o", again, *options, "--iterations", 1, "--from", first).code == 0
+    assert run("solve", pictures, "-o", again, *options, "--iterations", 1, "--start-from", first).code == 0
     fresh = tmp_path / "c.npz"
     assert run("solve", pictures, "-o", fresh, *options, "--iterations", 1).code == 0
     psnr = [load(each).scores["psnr_mean"] for each in (first, again, fresh)]

@@ -178,7 +178,7 @@ def test_every_kind_of_file_can_have_a_profile(tmp_path: Path, suffix: str, colo
     else:
         lossless = {"lossless": True} if suffix == ".webp" else {"quality": 100} if suffix == ".jpg" else {}
         Image.fromarray(picture).save(path, icc_profile=icc, **lossless)
-    with pytest.warns(ChangedPictures, match=r"^1 of 1 pictures in .* not sRGB \(Test: turned into sRGB\)$"):
+    with pytest.warns(ChangedPictures, match=r"^1 of 1 picture in .* not sRGB \(Test: turned into sRGB\)$"):
         image = read_pictures(path, least=1).images[0]
     np.testing.assert_allclose(encode(image) * 255, np.broadcast_to(by_littlecms(picture, icc), image.shape), atol=2.1)
 

@@ -197,7 +197,7 @@ def test_transfer_and_opacity_are_as_of_other_pictures(folder: Path, tmp_path: P
     levels = np.dstack([levels_of(4, 6), np.full((4, 6), 51, np.uint8)])
     Image.fromarray(levels).save(tmp_path / "one.png")
     file = stage_file(tmp_path, MINIMAL)
-    with pytest.warns(TransparentPictures, match=r"1 of 1 pictures in .*one\.png"):
+    with pytest.warns(TransparentPictures, match=r"1 of 1 picture in .*one\.png"):
         _, pictures, _ = read_stage(file, transfer="linear")
     assert pictures.transfer == "linear"
     np.testing.assert_allclose(pictures.images[0], 0.2 * (levels[..., :3] / 255) + 0.8, atol=1e-6)

@@ -41,7 +41,7 @@ def test_solve_from_a_url_to_a_url(run, remote: str, tmp_path: Path, monkeypatch
     assert "largest lamp power was" in changed.err
     again = run("solve", photographs, "-o", out, *SMALL)
     assert again.code == 0, again.err
-    assert "going on from 0 of 1 units, pass 1 of 5" in again.err
+    assert "going on from 0 of 1 unit, pass 1 of 5" in again.err
     assert not files_at(f"{out}.partial")
     assert run("solve", photographs, "-o", tmp_path / "a.zarr", *SMALL).code == 0
     assert_same(load(out), load(tmp_path / "a.zarr"))

@@ -84,7 +84,7 @@ def alike(read: NDArray[np.uint8], wanted: NDArray[np.uint8], least: float) -> N
 
 
 def a_text(number: int, suffix: str) -> str:
-    opening = {".html": "<!doctype html>", ".svg": "<svg>"}[suffix]
+    opening = {".html": "<!doctype html>", ".htm": "<!doctype html>", ".svg": "<svg>"}[suffix]
     return opening + "".join(f"ünï 日本 {number} {place}\n" for place in range(400))
 
 
@@ -385,6 +385,6 @@ def test_what_nobody_can_write_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_text_is_a_page_or_a_drawing_by_its_suffix(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"a page or a drawing can have: use one of \.html, \.svg"):
+    with pytest.raises(InputError, match=r"a page or a drawing can have: use one of \.html, \.htm, \.svg"):
         save("text", tmp_path / "a.pdf")
     assert content(tmp_path) == {}

@@ -282,7 +282,7 @@ def test_some_pictures_of_many_keep_their_views() -> None:
         ("lamps", {"least": np.ones(2)}, "least of a rig has shape"),
         ("sums", {"picture": [0, 0, 1, 1, 2, 3, 3, 2]}, "in the order of their pictures"),
         ("sums", {"picture": [0, 0, 1, 1, 1, 3, 3, 3]}, "none of which is left out"),
-        ("sums", {"picture": [0, 0, 1, 1, 1, 2, 2, 2]}, "4 stops do not fit 3 pictures"),
+        ("sums", {"picture": [0, 0, 1, 1, 1, 2, 2, 2]}, "4 stops for 3 pictures: give one each"),
         ("sums", {"picture": [1, 1, 1, 1, 1, 2, 2, 3]}, "none of which is left out"),
         ("sums", {"share": -np.ones((8, 3))}, "shares must be at least 0"),
         ("lamps", {"least": np.zeros(3)}, "above 0"),

@@ -15,7 +15,7 @@ from lightcube.optics.grid import Grid, picture_shape
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import to_uint16
 from lightcube.optics.views import distinct_angles, spread_angles
-from lightcube.pictures.fitting import Fit, as_levels, fit_report, targets_of
+from lightcube.pictures.fitting import Fit, as_levels, fit, fit_report, targets_of
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from tests.helpers.recipes import fitted
@@ -340,3 +340,23 @@ class TestTargets:
         cube = Cube(np.zeros((3, 3, 5, 7), np.float32), grid, turntable(grid, [1]))
         with pytest.raises(InputError, match="no targets"):
             targets_of(cube)
+
+
+@pytest.mark.parametrize(("focus", "kept"), [(0.0, 0), (0.1, 0), (0.4, 12), (0.5, 18), (0.9, 36), (1.0, 36)])
+def test_crops_follow_the_focus_as_far_as_the_picture_goes(focus: float, kept: int) -> None:
+    """As if the picture had been cut by hand, but for the edges, where the filter sees what was cut off."""
+    (wide,) = pictures((24, 60)).images
+    rig = turntable(GRID, [10.0], picture_shape=(12, 12))
+    by_hand = fit(Pictures((np.ascontiguousarray(wide[:, kept : kept + 24]),), ("a",)), rig)
+    across = fit(Pictures((wide,), ("a",), focus=(focus, 0.3)), rig)
+    inner = (slice(None), slice(None), slice(3, -3))
+    np.testing.assert_allclose(across.pictures[inner], by_hand.pictures[inner], atol=2e-6)
+    high = np.ascontiguousarray(wide.transpose(1, 0, 2))
+    down = fit(Pictures((high,), ("a",), focus=(0.8, focus)), rig)
+    np.testing.assert_allclose(down.pictures.transpose(0, 2, 1, 3)[inner], by_hand.pictures[inner], atol=2e-6)
+
+
+@pytest.mark.parametrize("focus", [(-0.1, 0.5), (0.5, 1.1), (float("nan"), 0.5)])
+def test_a_focus_outside_the_picture_is_refused(focus: tuple[float, float]) -> None:
+    with pytest.raises(InputError, match=r"outside the picture|not \(nan|nan"):
+        Pictures((np.ones((4, 5, 3), np.float32),), ("a",), focus=focus)

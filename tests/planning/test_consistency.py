@@ -335,11 +335,14 @@ def test_advice_names_pictures_rows_and_a_way_out() -> None:
     facts = check(lit(replace(targets, pictures=light), lamp_power=1.0), grid)
     said = advice(facts)
     for beginning, part in [
-        ("The load is 11.3; unrelated pictures come out well up to 4.5: use at most 3 pictures", "at most 13 pixels"),
+        (
+            "These are 2.5 times as many pixels as a cube keeps well of unrelated pictures: use at most 3 pictures",
+            "at most 13 pixels",
+        ),
         ("No solid casts these shadows", "--picture-width"),
         ("astronaut and cat are half a turn apart", "--elevation-deg 35"),
         ("moon and clock are the same picture: leave one of them out", ""),
-        ("brick is too bright for a lamp of 1 in rows", "--lamp-max"),
+        ("brick is too bright for a lamp of 1 (0 EV) in rows", "--lamp-max"),
         ("rocket is of one colour in rows 0-1", "cut such edges off"),
     ]:
         assert sum(sentence.startswith(beginning) and part in sentence for sentence in said) == 1, (beginning, said)

@@ -388,7 +388,7 @@ def test_lamps_at_several_elevations_cannot_be_said_on_the_command_line(run: Run
 def test_a_cube_that_was_started_from_another_one_says_so(run: Run, pictures: Path) -> None:
     options = ["--n", 6, "--picture-width", 0.5, "--hold-deg", 0, "--grain", 0, "--iterations", 1]
     assert run("solve", "pictures", "-o", "a.npz", *options)[0] == 0
-    assert run("solve", "pictures", "-o", "b.npz", *options, "--from", "a.npz")[0] == 0
+    assert run("solve", "pictures", "-o", "b.npz", *options, "--start-from", "a.npz")[0] == 0
     told = [
         any("started from another cube" in words for words in reported(run, name).texts("li"))
         for name in ("a.npz", "b.npz")

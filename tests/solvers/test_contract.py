@@ -92,7 +92,7 @@ def test_what_does_not_fit_the_sums_is_refused(match: str, changes: dict[str, An
     given = {"light": np.ones((6, 4)), "lighting": Lighting(np.arange(3), some_mixture()), "lamp_bounds": lamps}
     with pytest.raises(InputError, match=match):
         Wanted(**{**given, **changes})
-    with pytest.raises(InputError, match="2 views have lamps, but 3 add up"):
+    with pytest.raises(InputError, match="lamps are named of 2 views, but 3 add up"):
         Lighting(np.arange(2), some_mixture())
 
 

@@ -22,6 +22,7 @@ from lightcube.optics.checks import check_fields
 from lightcube.optics.cube import Cube
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.resampling import enlarged
+from lightcube.wording import counted
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +66,7 @@ class Solution:
 
     def __repr__(self) -> str:
         reached = f", {self.residuals[-1]:.4g} left" if len(self.residuals) else ""
-        return f"<{self.cube!r} after {len(self.residuals)} passes ({self.stop_reason}){reached}>"
+        return f"<{self.cube!r} after {counted(len(self.residuals), 'pass')} ({self.stop_reason}){reached}>"
 
     @property
     def optimality(self) -> dict[str, float] | None:

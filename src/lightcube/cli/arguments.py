@@ -20,6 +20,14 @@ def numbers(text: str, option: str) -> tuple[float, ...]:
         raise InputError(f"{option} {text}: give numbers separated by commas, such as 0,12.5,90") from None
 
 
+def two_numbers(text: str, option: str) -> tuple[float, float]:
+    """Two numbers with a comma between them."""
+    said = numbers(text, option)
+    if len(said) != 2:
+        raise InputError(f"{option} {text}: give two numbers with a comma between them, such as 0.5,0.3")
+    return said[0], said[1]
+
+
 def number_or_auto(text: str, option: str) -> float | None:
     """A number, or None where it is to be chosen: auto."""
     try:

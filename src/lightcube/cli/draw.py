@@ -16,7 +16,12 @@ def draw(
     thing: Annotated[str, typer.Argument(metavar="STAGE|CUBE", help="A stage (TOML), or a cube.")],
     output: Annotated[
         str,
-        typer.Option("-o", "--out", help="Where to write: an SVG of a stage, a PNG, WebP or JPEG of a cube's room."),
+        typer.Option(
+            "-o",
+            "--out",
+            help="Where to write: an SVG of a stage, a PNG, WebP or JPEG of a cube's room.",
+            rich_help_panel="Output",
+        ),
     ],
     angle_deg: Annotated[
         float | None, typer.Option(help="Turntable angle of a cube's room in degrees.  [default: its first stop]")

@@ -12,9 +12,12 @@ from lightcube.cli import arguments
 from lightcube.verbs.options import Option, Options
 
 _FIELDS = {each.name: each for each in fields(Options)}
+#: Options that are called otherwise than the field.
+_FLAGS = {"from_s": "from", "to_s": "to"}
 #: Options that are written as a text: what it means.
 _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "shape": lambda text: arguments.whole_numbers(text, ",", "--shape", 3),
+    "focus": lambda text: arguments.two_numbers(text, "--focus"),
     "angles_deg": lambda text: arguments.numbers(text, "--angles-deg"),
     "grain": lambda text: arguments.number_or_auto(text, "--grain"),
 }
@@ -52,4 +55,6 @@ def flag(name: str) -> typer.models.OptionInfo:
     """What makes a field of `Options` an option of the command line."""
     _, said = get_args(_FIELDS[name].type)
     assert isinstance(said, Option)  # noqa: S101 - every field says what it is
-    return typer.Option(f"--{name.replace('_', '-')}", help=said.help, min=said.least)
+    return typer.Option(
+        f"--{_FLAGS.get(name, name).replace('_', '-')}", help=said.help, min=said.least, rich_help_panel=said.group
+    )

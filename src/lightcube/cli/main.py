@@ -26,7 +26,7 @@ COMMANDS: Mapping[str, str] = {
     "info": "Say what is in a cube file.",
     "publish": "Make a cube of what there is of an unfinished one, and say whether it is whole.",
     "bench": "Measure this machine and what lightcube makes of it, beside others: tables in Markdown.",
-    "demo": "Make a cube of photographs and one of a traced scene, into a folder.",
+    "demo": "Make three small cubes to be turned by hand, and one page that shows them, into a folder.",
 }
 #: The exit code after Ctrl-C.
 _INTERRUPTED = 130
@@ -46,7 +46,9 @@ def application(words: Sequence[str]) -> typer.Typer:
     wanted = next((word for word in words if not word.startswith("-")), None)
     for name, said in COMMANDS.items():
         if name == wanted:
-            app.command(name)(_loaded(name))
+            from lightcube.cli.help import Laid  # here: only a command that is named has a help of its own
+
+            app.command(name, cls=Laid)(_loaded(name))
         else:
             app.command(name, help=said)(_elsewhere)
     return app

@@ -12,13 +12,17 @@ from lightcube.cli import arguments
 
 PICTURES = Annotated[str, typer.Argument(help="A folder of pictures, an animated image, a video, or a stage (TOML).")]
 
-OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.")
-OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.")
-JSON = typer.Option("--json", help="Print JSON for machines.")
-FPS = typer.Option("--fps", help="Pictures per second of a movie.")
+OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.", rich_help_panel="Output")
+OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.", rich_help_panel="Output")
+VERBOSE = typer.Option("--verbose", help="Print all numbers too.", rich_help_panel="Output")
+JSON = typer.Option("--json", help="Print JSON for machines.", rich_help_panel="Output")
+FPS = typer.Option("--fps", help="Pictures per second of a movie.", rich_help_panel="Output")
 THREADS = Annotated[
     str | None,
-    typer.Option(help="Compute with so many threads; results are the same.  [default: the cores that are free]"),
+    typer.Option(
+        help="Compute with so many threads; results are the same.  [default: the cores that are free]",
+        rich_help_panel="Machine",
+    ),
 ]
 
 

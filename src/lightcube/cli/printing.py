@@ -9,6 +9,8 @@ from lightcube.cli.console import out
 from lightcube.optics.disturbance import DISTURBANCES
 from lightcube.optics.told import remembered
 from lightcube.scoring.metrics import grain_word
+from lightcube.verbs import words
+from lightcube.wording import counted
 
 
 def facts(solution: Solution) -> dict[str, Any]:
@@ -25,20 +27,24 @@ def facts(solution: Solution) -> dict[str, Any]:
     }
 
 
-def solved(solution: Solution, opening: str, seconds: float | None = None) -> None:
-    """Print how good a cube is, after an opening, and how long it took where that is known."""
+def solved(solution: Solution, opening: str, *, verbose: bool) -> None:
+    """Print how good a cube is, after an opening; with all figures if `verbose`."""
     scores = solution.cube.scores
+    out.print(opening)
     if len(solution.rejected):
         most = Counter(solution.cube.names[view] for view in solution.rejected[:, 0]).most_common(5)
         views = ", ".join(f"{count} in {name}" for name, count in most)
-        out.print(f"{len(solution.rejected)} inconsistent pixel values thrown out: {views}")
+        out.print(f"{counted(len(solution.rejected), 'inconsistent pixel value')} thrown out: {views}")
     if solution.undetermined:
         out.print(f"{solution.undetermined} voxel values that nothing determines are transparent")
-    out.print(
-        f"{opening}: PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), "
-        f"SSIM {scores['ssim_mean']:.3f}, colour difference {scores['delta_e_mean']:.1f}{_beside(scores)}; "
-        f"{len(solution.residuals)} passes" + (f" in {seconds:.0f} s" if seconds is not None else ""),
-    )
+    for line in words.solved(solution):
+        out.print(line)
+    if verbose:
+        out.print(
+            f"PSNR {scores['psnr_mean']:.1f} dB (worst {scores['psnr_min']:.1f}), SSIM {scores['ssim_mean']:.3f}, "
+            f"colour difference {scores['delta_e_mean']:.1f}{_beside(scores)}; "
+            f"{counted(len(solution.residuals), 'pass')}"
+        )
 
 
 def _beside(scores: Mapping[str, Any]) -> str:
@@ -55,6 +61,10 @@ def scored(scores: dict[str, Any]) -> None:
         figures = f"{view['angle_deg']:9.3f} {view['psnr']:7.2f} {view['ssim']:7.4f} {view['delta_e']:7.2f}"
         lobe = f" {lobes[number]:9.2f}°" if lobes else ""
         out.print(f"{view['name'][:20]:>20} {figures}{lobe}")
+    names, psnr = (
+        list(each) for each in zip(*((view["name"], view["psnr"]) for view in scores["pictures"]), strict=True)
+    )
+    out.print(words.judged(names, psnr, "are"))
     worst, mean = scores["psnr_min"], scores["psnr_mean"]
     out.print(
         f"mean PSNR {mean:.2f} dB (worst {worst:.2f}), SSIM {scores['ssim_mean']:.4f}, dE {scores['delta_e_mean']:.2f}"

@@ -1,24 +1,23 @@
 """The command `lightcube solve`."""
 
+import shlex
 import time
-from collections.abc import Callable
-from typing import Annotated
+from typing import Annotated, Protocol
 
 import typer
 
 from lightcube.backward.job import Job
 from lightcube.backward.needs import job_memory
-from lightcube.backward.solution import Solution
 from lightcube.cli import arguments, printing
-from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening, telling
+from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening, out, telling
 from lightcube.cli.fields import one_by_one
-from lightcube.cli.options import JSON, OUT, OVERWRITE, PICTURES, threaded
+from lightcube.cli.options import JSON, OUT, OVERWRITE, PICTURES, VERBOSE, threaded
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, publishing, running
 from lightcube.jobs.partial import check_partial, open_partial
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
-from lightcube.verbs import solving, words
+from lightcube.verbs import figures, solving, words
 from lightcube.verbs.options import Options
 
 
@@ -28,24 +27,39 @@ def solve(
     pictures: PICTURES,
     output: Annotated[str, OUT],
     options: Options,
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Say what memory and time it takes, no more.", rich_help_panel="Machine"),
+    ] = False,
     memory: Annotated[
-        str | None, typer.Option(help="Use at most so much, 2GB or 512MB, by solving in parts.  [default: 6GB]")
+        str | None,
+        typer.Option(
+            help="Use at most so much memory, 2GB or 512MB, by solving in parts.  [default: 6GB]",
+            rich_help_panel="Machine",
+        ),
     ] = None,
     unit: Annotated[
-        str | None, typer.Option(help="Solve only unit I of N, I/N; publish makes the cube when all are there.")
+        str | None,
+        typer.Option(
+            help="Solve only unit I of N, I/N; publish makes the cube when all are there.", rich_help_panel="Machine"
+        ),
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option(help="Let the workers of a dask scheduler solve, tcp://HOST:PORT, or local ones: local."),
+        typer.Option(
+            help="Let the workers of a dask scheduler solve, tcp://HOST:PORT, or local ones: local.",
+            rich_help_panel="Machine",
+        ),
     ] = None,
     start_from: Annotated[
         str | None,
-        typer.Option("--from", help="Start from this cube, of as many voxels: one picture changed, another material."),
+        typer.Option(
+            help="Start from this cube, of as many voxels: one picture changed, another material.",
+            rich_help_panel="Quality",
+        ),
     ] = None,
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Say what memory and time it takes, and solve nothing.")
-    ] = False,
     overwrite: Annotated[bool, OVERWRITE] = False,
+    verbose: Annotated[bool, VERBOSE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compute the cube whose shadows are the pictures; what was stopped or killed goes on where it was."""
@@ -65,12 +79,12 @@ def solve(
     if dry_run:
         with err.status("timing a smaller cube"), compiling(as_json=as_json):
             needs = solving.needs(job)
-        done(as_json, words.needed(needs), **needs)
+        done(as_json, words.needed(needs, verbose=verbose), **needs)
         return
     if scheduler in (None, cluster.LOCAL):
         solving.check_memory(job_memory(job) * min(workers, job.units))
     if not as_json:
-        for line in said():
+        for line in said(verbose=verbose):
             err.print(line)
     del said  # pictures as they were read
     began = time.monotonic()
@@ -88,17 +102,20 @@ def solve(
     if which is None:
         with compiling(as_json=as_json):
             solution = publishing.finish(job, store, output, overwrite=overwrite).solution
-        _solved(solution, output, time.monotonic() - began, as_json=as_json)
+        seconds = time.monotonic() - began
+        if as_json:
+            json_line("result", out=output, seconds=seconds, **printing.facts(solution))
+        else:
+            printing.solved(solution, f"{output} is ready after {words.duration(seconds)}", verbose=verbose)
+            out.print(f"turn it by hand: lightcube view {shlex.quote(output)}")
     else:
         done(as_json, f"unit {which} of {units} is in {store.folder}", out=str(store.folder), unit=which, units=units)
 
 
-def _solved(solution: Solution, output: str, seconds: float, *, as_json: bool) -> None:
-    """Say how good a cube is and how long it took."""
-    if as_json:
-        json_line("result", out=output, seconds=seconds, **printing.facts(solution))
-    else:
-        printing.solved(solution, output, seconds)
+class _Sayable(Protocol):
+    """Makes what is to be said of a job before it starts."""
+
+    def __call__(self, *, verbose: bool) -> list[str]: ...
 
 
 def _asked(
@@ -110,13 +127,18 @@ def _asked(
     *,
     as_json: bool,
     quiet: bool,
-) -> tuple[Job, Callable[[], list[str]]]:
+) -> tuple[Job, "_Sayable"]:
     """The job that `solve` is asked for, and a function that makes what is to be said of it."""
     planning = solving.read(pictures, options, told=False)
     with telling("planning", as_json=as_json) as tell:
         planned = planning(solving.rehearsals(None if quiet else tell))
-    job = solving.job(planned, memory=memory, units=units, start=start)
-    return job, lambda: [
-        *words.in_short(planned, planned.order),
-        *([] if options.paper else words.what_to_change(planned, solving.rehearsals())),
-    ]
+    film = solving.part(pictures, options) if planned.stage is None else None
+    job = solving.job(planned, memory=memory, units=units, start=start, film=film)
+
+    def said(*, verbose: bool) -> list[str]:
+        remedies = {} if options.paper else words.remedies(planned, solving.rehearsals())
+        advice = [] if options.paper else words.what_to_change(planned, remedies)
+        numbers = figures.table(planned, planned.order, remedies) if verbose else []
+        return [*words.in_short(planned, planned.order), *advice, *numbers]
+
+    return job, said

@@ -9,6 +9,7 @@ from lightcube.cli import arguments
 from lightcube.cli.console import done, telling
 from lightcube.cli.options import FPS, JSON, OUT, OVERWRITE, threaded
 from lightcube.verbs import tracing
+from lightcube.wording import counted
 
 
 @threaded
@@ -39,4 +40,6 @@ def trace(
         made = tracing.trace(described, tell, count=count, size=shape, span_deg=span_deg, elevation_deg=elevation_deg)
     movie.write(made.pictures, fps=fps, views=made.rig.views)
     rows, columns = made.rig.picture_shape
-    done(as_json, f"{len(made)} pictures of {columns} x {rows} in {output}", out=str(output), count=len(made))
+    done(
+        as_json, f"{counted(len(made), 'picture')} of {columns} x {rows} in {output}", out=str(output), count=len(made)
+    )

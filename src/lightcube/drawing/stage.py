@@ -14,6 +14,7 @@ from lightcube.drawing.svg import Box, Labels, around, disc, element, hex_of, hu
 from lightcube.optics.stage import Lamp, Screen, Stage
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import rotations
+from lightcube.wording import counted
 
 Reals = NDArray[np.float64]
 
@@ -382,7 +383,7 @@ def _counted(stage: Stage) -> str:
     counts.append((len(stage.shots), "picture"))
     shape = " × ".join(str(n) for n in reversed(stage.grid.shape))
     size = " × ".join(f"{length:.4g}" for length in reversed(stage.grid.size_mm))
-    said = [f"{count} {what}{'s' if count != 1 else ''}" for count, what in counts]
+    said = [counted(count, what) for count, what in counts]
     return "  ·  ".join([f"cube of {shape} voxels, {size} mm", *said])
 
 

@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import to_uint8
+from lightcube.wording import counted
 
 #: Pictures in all and side by side, shorter side that they are enlarged to by whole pixels, gap, line height; pixels.
 _MOST, _PER_LINE, _SIDE, _GAP, _LINE = 16, 8, 96, 6, 22
@@ -59,7 +60,8 @@ def _facts(cube: Cube) -> str:
     nz, ny, nx = cube.grid.shape
     rows, columns = cube.rig.picture_shape
     count = len(cube.names)
-    many = f"{count} pictures of at most" if np.ptp(cube.rig.stops.window, axis=0).any() else f"{count} pictures of"
+    at_most = " at most" if np.ptp(cube.rig.stops.window, axis=0).any() else ""
+    many = f"{counted(count, 'picture')} of{at_most}"
     facts = [f"{nx} x {ny} x {nz} voxels of {cube.grid.sides_in_words}", f"{many} {columns} x {rows}"]
     if "psnr_mean" in cube.scores:
         facts.append(f"PSNR {cube.scores['psnr_mean']:.1f} dB")

@@ -16,6 +16,8 @@ __getattr__, __dir__, __all__ = when_used(
         "ChangedPictures": "pictures",
         "DoubtfulFolder": "pictures",
         "TransparentPictures": "pictures",
+        "ThinnedFilm": "pictures",
+        "is_film": "pictures",
         "read_pictures": "pictures",
         "Remembered": "remembered",
         "read_scene": "scenes",

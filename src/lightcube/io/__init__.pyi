@@ -5,7 +5,14 @@ from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
 from lightcube.io.movies import ClippedPictures
 from lightcube.io.outputs import Output, save, write_together
-from lightcube.io.pictures import ChangedPictures, DoubtfulFolder, TransparentPictures, read_pictures
+from lightcube.io.pictures import (
+    ChangedPictures,
+    DoubtfulFolder,
+    ThinnedFilm,
+    TransparentPictures,
+    is_film,
+    read_pictures,
+)
 from lightcube.io.remembered import Remembered
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.stages import is_stage, read_stage, read_stage_targets, stage_pictures
@@ -17,9 +24,11 @@ __all__ = [
     "HollowCube",
     "Output",
     "Remembered",
+    "ThinnedFilm",
     "TransparentPictures",
     "bare_name",
     "free_memory",
+    "is_film",
     "is_stage",
     "read_cube",
     "read_pictures",

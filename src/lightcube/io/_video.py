@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, cast
 from lightcube.errors import InputError
 from lightcube.io._bounds import MOST_PICTURES, Budget, check_file
 from lightcube.io._decode import Take, decoding, refuse_cut_short
+from lightcube.io._excerpt import Excerpt, Read
 from lightcube.io._frames import Levels, is_known, levels_of, matrix_of, square, turned
 from lightcube.io._hdr import converted, curve_of, ordinary
+from lightcube.wording import counted
 
 if TYPE_CHECKING:
     import av
@@ -21,40 +23,78 @@ _FORMATS = "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi"
 #: Decoders of codecs whose opacity FFmpeg's own leave out.
 _WITH_OPACITY = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
 
+#: Pictures of a film that are looked through where not all are read, and their pixels: 10 minutes of the largest films.
+_MOST_FRAMES, _MOST_SEEN = 100_000, 200_000_000_000
+
 #: Both fields of an interlaced frame as one picture of one moment; frames that are not interlaced pass.
 _WEAVER = ("bwdif", "mode=send_frame:deint=interlaced")
 
 
-def read_video(path: Path, budget: Budget, take: Take) -> list[str]:
-    """Give every picture of the film in `path` to `take`: upright, its pixels square, in sRGB.
+def read_video(path: Path, budget: Budget, take: Take, excerpt: Excerpt) -> Read:
+    """Give the chosen pictures of the film in `path` to `take`: upright, their pixels square, in sRGB.
 
-    Returns
-    -------
-    What had to be changed in it, as the rest of a sentence that begins with its name.
+    What is chosen depends on how many there are: if not all are, they are counted first, all of them decoded.
 
     Raises
     ------
     InputError
-        Where the file is damaged or cut short, or has no video in it.
+        Where the file is damaged or cut short, has no video in it, or nothing of it is chosen.
     """
-    import av
-
     notes: dict[str, None] = {}
     with decoding(path):
         refuse_cut_short(check_file(path))
-        with path.open("rb") as file, av.open(file, "r", options={"format_whitelist": _FORMATS}) as container:
-            stream = _film(path, container)
-            context = stream.codec_context
-            size = (context.height, context.width) if context else (0, 0)
-            told = 0 if container.format.name == "avi" else stream.frames  # an AVI through a pipe states anything
-            budget.check(path, *[size] * min(told, MOST_PICTURES + 1))
-            for frame in _unwoven(_decoded(path, container, stream, notes), notes):
-                shape = square(frame, stream.sample_aspect_ratio)
+        read = None if excerpt.is_whole else excerpt.numbers(path, _times(path, budget, excerpt))
+        wanted, count = None if read is None else set(read[0]), 0
+        for number, (frame, aspect, _) in enumerate(_frames(path, notes, None if read else budget)):
+            if wanted is None or number in wanted:
+                shape = square(frame, aspect)
                 budget.spend(path, *shape)
                 if not is_known(frame):
                     raise InputError(f"{path} has colours of a kind that is not read (YCgCo, ICtCp): convert it first")
                 take(turned(_levels(frame, shape, notes), frame))
-    return list(notes)
+                count += 1
+            if wanted is not None and count == len(wanted):
+                break  # what follows is not read
+    numbers, of = read or (range(count), count)
+    return Read(numbers, of, list(notes))
+
+
+def _times(path: Path, budget: Budget, excerpt: Excerpt) -> list[float | None]:
+    """When each picture of a film is shown, seconds from the first one on, to the end of an excerpt."""
+    times: list[float | None] = []
+    pixels, began = 0, None
+    for frame, _, time in _frames(path, {}, None):
+        size = frame.height, frame.width
+        budget.check(path, size)
+        pixels += size[0] * size[1]
+        if len(times) == _MOST_FRAMES or pixels > _MOST_SEEN:
+            raise InputError(f"{path} is too long to look through: cut out the part that you want")
+        if began is None:
+            began = time
+        now = None if time is None or began is None else time - began
+        if now is not None and excerpt.to_s is not None and now >= excerpt.to_s:
+            break
+        times.append(now)
+    return times
+
+
+def _frames(
+    path: Path, notes: dict[str, None], budget: Budget | None
+) -> Iterator[tuple["av.VideoFrame", Fraction | None, float | None]]:
+    """Every frame of a film, the aspect of its pixels, and its second; `budget` bounds those that the film states."""
+    import av
+
+    with path.open("rb") as file, av.open(file, "r", options={"format_whitelist": _FORMATS}) as container:
+        stream = _film(path, container)
+        if budget is not None:
+            context = stream.codec_context
+            size = (context.height, context.width) if context else (0, 0)
+            told = 0 if container.format.name == "avi" else stream.frames  # an AVI through a pipe states anything
+            budget.check(path, *[size] * min(told, MOST_PICTURES + 1))
+        for frame in _unwoven(_decoded(path, container, stream, notes), notes):
+            base = frame.time_base or stream.time_base  # the last that a decoder gives have lost their own
+            time = None if frame.pts is None or base is None else float(frame.pts * base)
+            yield frame, stream.sample_aspect_ratio, time
 
 
 def _film(path: Path, container: "av.container.InputContainer") -> "av.VideoStream":
@@ -92,7 +132,7 @@ def _decoded(
             shown += 1
             yield frame
     if "mp4" in container.format.name and shown < stream.frames:  # others count what is no picture of its own too
-        notes[f"counts {stream.frames} pictures and shows {shown}: it was trimmed, or it is damaged"] = None
+        notes[f"counts {counted(stream.frames, 'picture')} and shows {shown}: it was trimmed, or it is damaged"] = None
 
 
 def _unwoven(frames: Iterator["av.VideoFrame"], notes: dict[str, None]) -> Iterator["av.VideoFrame"]:

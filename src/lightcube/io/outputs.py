@@ -69,7 +69,7 @@ def _is_picture(thing: Any) -> bool:
 #: The table; of the kinds that take a thing, `save` chooses the first one that knows the suffix.
 KINDS: Mapping[Kind, Row] = {
     "cube": Row("a cube", cubes.WRITERS, lambda thing: isinstance(thing, Cube), {".zarr": cubes.is_cube_folder}),
-    "page": Row("a page", {".html": documents.write_text}, lambda thing: isinstance(thing, str)),
+    "page": Row("a page", dict.fromkeys((".html", ".htm"), documents.write_text), lambda thing: isinstance(thing, str)),
     "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),
     "plot": Row("a plot", documents.PLOTS, lambda thing: hasattr(thing, "savefig")),
     "picture": Row("a picture", documents.PICTURES, _is_picture),
@@ -130,7 +130,7 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
           ``.apng`` (lossless), ``.npy`` (float32 linear light, never clipped), or no suffix for a folder of PNGs, with
           a `views.toml` where `views` or `names` are given. Of pictures that are made one by one, only one is in
           memory at a time.
-        * The text of a page, ``.html``, or of a drawing, ``.svg``.
+        * The text of a page, ``.html`` or ``.htm``, or of a drawing, ``.svg``.
         * A matplotlib figure, ``.png`` or ``.svg``.
         * One picture ``(row, column, 3)`` of 8-bit sRGB, such as a contact sheet: ``.png``, ``.webp``, ``.jpg``.
         * A mapping, as a JSON document: ``.json``.

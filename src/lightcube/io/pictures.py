@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError, encodable
 from lightcube.io._bounds import Budget, check_file
-from lightcube.io._decode import ROWS, Take
+from lightcube.io._decode import ROWS
+from lightcube.io._excerpt import Excerpt, Read
 from lightcube.io._files import suffix_entry, system_errors
 from lightcube.io._frames import Levels
 from lightcube.io._places import Place, fetched, name_of, names_in, place
@@ -34,14 +35,11 @@ from lightcube.optics.checks import checked
 from lightcube.optics.transfer import Transfer, check_transfer, decode
 from lightcube.optics.views import doubt_angles
 from lightcube.pictures.pictures import Pictures
+from lightcube.wording import counted
 
-#: By suffix; they return what had to be changed, as the rest of a sentence that begins with the file's name.
-_READERS: dict[str, Callable[[Path, Budget, Take], Sequence[str] | None]] = {
-    ".gif": read_animation,
-    ".apng": read_animation,
-    **dict.fromkeys(PICTURE_SUFFIXES, read_animation),
-    **dict.fromkeys((".mp4", ".webm", ".mkv", ".mov", ".avi"), read_video),
-}
+#: Of films and of all other files with pictures, by suffix.
+_FILMS = (".mp4", ".webm", ".mkv", ".mov", ".avi")
+_ANIMATIONS = (".gif", ".apng", *PICTURE_SUFFIXES)
 
 #: Pixels of a picture as it is kept, at most: screens have some hundred rows, and linear light takes four times as much
 #: memory as levels of 8 bits.
@@ -56,12 +54,25 @@ class ChangedPictures(UserWarning):
     """Pictures that were read are not of the kind that a cube shows, not sRGB for instance, and were changed."""
 
 
+class ThinnedFilm(UserWarning):
+    """Fewer pictures of a film were read than there are, as was asked for by their number."""
+
+
 class DoubtfulFolder(UserWarning):
     """Not all of a folder was read."""
 
 
 @checked
-def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int = 2) -> Pictures:
+def read_pictures(
+    path: str | Path,
+    *,
+    transfer: Transfer = "srgb",
+    least: int = 2,
+    every: int = 1,
+    from_s: float | None = None,
+    to_s: float | None = None,
+    most: int | None = None,
+) -> Pictures:
     """Read pictures in linear light.
 
     Parameters
@@ -69,12 +80,18 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     path
         A folder of PNG, JPEG, WebP, TIFF, AVIF or HEIC files, taken in natural order (2 before 10), whose `views.toml`,
         if there is one, gives angles, elevation and names; or an animated GIF, WebP, APNG or AVIF, or a TIFF of several
-        pages (thumbnails and masks are none); or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken.
-        HEIC takes the extra `heif`. It may be a URL.
+        pages (thumbnails and masks are none); or a video (MP4, WebM, MKV, MOV, AVI), of which every picture is taken
+        unless a part is asked for. HEIC takes the extra `heif`. It may be a URL.
     transfer
         How display values become linear light.
     least
         How many pictures there must be: a cube on a turntable needs two.
+    every
+        Of a video or an animation every so many pictures are taken.
+    from_s, to_s
+        Seconds at which the part of a video begins and ends that is read; None = with the video.
+    most
+        Of a video or an animation at most so many pictures are taken, evenly spread; None = all.
 
     Returns
     -------
@@ -88,6 +105,8 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     ChangedPictures
         Where a film is of high dynamic range (PQ, HLG) or wide colours, which are brought into sRGB with white at 203
         nits, or a picture has other colours than sRGB; and where a film is interlaced, of which one field is kept.
+    ThinnedFilm
+        Where `most` leaves pictures out.
     TransparentPictures
         Once, where pictures are not opaque: they are put on white, in linear light.
     DoubtfulFolder
@@ -99,7 +118,8 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     ------
     InputError
         Where there is nothing to read, a file is damaged or of another kind, there are too few pictures, they
-        would not fit into half of the machine's memory, or `views.toml` has a fault.
+        would not fit into half of the machine's memory, or `views.toml` has a fault; and where a part is asked for of
+        what is no film, or there is none.
 
     Notes
     -----
@@ -108,7 +128,7 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     """
     transfer = check_transfer(transfer)
     with fetched(place(path), _is_wanted) as local:
-        pictures, taken = _read(local, transfer, least)
+        pictures, taken = _read(local, transfer, least, Excerpt(from_s, to_s, every, most))
         others = left_out(local)
     for note in taken.notes(path, len(pictures)):
         warnings.warn(note, stacklevel=3)
@@ -118,10 +138,16 @@ def read_pictures(path: str | Path, *, transfer: Transfer = "srgb", least: int =
     return pictures
 
 
+def is_film(path: str | Path) -> bool:
+    """Whether a place is named as films and animations are, of which a part can be read."""
+    at = place(path)
+    return PurePath(name_of(at)).suffix.lower() in _SUFFIXES and not (isinstance(at, Path) and at.is_dir())
+
+
 def is_pictures(at: Place) -> bool:
     """Whether a place is named as pictures are, or is a folder on this disk with some in it."""
     folder = isinstance(at, Path) and at.is_dir()
-    return any(map(is_picture, names_in(at))) if folder else PurePath(name_of(at)).suffix.lower() in _READERS
+    return any(map(is_picture, names_in(at))) if folder else PurePath(name_of(at)).suffix.lower() in _SUFFIXES
 
 
 def _is_wanted(name: str) -> bool:
@@ -135,33 +161,44 @@ class _Taken:
     def __init__(self, transfer: Transfer) -> None:
         self.transfer = transfer
         self.images: list[NDArray[np.float32]] = []
-        self.transparent = 0
-        self.spaces: list[Space] = []
-        self.changed: Sequence[str] = ()
+        self._opaque: list[bool] = []
+        self._spaces: list[Space | None] = []
+        self.read = Read((), 0)
 
     def __call__(self, levels: Levels, space: Space | None = None) -> None:
         """Take one picture. Where display values are light (`transfer` linear), `space` is of no meaning."""
         space = space if self.transfer == "srgb" else None
         image, opaque = _linear_light(levels, space.light if space else partial(decode, transfer=self.transfer))
         self.images.append(locked(image))
-        self.transparent += not opaque
-        self.spaces += [space] if space else []
+        self._opaque.append(opaque)
+        self._spaces.append(space)
+
+    def keep(self, numbers: Sequence[int]) -> None:
+        """Forget all pictures but these."""
+        self.images[:] = [self.images[number] for number in numbers]
+        self._opaque[:] = [self._opaque[number] for number in numbers]
+        self._spaces[:] = [self._spaces[number] for number in numbers]
 
     def notes(self, path: str | Path, count: int) -> Iterator[UserWarning]:
         """Yield what is to be said, at most once each."""
-        whole = f"{count} pictures in {path}"
-        yield from (ChangedPictures(f"{path} {what}") for what in self.changed)
-        if self.transparent:
-            yield TransparentPictures(f"{self.transparent} of {whole} are partly transparent: they were put on white")
-        if self.spaces:
-            names = ", ".join(dict.fromkeys(space.name for space in self.spaces if space.is_known))
-            unknown = ", ".join(dict.fromkeys(space.name for space in self.spaces if not space.is_known))
+        whole = f"{counted(count, 'picture')} in {path}"
+        yield from (ChangedPictures(f"{path} {what}") for what in self.read.changed)
+        if count < self.read.of:
+            yield ThinnedFilm(
+                f"{count} of {self.read.of} pictures of {path} were taken, evenly spread: --most takes more"
+            )
+        transparent, spaces = self._opaque.count(False), [space for space in self._spaces if space]
+        if transparent:
+            yield TransparentPictures(f"{transparent} of {whole} are partly transparent: they were put on white")
+        if spaces:
+            names = ", ".join(dict.fromkeys(space.name for space in spaces if space.is_known))
+            unknown = ", ".join(dict.fromkeys(space.name for space in spaces if not space.is_known))
             done = [f"{names}: turned into sRGB"] if names else []
             done += [f"{unknown}: not known here and taken as sRGB"] if unknown else []
-            yield ChangedPictures(f"{len(self.spaces)} of {whole} have colours that are not sRGB ({'; '.join(done)})")
+            yield ChangedPictures(f"{len(spaces)} of {whole} have colours that are not sRGB ({'; '.join(done)})")
 
 
-def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]:
+def _read(path: Path, transfer: Transfer, least: int, excerpt: Excerpt) -> tuple[Pictures, _Taken]:
     """Pictures, and what is to be said of them."""
     with system_errors(path, "reading"):
         there, is_folder = check_file(path).exists(), path.is_dir()
@@ -174,6 +211,8 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]
     take = _Taken(transfer)
     images = take.images
     views = FolderViews()
+    if is_folder and not excerpt.is_whole:
+        raise InputError(f"{path} is a folder, and only of films a part is read: leave out how much of it")
     if is_folder:
         files = picture_files(path)
         views = read_views(path, len(files))
@@ -182,13 +221,29 @@ def _read(path: Path, transfer: Transfer, least: int) -> tuple[Pictures, _Taken]
             read_single(file, budget, take)
         names = views.names or tuple(encodable(file.stem) for file in files)
     else:
-        take.changed = suffix_entry(path, _READERS, "pictures")(path, Budget(), take) or ()
-        names = tuple(str(index + 1) for index in range(len(images))) if len(images) > 1 else (encodable(path.stem),)
+        take.read = suffix_entry(path, _SUFFIXES, "pictures")(path, Budget(), take, excerpt)
+        names = tuple(str(number + 1) for number in take.read.numbers)
+        names = names if len(names) != 1 else (encodable(path.stem),)
     if len(images) < least:
         held = "one picture" if images else "no picture"
         needed = "a cube needs at least two: add more" if least > 1 else "one at least is needed: give another"
         raise InputError(f"{path} holds {held}, and {needed}")
     return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), take
+
+
+def _read_animation(path: Path, budget: Budget, take: _Taken, excerpt: Excerpt) -> Read:
+    """Take the chosen pictures of an animation, or pages of a TIFF: all are read, and some are kept."""
+    read_animation(path, budget, take)
+    numbers, count = excerpt.numbers(path, [None] * len(take.images))
+    take.keep(numbers)
+    return Read(numbers, count)
+
+
+#: By suffix; of a film those that are not chosen are never kept.
+_SUFFIXES: dict[str, Callable[[Path, Budget, _Taken, Excerpt], Read]] = {
+    **dict.fromkeys(_ANIMATIONS, _read_animation),
+    **dict.fromkeys(_FILMS, read_video),
+}
 
 
 def _linear_light(

@@ -18,6 +18,7 @@ from lightcube.io._toml import read_tables
 from lightcube.optics.grid import check_elevation
 from lightcube.optics.views import Views, distinct_angles, spread_angles
 from lightcube.scene.description import sentence
+from lightcube.wording import counted
 
 VIEWS_FILE = "views.toml"
 PICTURE_SUFFIXES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", *SUFFIXES)
@@ -116,7 +117,9 @@ def read_views(folder: Path, count: int) -> FolderViews:
     said = _parse(file)
     for key, values in (("angles_deg", said.angles_deg), ("names", said.names)):
         if values is not None and len(values) != count:
-            raise InputError(f"{file}: {key}: {len(values)} are listed for {count} pictures, give one per picture")
+            raise InputError(
+                f"{file}: {key}: {len(values)} are listed for {counted(count, 'picture')}, give one per picture"
+            )
     if said.angles_deg is not None and said.span_deg is not None:
         raise InputError(f"{file}: span_deg: angles_deg is given already: use one of the two")
     angles_deg = None

@@ -27,6 +27,7 @@ from lightcube.pictures.fitting import Fit, fit
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from lightcube.scene.description import Count, Line, Number, Point, Positive, hex_colour, sentence
+from lightcube.wording import counted
 
 _LISTS = ("lamp", "screen", "picture")
 
@@ -137,10 +138,14 @@ class PictureTable(_Table):
         """Numbers of the stops, from 1 to `last`, of so many pictures; `InputError` where they do not come out."""
         stops = range(self.stop, self.stop + count) if self.stops is None else self.stops
         if len(stops) != count:
-            raise InputError(f"{self.file} holds {count} pictures for {len(stops)} stops: give one stop per picture")
+            raise InputError(
+                f"{self.file} holds {counted(count, 'picture')} for {counted(len(stops), 'stop')}: "
+                "give one stop per picture"
+            )
         if stops[-1] > last and self.stops is None:
             raise InputError(
-                f"{self.file} holds {count} pictures for the stops from {self.stop} on, and the last one is {last}: "
+                f"{self.file} holds {counted(count, 'picture')} for the stops from {self.stop} on, "
+                f"and the last one is {last}: "
                 "take out pictures, or add stops"
             )
         return stops

@@ -23,6 +23,7 @@ from lightcube.backward.pieces import Step, solve_piece
 from lightcube.errors import InputError
 from lightcube.events import Progress, Said, Tell
 from lightcube.jobs.partial import DiskStore, load_job
+from lightcube.wording import counted
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster, Worker
@@ -74,7 +75,8 @@ def run(job: Job, scheduler: str, store: DiskStore, tell: Tell) -> bool:
     done = store.names()
     if not store.is_empty():
         units = len(done.intersection(job.unit_names))
-        tell(Said(f"going on from {units} of {job.units} units", "resumed", {"units_done": units, "units": job.units}))
+        facts = {"units_done": units, "units": job.units}
+        tell(Said(f"going on from {units} of {counted(job.units, 'unit')}", "resumed", facts))
     place = str(store.folder.absolute()) if isinstance(store.folder, Path) else store.folder
     with _connected(scheduler) as client:
         meter, topic = _Meter(job), uuid4().hex

@@ -7,6 +7,7 @@ from lightcube.backward.pieces import Step, solve_pieces
 from lightcube.events import Progress, Said, Tell
 from lightcube.jobs.partial import DiskStore
 from lightcube.scoring import metrics
+from lightcube.wording import counted
 
 #: Seconds between two looks at the screen at least, and so many times as long as one took.
 _LOOK_S, _PATIENCE = 1.0, 10.0
@@ -38,6 +39,10 @@ def run(job: Job, pieces: list[str], store: DiskStore, tell: Tell) -> bool:
 def _resumed(step: Step, units: int, of: int) -> Said:
     """Where a job goes on that was stopped or killed."""
     passes = max(step.iteration - 1, 0)
-    place = f"from {units} of {of} units, pass {passes} of {step.iterations}" if step.iteration else "at a smaller size"
+    place = (
+        f"from {units} of {counted(of, 'unit')}, pass {passes} of {step.iterations}"
+        if step.iteration
+        else "at a smaller size"
+    )
     facts = {"units_done": units, "units": of, "passes_done": passes, "passes": step.iterations}
     return Said(f"going on {place}", "resumed", facts)

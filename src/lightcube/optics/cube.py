@@ -16,6 +16,7 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
 from lightcube.optics.views import check_pixels, check_reach
+from lightcube.wording import counted
 
 Status = Literal["complete", "interrupted"]
 
@@ -99,7 +100,9 @@ class Cube:
             keep(self, targets=np.uint16)
         names = self.names or tuple(str(i + 1) for i in range(pictures))
         if len(names) != pictures:
-            raise InputError(f"{pictures} pictures have {len(names)} names: give one name per picture")
+            raise InputError(
+                f"{counted(pictures, 'picture')} with {counted(len(names), 'name')}: give one name per picture"
+            )
         if not 0 <= self.hold_deg <= 180:
             raise InputError(f"a cube's hold lies between 0 and 180 degrees, not {self.hold_deg}")
         object.__setattr__(self, "extinction", extinction)
@@ -121,7 +124,7 @@ class Cube:
 
     def __repr__(self) -> str:
         nz, ny, nx = self.grid.shape
-        return f"<light cube of {nz} x {ny} x {nx} voxels for {len(self.names)} pictures, {self.status}>"
+        return f"<light cube of {nz} x {ny} x {nx} voxels for {counted(len(self.names), 'picture')}, {self.status}>"
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
         """What a notebook shows of the cube; front ends choose among it."""

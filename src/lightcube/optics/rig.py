@@ -41,6 +41,7 @@ from lightcube.optics.views import (
     swept_mm,
     turntable_views,
 )
+from lightcube.wording import counted
 
 #: Stops nearer to each other than this, in degrees, are one.
 _SAME_STOP = 1e-6
@@ -93,9 +94,10 @@ class Rig:
         self.views.check_screens()
         views = len(self.views)
         if not len(self.sums.picture) == len(self.fading.cosine) == len(self.turning.turns) == views:
-            raise InputError(f"the parts of a rig are not all of {views} views")
+            raise InputError(f"the parts of a rig are not all of {counted(views, 'view')}")
         if self.sums.picture[-1] + 1 != len(self.stops.angle_deg):
-            raise InputError(f"{len(self.stops.angle_deg)} stops do not fit {self.sums.picture[-1] + 1} pictures")
+            stops, pictures = len(self.stops.angle_deg), int(self.sums.picture[-1]) + 1
+            raise InputError(f"{counted(stops, 'stop')} for {counted(pictures, 'picture')}: give one each")
         for numbers, names in ((self.sums.lamp, self.lamps.names), (self.stops.screen, self.screens.names)):
             if np.any((numbers < 0) | (numbers >= len(names))):
                 raise InputError("a rig's lamps and screens must be numbers of the names that it has, from 0")
@@ -145,7 +147,9 @@ class Rig:
 
     def __repr__(self) -> str:
         rows, columns = self.picture_shape
-        return f"<rig of {len(self)} pictures of {rows} x {columns} pixels, {len(self.views)} views>"
+        return (
+            f"<rig of {counted(len(self), 'picture')} of {rows} x {columns} pixels, {counted(len(self.views), 'view')}>"
+        )
 
     @property
     def picture_shape(self) -> tuple[int, int]:

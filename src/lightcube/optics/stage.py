@@ -20,6 +20,7 @@ from lightcube.optics.rig import Rig
 from lightcube.optics.tables import POWER_MAX, POWER_MIN, POWER_MOST, Fading, Lamps, Screens, Stops, Sums, Turning
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import MOST_DEG, Views, unit
+from lightcube.wording import counted
 
 Vector = tuple[float, float, float]
 
@@ -218,7 +219,7 @@ class Stage:
 
     def __repr__(self) -> str:
         counts = {"lamp": self.lamps, "screen": self.screens, "picture": self.shots, "stop": self.stops_deg}
-        said = ", ".join(f"{len(each)} {name}{'s' * (len(each) != 1)}" for name, each in counts.items())
+        said = ", ".join(counted(len(each), name) for name, each in counts.items())
         return f"<stage of {said}, {self.grid!r}>"
 
     def lamp(self, name: str) -> Lamp:

@@ -30,6 +30,23 @@ def _is_prediction(value: Any) -> bool:
     return isinstance(pictures, list | tuple) and all(map(_is_number, pictures))
 
 
+def _is_place(value: Any) -> bool:
+    return (
+        isinstance(value, list | tuple)
+        and len(value) == 2
+        and all(_is_number(part) and 0 <= part <= 1 for part in value)
+    )
+
+
+def _is_part(value: Any) -> bool:
+    """Whether something says what was taken of a film."""
+    seconds, counts = {"from_s", "to_s"}, {"every", "most"}
+    return isinstance(value, Mapping) and all(
+        (name in seconds and _is_number(each) and each >= 0) or (name in counts and _is_count(each) and each >= 1)
+        for name, each in value.items()
+    )
+
+
 #: What is used of it, and what each must be.
 _KINDS: Mapping[str, Callable[[Any], bool]] = {
     "units": lambda value: _is_count(value) and value >= 1,
@@ -39,6 +56,8 @@ _KINDS: Mapping[str, Callable[[Any], bool]] = {
     "method": _is_word,
     "enough_db": lambda value: value in (None, math.inf) or _is_number(value),
     "order": _is_order,
+    "film": _is_part,
+    "focus": _is_place,
     "predicted": _is_prediction,
 }
 

@@ -16,6 +16,7 @@ from lightcube.errors import InputError
 from lightcube.optics.arrays import Flags, Indices, Numbers, Reals, as_indices, as_numbers, keep
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, check_elevation, check_pixel, raster_shape
+from lightcube.wording import counted
 
 #: Lengths in mm lie between these: squares of squares of others are no numbers.
 SHORTEST_MM, FURTHEST_MM = 1e-18, 1e18
@@ -132,7 +133,7 @@ class Views:
 
     def __repr__(self) -> str:
         rows, columns = self.picture_shape
-        return f"<{len(self)} views of {rows} x {columns} pixels>"
+        return f"<{counted(len(self), 'view')} of {rows} x {columns} pixels>"
 
     @property
     def angles_deg(self) -> Reals:

@@ -18,6 +18,7 @@ from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import from_levels, to_uint16
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
+from lightcube.wording import counted
 
 Fit = Literal["crop", "pad", "stretch"]
 Picture = Images
@@ -39,8 +40,8 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
     ----------
     ways
         What happens to a picture of another aspect than its screen's, of all or of each: ``"crop"`` cuts its edges off,
-        evenly on both sides; ``"pad"`` keeps all of it, and the rest is white and don't care (weight 0); ``"stretch"``
-        changes its aspect.
+        evenly on both sides of the pictures' focus, as far as that can be; ``"pad"`` keeps all of it, and the rest is
+        white and don't care (weight 0); ``"stretch"`` changes its aspect.
 
     Returns
     -------
@@ -56,12 +57,13 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
     fits = [ways] * len(pictures) if isinstance(ways, str) else list(ways)
     if not len(pictures) == len(fits) == len(rig):
         raise InputError(
-            f"{len(pictures)} pictures and {len(fits)} ways to fit them for {len(rig)} on the screens: give one of each"
+            f"{counted(len(pictures), 'picture')} and {len(fits)} ways to fit them for {len(rig)} on the screens: "
+            "give one of each"
         )
     fitted = np.ones((len(pictures), *rig.picture_shape, 3), np.float32)
     weights = np.zeros(fitted.shape[:3], np.float32)
     for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, rig.stops.window, fits, strict=True)):
-        _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way))
+        _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way), pictures.focus)
     return Targets(locked(fitted), rig, locked(weights), pictures.names, pictures.transfer)
 
 
@@ -70,7 +72,7 @@ def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] =
     target = targets.rig.picture_shape
     sizes = Counter((image.shape[0], image.shape[1]) for image in pictures.images)
     first = (pictures.images[0].shape[0], pictures.images[0].shape[1])
-    count = f"{len(pictures)} pictures"
+    count = counted(len(pictures), "picture")
     if set(sizes) == {target}:
         return f"{count} of {_size(target)}, not resampled"
     rows, columns = target
@@ -79,7 +81,7 @@ def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] =
     did = {words[check_fit(way)] for way in ([ways] if isinstance(ways, str) else ways)} if other_aspect else {"scaled"}
     done = " or ".join(sorted(did))
     others = len(sizes) - 1
-    more = f" and {others} other size{'s' if others > 1 else ''}" if others else ""
+    more = f" and {counted(others, 'other size')}" if others else ""
     rule = f", the aspect of {pictures.names[0]}" if other_aspect else ""
     return f"{count}, {done} from {_size(first)}{more} to {_size(target)}{rule}"
 
@@ -108,14 +110,20 @@ def targets_of(cube: Cube) -> Targets:
     return Targets(locked(pictures), cube.rig, locked(weights), cube.names, cube.transfer)
 
 
-def _source_box(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[float, float, float, float]:
-    """``(left, top, right, bottom)`` of the part of a picture of `size` (rows, columns) that is shown."""
+def source_box(
+    size: tuple[int, ...], target: tuple[int, ...], mode: Fit, focus: tuple[float, float]
+) -> tuple[float, float, float, float]:
+    """``(left, top, right, bottom)`` of the part of a picture of `size` (rows, columns) that is shown.
+
+    Of a cropped one `focus` is in its middle, or as near to it as the picture's edges allow.
+    """
     rows, columns = size
     wide, high = float(columns), float(rows)
     if mode == "crop" and columns * target[0] != rows * target[1]:
         aspect = target[1] / target[0]
         wide, high = min(wide, high * aspect), min(high, wide / aspect)
-    left, top = (columns - wide) / 2, (rows - high) / 2
+    left = min(max(focus[0] * columns - wide / 2, 0.0), columns - wide)
+    top = min(max(focus[1] * rows - high / 2, 0.0), rows - high)
     return left, top, min(left + wide, columns), min(top + high, rows)
 
 
@@ -132,11 +140,11 @@ def _inside(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[
     return spans[0], spans[1]
 
 
-def _fill(area: Picture, weight: Picture, image: Picture, mode: Fit) -> None:
+def _fill(area: Picture, weight: Picture, image: Picture, mode: Fit, focus: tuple[float, float]) -> None:
     """Put `image` into `area`, and 1 into `weight` where it lies."""
     size, shape = image.shape[:2], (area.shape[0], area.shape[1])
     inside = _inside(size, shape, mode)
-    area[inside] = _resample(image, area[inside].shape[:2], _source_box(size, shape, mode))
+    area[inside] = _resample(image, area[inside].shape[:2], source_box(size, shape, mode, focus))
     weight[inside] = 1
 
 

@@ -12,6 +12,7 @@ from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import check_elevation
 from lightcube.optics.transfer import Transfer
 from lightcube.optics.views import check_angles
+from lightcube.wording import counted
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +31,9 @@ class Pictures:
         Elevation of the lamp in degrees that came with the pictures, or None.
     transfer
         How the display values were decoded.
+    focus
+        What stays in the middle, as far as it can, of pictures that are cropped: parts of their width and height, from
+        their upper left.
     """
 
     images: tuple[Images, ...]
@@ -37,12 +41,16 @@ class Pictures:
     angles_deg: Reals | None = None
     elevation_deg: float | None = None
     transfer: Transfer = "srgb"
+    focus: tuple[float, float] = (0.5, 0.5)
 
     def __post_init__(self) -> None:
         check_fields(self)
         object.__setattr__(self, "images", tuple(owned(image, np.float32) for image in self.images))
         if len(self.names) != len(self.images):
-            raise InputError(f"{len(self.images)} pictures have {len(self.names)} names: give one name per picture")
+            raise InputError(
+                f"{counted(len(self.images), 'picture')} with {counted(len(self.names), 'name')}: "
+                "give one name per picture"
+            )
         for name, image in zip(self.names, self.images, strict=True):
             if image.ndim != 3 or image.shape[2] != 3 or image.size == 0:
                 raise InputError(f"picture {name} has shape {image.shape}, not (rows, columns, 3)")
@@ -50,9 +58,13 @@ class Pictures:
             angles_deg = owned(check_angles(self.angles_deg), np.float64)
             if len(angles_deg) != len(self.images):
                 raise InputError(
-                    f"{len(angles_deg)} angles for {len(self.images)} pictures: give one angle per picture"
+                    f"{counted(len(angles_deg), 'angle')} for {counted(len(self.images), 'picture')}: "
+                    "give one angle per picture"
                 )
             object.__setattr__(self, "angles_deg", angles_deg)
+        if not all(0 <= part <= 1 for part in self.focus):
+            x, y = self.focus
+            raise InputError(f"the focus {x:g},{y:g} is outside the picture: give two numbers from 0 to 1")
         if self.elevation_deg is not None:
             check_elevation(self.elevation_deg)
 
@@ -62,4 +74,4 @@ class Pictures:
     def __repr__(self) -> str:
         sizes = sorted({image.shape[:2] for image in self.images})
         said = f"{sizes[0][0]} x {sizes[0][1]} pixels" if len(sizes) == 1 else f"{len(sizes)} sizes"
-        return f"<{len(self)} pictures of {said}>"
+        return f"<{counted(len(self), 'picture')} of {said}>"

@@ -12,6 +12,7 @@ from lightcube.optics.arrays import Flags, Images, Indices, Reals, as_indices, l
 from lightcube.optics.checks import check_fields
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
+from lightcube.wording import counted
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +56,9 @@ class Targets:
             raise InputError(f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {pictures.shape[3]}")
         names = self.names or tuple(str(i + 1) for i in range(len(pictures)))
         if len(names) != len(pictures):
-            raise InputError(f"{len(pictures)} pictures have {len(names)} names: give one name per picture")
+            raise InputError(
+                f"{counted(len(pictures), 'picture')} with {counted(len(names), 'name')}: give one name per picture"
+            )
         weights = owned(self.rig.inside if self.weights is None else self.weights, np.float32)
         if weights.shape != expected:
             raise InputError(f"weights have shape {weights.shape}, not {expected}")
@@ -77,7 +80,7 @@ class Targets:
         return len(self.pictures)
 
     def __repr__(self) -> str:
-        return f"<{len(self)} pictures wanted on {self.rig!r}>"
+        return f"<{counted(len(self), 'picture')} wanted on {self.rig!r}>"
 
     @property
     def weight(self) -> Images:

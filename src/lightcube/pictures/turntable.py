@@ -15,6 +15,7 @@ from lightcube.optics.tables import POWER_MAX, check_black, power_bounds
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import check_angles, check_lamp, check_span, distinct_angles, doubt_angles, spread_angles
 from lightcube.pictures.pictures import Pictures
+from lightcube.wording import counted
 
 #: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
 RAISED_DEG = 35.0
@@ -130,5 +131,7 @@ class Turntable:
             return distinct_angles(spread_angles(len(pictures), self.span_deg, elevation_deg=elevation_deg))
         chosen = distinct_angles(angles_deg)
         if len(chosen) != len(pictures):
-            raise InputError(f"{len(chosen)} angles for {len(pictures)} pictures: give one angle per picture")
+            raise InputError(
+                f"{counted(len(chosen), 'angle')} for {counted(len(pictures), 'picture')}: give one angle per picture"
+            )
         return chosen

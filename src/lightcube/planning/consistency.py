@@ -15,6 +15,7 @@ from lightcube.optics.transfer import BLACK, decode, encode
 from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised, voxels_a_pixel
+from lightcube.wording import counted, in_ev
 
 Floats = NDArray[np.float64]
 
@@ -258,14 +259,17 @@ def moments(targets: Targets) -> dict[str, float]:
     }
 
 
-def advice(facts: dict[str, Any]) -> list[str]:
-    """Say in a sentence each what is wrong with pictures by the facts of `check`, and what to do; often nothing."""
+def advice(facts: dict[str, Any], *, crowded: bool = True) -> list[str]:
+    """Say in a sentence each what is wrong with pictures by the facts of `check`, and what to do; often nothing.
+
+    That they are too many or too large is left out where they are not `crowded`, since something better tells so.
+    """
     said = []
     level, moment = facts["elevation_deg"] == 0, facts["moments"]
     spread = moment["total_with_lamps" if level and facts["lamp_max"] > 1 else "total"]
     # Shadows of one solid are no unrelated pictures, however many there are.
     solid = max(moment["total"], moment["across"], moment["down"]) <= _SOLID
-    if facts["load"] > facts["load_limit"] and not solid:
+    if crowded and facts["load"] > facts["load_limit"] and not solid:
         said.append(_on_load(facts, level))
     if facts["whole_shadow"] and spread > _SOLID:
         said.append(
@@ -287,10 +291,10 @@ def advice(facts: dict[str, Any]) -> list[str]:
 def _on_load(facts: dict[str, Any], level: bool) -> str:
     part = facts["load_limit"] / facts["load"]
     count, wide = int(facts["pictures"] * part), int(facts["columns"] * (part if level else math.sqrt(part)))
-    fewer = f"at most {count} pictures, or " if count > 1 else ""
+    fewer = f"at most {counted(count, 'picture')}, or " if count > 1 else ""
     raise_lamp = ", or raise the lamp (--elevation-deg 35)" if level else ""
     return (
-        f"The load is {facts['load']:.1f}; unrelated pictures come out well up to {facts['load_limit']:g}: use "
+        f"These are {1 / part:.1f} times as many pixels as a cube keeps well of unrelated pictures: use "
         f"{fewer}pictures at most {max(wide, 1)} pixels wide{raise_lamp}."
     )
 
@@ -304,11 +308,12 @@ def _on_rows(facts: dict[str, Any]) -> list[str]:
         rows = _runs(np.unique([each["row"] for each in conflicts if each["bright"] == bright]))
         others = len({each["bright"] for each in conflicts}) - 1
         power = max(each["lamp"] for each in conflicts)
+        most = f"{facts['lamp_max']:g} ({in_ev(facts['lamp_max'])})"
         said.append(
-            f"{bright} is too bright for a lamp of {facts['lamp_max']:g} in {_rows(rows)}{_more(others, 'picture')}: "
+            f"{bright} is too bright for a lamp of {most} in {_rows(rows)}{_more(others, 'picture')}: "
             f"in row {worst['row']} {worst['dark']} wants {worst['channel']} of {worst['mean']:.0%} on average and "
-            f"cannot go below {worst['darkest']:.0%}: allow a lamp of more than {power:.2g} (--lamp-max), or raise "
-            f"the lamp (--elevation-deg 35)."
+            f"cannot go below {worst['darkest']:.0%}: allow a lamp of more than {power:.2g} ({in_ev(power)}, "
+            f"--lamp-max), or raise the lamp (--elevation-deg 35)."
         )
     edges = {
         name: [run for run in runs if run[0] == 0 or run[1] == facts["rows"] - 1]
@@ -333,7 +338,7 @@ def _rows(runs: list[list[int]]) -> str:
 
 
 def _more(count: int, what: str) -> str:
-    return f" (and {count} more {what}{'s' if count > 1 else ''})" if count else ""
+    return f" (and {counted(count, f'more {what}')})" if count else ""
 
 
 def _is_level(views: Views) -> bool:

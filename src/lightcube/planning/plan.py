@@ -95,6 +95,12 @@ class Plan:
     def __repr__(self) -> str:
         return f"<plan of {self.targets!r} for {self.grid!r}: {self.prediction!r}>"
 
+    @property
+    def picture_width(self) -> float:
+        """Width of the pictures as a part of the cube's."""
+        rig = self.targets.rig
+        return rig.picture_shape[1] * rig.views.pixel_in(self.grid)[1] / self.grid.shape[1]
+
     @cached_property
     def impossible(self) -> list[str]:
         """What cannot be in the room, a sentence each."""

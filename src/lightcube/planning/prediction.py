@@ -50,6 +50,7 @@ from lightcube.pictures.resampling import shares
 from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
 from lightcube.scoring.metrics import BEST_DB, psnr
+from lightcube.wording import counted
 
 #: Points of a pixel in a rehearsal.
 POINTS = Light()
@@ -110,8 +111,9 @@ class Prediction:
 
     def __repr__(self) -> str:
         if not self.is_known:
-            return f"<who knows what is to be expected of {len(self.psnr)} pictures>"
-        return f"<{self.psnr_mean:.1f} dB expected, {self.psnr_min:.1f} dB of the worst of {len(self.psnr)} pictures>"
+            return f"<who knows what is to be expected of {counted(len(self.psnr), 'picture')}>"
+        pictures = counted(len(self.psnr), "picture")
+        return f"<{self.psnr_mean:.1f} dB expected, {self.psnr_min:.1f} dB of the worst of {pictures}>"
 
     @property
     def psnr_mean(self) -> float:

@@ -15,7 +15,7 @@ from lightcube.report.html import element, pairs, plain, sentences, table, text
 from lightcube.report.measuring import Findings
 
 #: What a page may load: its own style, and pictures that it holds itself. Nothing in it is run.
-_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
+POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 #: Makes the number that `digest` does, anywhere.
 _CHECK = (
     "python -c \"import hashlib, lightcube; print(hashlib.sha256(lightcube.load('CUBE').extinction.tobytes())"
@@ -92,7 +92,7 @@ def page(found: Findings, title: str, compared: str, command: Command, origins: 
     head = [
         '<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
+        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
         '<meta name="color-scheme" content="light dark">',
         text("title", f"{title} – light cube report"),
         element("style", files("lightcube.report").joinpath("style.css").read_text(encoding="utf-8")),

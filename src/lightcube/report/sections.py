@@ -18,6 +18,7 @@ from lightcube.report.html import element, figure, image, number, pairs, sentenc
 from lightcube.report.measuring import EXACT, Findings
 from lightcube.scoring.between import LOBE_DB
 from lightcube.scoring.metrics import grain_word
+from lightcube.wording import counted, in_ev
 
 #: What a PSNR means.
 _LADDER = "PSNR, of what a wall shows: 20 dB is recognisable, 30 good, 40 hardly to be told apart."
@@ -34,7 +35,8 @@ def head(found: Findings, compared: str) -> str:
     wide, high = _size(cube)
     size = " × ".join(f"{length:.6g}" for length in cube.grid.size_mm[::-1])
     count = len(cube.names)
-    what = f"A light cube of {nx} × {ny} × {nz} voxels, {size} mm, for {count} pictures of {wide} × {high} pixels."
+    pictures = counted(count, "picture")
+    what = f"A light cube of {nx} × {ny} × {nz} voxels, {size} mm, for {pictures} of {wide} × {high} pixels."
     lines = [text("p", what.replace(" × ", "\u00a0×\u00a0"), class_="lead")]
     if cube.status != "complete":
         warning = "This cube is unfinished: its solver was stopped early, or it is still being made."
@@ -60,7 +62,7 @@ def head(found: Findings, compared: str) -> str:
         numbers[i] for i in np.unique(np.linspace(0, len(numbers) - 1, min(_STRIP, len(numbers))).round().astype(int))
     ]
     strip = "".join(image(found.pictures[i][1], f"shown: {cube.names[i]}", exact=_exact(found)) for i in few)
-    which = "all its pictures" if len(few) == count else f"{len(few)} of its {count} pictures"
+    which = "all its pictures" if len(few) == count else f"{len(few)} of its {pictures}"
     lines += [
         figure(element("div", strip, class_="strip"), f"What it casts: {which}."),
         element("dl", shown, class_="tiles"),
@@ -88,6 +90,12 @@ def _range(values: NDArray[Any], form: str = "g") -> str:
     return least if least == most else f"{least} to {most}"
 
 
+def _range_ev(cube: Cube) -> str:
+    """Least and largest power of a cube's lamps in stops of a camera."""
+    least, most = in_ev(float(cube.powers.min())), in_ev(float(cube.powers.max()))
+    return least if least == most else f"{least} to {most}"
+
+
 def settings(found: Findings) -> str:
     """What cube, lamp and solver were set to."""
     cube, made = found.cube, remembered(found.cube)
@@ -96,7 +104,7 @@ def settings(found: Findings) -> str:
     lamps = cube.rig.lamps
     fixed = lamps.are_fixed and "powers" in made
     kind = "fixed" if fixed else kinds.get(str(made.get("powers")), "–")
-    most = "" if fixed else f", at most {lamps.most.max():g}"
+    most = "" if fixed else f", at most {lamps.most.max():g} or {in_ev(lamps.most.max())}"
     reasons = {
         "enough": "the pictures were good enough",
         "converged": "nothing was left to gain",
@@ -110,7 +118,7 @@ def settings(found: Findings) -> str:
         {
             "Voxels": f"{nx} × {ny} × {nz} of {cube.grid.sides_in_words.replace('x', '×')}",
             **_placed(cube),
-            "Lamp power": f"{_range(cube.powers, '.4g')} ({kind}{most})",
+            "Lamp power": f"{_range(cube.powers, '.4g')}, that is {_range_ev(cube)} ({kind}{most})",
             "Hold": f"{cube.hold_deg:g}° on either side of a stop" if cube.hold_deg else "none",
             "Method": str(made.get("method", "–")),
             "Passes": f"{passes}: {reason}" if reason else passes,
@@ -210,7 +218,7 @@ def curves(found: Findings) -> str:
     cube, scores, expected = found.cube, found.scores, _expected(found.cube)
     each = np.array([view["psnr"] for view in scores["pictures"]])
     mean, worst = number(scores["psnr_mean"]), number(scores["psnr_min"])
-    label = f"PSNR of {len(each)} pictures: {mean} dB on average, worst {worst} dB"
+    label = f"PSNR of {counted(len(each), 'picture')}: {mean} dB on average, worst {worst} dB"
     said = "PSNR of each picture, the worst one in a colour of its own, the mean as a line"
     said += ", and what was predicted as short lines." if expected else "."
     bars = charts.picture_bars(cube.names, each, None if expected is None else np.array(expected), label)
@@ -249,7 +257,8 @@ def _powers_said(cube: Cube) -> str:
     colours = "; red discs, green squares, blue triangles" if cube.powers.shape[1] == 3 else ""
     lamps = ", of each of its lamps" if len(cube.rig.lamps.names) > 1 else ""
     return (
-        f"Power of the lamp for each picture and colour{lamps}; 1 shows white past the cube{colours}. "
+        f"Power of the lamp for each picture and colour{lamps}; 1 shows white past the cube, and "
+        f"twice as much is 1 EV more{colours}. "
         "The dashed line is the largest that was allowed."
     )
 

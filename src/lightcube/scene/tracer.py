@@ -15,6 +15,7 @@ from lightcube.optics.views import Views, spread_angles
 from lightcube.pictures.targets import Targets
 from lightcube.scene.description import ShadowCamera
 from lightcube.scene.scene import Scene
+from lightcube.wording import counted
 
 #: Called with (pictures made, pictures wanted).
 Callback = Callable[[int, int], None]
@@ -71,7 +72,9 @@ def trace(scene: Scene, count: int, picture_shape: tuple[int, int], *, callback:
         raise InputError(f"{scene.name} has a shadow camera: its pictures need the views of a cube (use shadows)")
     rows, columns = picture_shape
     if min(count, rows, columns) < 1:
-        raise InputError(f"cannot trace {count} pictures of {rows} x {columns} pixels: each must be at least 1")
+        raise InputError(
+            f"cannot trace {counted(count, 'picture')} of {rows} x {columns} pixels: each must be at least 1"
+        )
     pictures = np.empty((count, rows, columns, 3), dtype=np.float32)
     seen, shapes = sight(scene.description), compiled(scene)
     instants = times(count)

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from lightcube.optics.cube import Cube
 
 
@@ -20,6 +22,7 @@ def facts(cube: Cube) -> dict[str, Any]:
         "picture": f"{columns} x {rows} pixels",
         **_where(cube),
         "lamp_power": [float(cube.powers.min()), float(cube.powers.max())],
+        "lamp_ev": [float(np.log2(cube.powers.min())), float(np.log2(cube.powers.max()))],
         "extinction_mean": float(cube.extinction.mean()),
         "extinction_max": float(cube.extinction.max()),
         "hold_deg": cube.hold_deg,

@@ -28,6 +28,11 @@ BEST_DB = 100.0
 #: Pictures of this PSNR, dB, are good: they are made small enough for it.
 GOOD_DB = 40.0
 
+#: The least PSNR, dB, of a picture that is fair: recognisable, with faults that one sees. A worse one is poor.
+FAIR_DB = 26.0
+#: What a picture of at least so many dB looks like.
+_NEARNESS = {GOOD_DB: "hard to tell from what is wanted", 33.0: "good", FAIR_DB: "fair"}
+
 Display = NDArray[np.floating[Any]]
 
 
@@ -38,6 +43,11 @@ _GRAINS = {"smooth": 0.03, "fine": 0.10}
 def grain_word(rms: float) -> str:
     """How light that varies so much inside pixels (display values) looks: smooth, fine or coarse."""
     return next((word for word, least in _GRAINS.items() if rms < least), "coarse")
+
+
+def nearness(decibels: float) -> str:
+    """What a picture of such a PSNR looks like, in a few words."""
+    return next((word for least, word in _NEARNESS.items() if decibels >= least), "poor")
 
 
 def psnr(shown: Display, wanted: Display, weight: Display) -> float:

@@ -11,6 +11,7 @@ from numpy.typing import DTypeLike, NDArray
 from lightcube.errors import InputError
 from lightcube.kernels.layout import copied
 from lightcube.solvers.contract import Floats, Operator, State, Wanted
+from lightcube.wording import counted
 
 
 @dataclass(frozen=True)
@@ -34,8 +35,8 @@ def check_fits(A: Operator, wanted: Wanted) -> None:
     if wanted.equations != A.shape[0]:
         views, pictures = len(wanted.lighting.lamp), wanted.lighting.pictures
         raise InputError(
-            f"light of shape {wanted.light.shape} in {pictures} pictures of {views} views is of {wanted.equations} "
-            f"equations, but the matrix is of shape {A.shape}: give it a row for each equation"
+            f"light of shape {wanted.light.shape} in {counted(pictures, 'picture')} of {counted(views, 'view')} is of "
+            f"{wanted.equations} equations, but the matrix is of shape {A.shape}: give it a row for each equation"
         )
 
 

@@ -15,6 +15,7 @@ from lightcube.optics.arrays import Counts, Flags, Integers, Reals, keep
 from lightcube.optics.checks import check_fields
 from lightcube.optics.law import Mixture, within
 from lightcube.optics.transfer import Transfer
+from lightcube.wording import counted
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -74,7 +75,8 @@ class Lighting:
         if self.lamp.min() < 0:
             raise InputError(f"lamps must count from 0, not from {self.lamp.min()}")
         if self.mixture is not None and len(self.mixture.light) != len(self.lamp):
-            raise InputError(f"{len(self.lamp)} views have lamps, but {len(self.mixture.light)} add up to pictures")
+            lit = counted(len(self.lamp), "view")
+            raise InputError(f"lamps are named of {lit}, but {len(self.mixture.light)} add up to pictures")
 
     @property
     def lamps(self) -> int:

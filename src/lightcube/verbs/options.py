@@ -21,91 +21,177 @@ from lightcube.solvers import METHODS
 Surround = Literal["dark", "grey", "light", "none"]
 #: Voxels along the longest side of a cube, unless something else is said.
 DEFAULT_N = 128
+#: Pictures that are taken of a film, at most, unless something else is said.
+FILM_MOST = 32
+
+
+#: What options are about, in the order in which people are told of them.
+Group = Literal["Pictures", "Geometry", "Lamp", "Material", "Quality"]
 
 
 @dataclass(frozen=True)
 class Option:
-    """What people are told of an option, and the least number that it takes."""
+    """What an option is about, what people are told of it, with its unit, and the least number that it takes."""
 
+    group: Group
     help: str
     least: int | None = None
 
 
 @dataclass(frozen=True)
 class Options:
-    """What is said of the cube, None where nothing is."""
+    """What is said of the cube, None where nothing is; of each group what is used most stands first."""
 
-    n: Annotated[int | None, Option("Voxels along the cube's longest side.  [default: 128]")] = None
-    shape: Annotated[tuple[int, int, int] | None, Option("Voxels along each axis, NZ,NY,NX, instead of --n.")] = None
-    size_mm: Annotated[float, Option("Longest side of the cube in mm.")] = 100.0
-    picture_width: Annotated[
-        float | None, Option("Width of the pictures as a part of the cube's; default as wide as 40 dB are expected.")
-    ] = None
-    slices_tall: Annotated[int, Option("Height of a slice of the cube in widths of a voxel; --n counts widths.", 1)] = 1
-    pixel: Annotated[int, Option("Voxels along a side of each pixel of the pictures.", 1)] = 1
     fit: Annotated[
-        Fit, Option("Pictures of another aspect than the first: cut their edges, leave the rest free, or distort.")
+        Fit,
+        Option(
+            "Pictures",
+            "Pictures of another shape than the first: crop their edges, pad (leave the rest free), or stretch.",
+        ),
     ] = "crop"
-    angles_deg: Annotated[tuple[float, ...] | None, Option("Turntable angles in degrees, A,B,C, one per picture.")] = (
-        None
-    )
-    span_deg: Annotated[
-        float | None, Option("Degrees to spread the views over, evenly.  [default: 360, level 180]")
+    focus: Annotated[
+        tuple[float, float] | None,
+        Option(
+            "Pictures",
+            "X,Y that stays in the middle where pictures are cropped, as parts of their width and height from the "
+            "upper left, 0 to 1.  [default: 0.5,0.5]",
+        ),
     ] = None
-    elevation_deg: Annotated[float | None, Option("Elevation of the lamp in degrees; 0 is level.  [default: 35]")] = (
-        None
-    )
-    paper: Annotated[bool, Option("The paper's set-up: level lamp of power 1, half a turn, full width.")] = False
-    order: Annotated[
-        Arrangement, Option("Whether pictures stand as given, or in the order that gives the best ones.")
-    ] = "given"
-    shift: Annotated[int, Option("Let pictures stand up to so many pixels higher, lower or aside, in turn.", 0)] = 0
-    quality: Annotated[Quality | None, Option("At most 30, 200 or 400 passes.  [default: normal]")] = None
-    method: Annotated[str, Option(f"One of {', '.join(METHODS)}.")] = "display"
-    iterations: Annotated[int | None, Option("At most so many passes, instead of --quality.")] = None
-    powers: Annotated[
-        Powers | None,
-        Option("One lamp power per picture and colour (coarse: found at half size), or one per colour for all."),
+    most: Annotated[
+        int | None,
+        Option(
+            "Pictures",
+            "Take at most so many pictures of a video or animation, evenly spread.  [default: 32, with --every all]",
+            1,
+        ),
     ] = None
-    lamp_power: Annotated[float | None, Option("Power of a fixed lamp, linear light; 1 is white.")] = None
-    lamp_max: Annotated[float | None, Option("Largest power of the lamp, at least 1.  [default: 16]")] = None
-    lamp_deg: Annotated[
-        float | None, Option("Angular diameter of the lamp's disc in degrees: the sun's is 0.5.  [default: 0, none]")
-    ] = None
-    screen_mm: Annotated[
+    every: Annotated[int | None, Option("Pictures", "Take one of so many pictures of a video or animation.", 1)] = None
+    from_s: Annotated[float | None, Option("Pictures", "Where to begin in a video, in seconds.  [default: 0]")] = None
+    to_s: Annotated[float | None, Option("Pictures", "Where to end in a video, in seconds.  [default: its end]")] = None
+    picture_width: Annotated[
         float | None,
-        Option("With --lamp-deg: mm from the turning cube's reach to the screen; default the cube's width."),
+        Option(
+            "Pictures",
+            "Width of the pictures as a part of the cube's width: 0.5 is half.  [default: as wide as 40 dB, hard to "
+            "tell from what is wanted, are expected]",
+        ),
     ] = None
     hold_deg: Annotated[
         float | None,
-        Option("Degrees around its stop over which each picture shall stand.  [default: 16 / voxels across]"),
+        Option(
+            "Pictures",
+            "How far each picture shall stand to either side of its stop, in degrees of the turntable.  "
+            "[default: 16 / voxels across, degrees]",
+        ),
     ] = None
-    black: Annotated[float | None, Option("Display value, 0.002 to 1, that the screen cannot be darker than.")] = None
+    order: Annotated[
+        Arrangement, Option("Pictures", "Whether pictures stand as given, or in the order that gives the best ones.")
+    ] = "given"
+    shift: Annotated[
+        int, Option("Pictures", "Let pictures stand up to so many pixels higher, lower or aside, in turn.", 0)
+    ] = 0
+    mat: Annotated[
+        Surround | None, Option("Pictures", "Calm surround of each picture.  [default: dark; thin beams: none]")
+    ] = None
+    transfer: Annotated[
+        Transfer,
+        Option("Pictures", "What values of pictures mean: srgb, as screens and cameras do, or linear light itself."),
+    ] = "srgb"
+    n: Annotated[int | None, Option("Geometry", "Voxels along the cube's longest side.  [default: 128]")] = None
+    size_mm: Annotated[float, Option("Geometry", "Longest side of the cube, in mm.")] = 100.0
+    elevation_deg: Annotated[
+        float | None,
+        Option("Geometry", "How high the lamp stands over the horizon, in degrees; 0 is level.  [default: 35]"),
+    ] = None
+    span_deg: Annotated[
+        float | None,
+        Option("Geometry", "Degrees of the turntable over which the stops spread evenly.  [default: 360, level 180]"),
+    ] = None
+    angles_deg: Annotated[
+        tuple[float, ...] | None,
+        Option("Geometry", "The stops themselves, A,B,C, one per picture, in degrees of the turntable."),
+    ] = None
+    shape: Annotated[
+        tuple[int, int, int] | None,
+        Option("Geometry", "Voxels upwards, in depth and across, NZ,NY,NX, instead of --n."),
+    ] = None
+    pixel: Annotated[int, Option("Geometry", "Voxels along a side of each pixel of the pictures.", 1)] = 1
+    slices_tall: Annotated[
+        int, Option("Geometry", "Height of a slice of the cube in widths of a voxel; --n counts widths.", 1)
+    ] = 1
+    paper: Annotated[
+        bool,
+        Option("Geometry", "The paper's set-up: level lamp of power 1, half a turn, pictures of full width."),
+    ] = False
+    lamp_max: Annotated[
+        float | None,
+        Option(
+            "Lamp",
+            "Largest power of the lamp: 1 makes the bare wall white, 16 is 4 stops of a camera more (+4 EV).  "
+            "[default: 16]",
+        ),
+    ] = None
+    lamp_power: Annotated[
+        float | None,
+        Option("Lamp", "Power of a lamp that stays the same: 1 makes the bare wall white, 2 is 1 stop more (+1 EV)."),
+    ] = None
+    powers: Annotated[
+        Powers | None,
+        Option(
+            "Lamp", "One lamp power per picture and colour (coarse: found at half size), or one per colour for all."
+        ),
+    ] = None
+    lamp_deg: Annotated[
+        float | None,
+        Option(
+            "Lamp",
+            "Width of the lamp's disc as the cube sees it, in degrees: the sun's is 0.5.  [default: 0, a point]",
+        ),
+    ] = None
+    screen_mm: Annotated[
+        float | None,
+        Option("Lamp", "With --lamp-deg: mm from the turning cube's reach to the wall.  [default: the cube's width]"),
+    ] = None
+    black: Annotated[
+        float | None,
+        Option("Lamp", "What the wall cannot be darker than, as a part of white in display values, 0.002 to 1."),
+    ] = None
     max_extinction: Annotated[
         float | None,
-        Option("Largest extinction of the material, 1/mm; default an absorbance of 3 along a voxel, thin beams: none."),
+        Option(
+            "Material",
+            "How quickly light may fade in the darkest glass, per mm (1/mm): 0.1 leaves 37 % after 10 mm.  "
+            "[default: to 5 % along one voxel; thin beams: any]",
+        ),
     ] = None
-    mat: Annotated[Surround | None, Option("Calm surround of each picture.  [default: dark; thin beams: none]")] = None
-    transfer: Annotated[Transfer, Option("How picture values become linear light.")] = "srgb"
-    light: Annotated[
-        Beams | None, Option("Whether light is averaged over pixels or, as in the paper, thin beams.  [default: area]")
+    quality: Annotated[
+        Quality | None, Option("Quality", "At most 30, 200 or 400 passes over all pictures.  [default: normal]")
+    ] = None
+    iterations: Annotated[
+        int | None, Option("Quality", "At most so many passes over all pictures, instead of --quality.")
+    ] = None
+    grain: Annotated[
+        float | None,
+        Option(
+            "Quality",
+            "Weight, 0 to 2, of a pixel's points beside its mean: the more, the smoother from near by.  "
+            "[default: auto, 0.01 where 38 dB are expected]",
+        ),
     ] = None
     points: Annotated[
         int | None,
         Option(
+            "Quality",
             "Average over so many points of each pixel, with --lamp-deg thrice; of larger ones over up to 34.  "
             "[default: 13, level 7; best: 34, 15]",
             1,
         ),
     ] = None
-
-    grain: Annotated[
-        float | None,
-        Option(
-            "Weight, 0 to 2, of a pixel's points beside its mean: the more, the smoother from near by.  "
-            "[default: auto, 0.01 where 38 dB are expected]"
-        ),
+    light: Annotated[
+        Beams | None,
+        Option("Quality", "Light as a wall shows it, averaged over areas, or the paper's thin beams.  [default: area]"),
     ] = None
+    method: Annotated[str, Option("Quality", f"How the cube is computed: one of {', '.join(METHODS)}.")] = "display"
 
     @property
     def voxels(self) -> tuple[int, int, int]:
@@ -118,6 +204,32 @@ class Options:
         if not (np.isfinite(self.size_mm) and self.size_mm > 0):
             raise InputError(f"--size-mm {self.size_mm}: give a positive number of millimetres")
         return nz, ny, nx
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """What stays in the middle of cropped pictures; `InputError` where nothing is cropped, or it cannot be."""
+        if self.focus is not None and self.fit != "crop":
+            raise InputError(
+                f"--focus is for pictures that are cropped, not for --fit {self.fit}: leave out one of the two"
+            )
+        if self.focus is not None and not all(0 <= part <= 1 for part in self.focus):
+            x, y = self.focus
+            raise InputError(
+                f"--focus {x:g},{y:g} is outside the picture: give two numbers from 0 to 1, such as 0.5,0.3"
+            )
+        return self.focus or (0.5, 0.5)
+
+    @property
+    def film(self) -> dict[str, Any]:
+        """What is taken of a film, as `lightcube.read_pictures` takes it; what is all of it is left out."""
+        most = FILM_MOST if self.most is None and self.every is None else self.most
+        said = {"from_s": self.from_s, "to_s": self.to_s, "every": self.every, "most": most}
+        return {name: value for name, value in said.items() if value is not None}
+
+    @property
+    def is_of_a_film(self) -> bool:
+        """Whether something is said that only films have."""
+        return (self.most, self.every, self.from_s, self.to_s) != (None, None, None, None)
 
     @property
     def turntable(self) -> Turntable:

@@ -33,7 +33,10 @@ def refitted(cube: Cube, source: str) -> Targets:
         return _of_stage(source, cube)
     if not np.all(cube.rig.screens.endless):
         raise InputError(f"the cube was made on a stage: give its file instead of {source}, or nothing")
-    pictures = io.read_pictures(source, transfer=cube.transfer)
+    part = remembered(cube).get("film", {}) if io.is_film(source) else {}
+    pictures = io.read_pictures(source, transfer=cube.transfer, **part)
+    x, y = remembered(cube).get("focus", pictures.focus)
+    pictures = replace(pictures, focus=(x, y))
     order = remembered(cube).get("order", range(len(pictures)))
     if len(order) == len(pictures):
         images, names = (tuple(each[picture] for picture in order) for each in (pictures.images, pictures.names))

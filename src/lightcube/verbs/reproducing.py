@@ -27,11 +27,15 @@ from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import spread_angles, swept_mm
 from lightcube.pictures.targets import Targets
 from lightcube.report.page import Command, Origin
+from lightcube.verbs.options import Options
+from lightcube.wording import counted
 
 #: Longest side of a cube, mm, unless the command line says another.
 _SIZE_MM = 100.0
 #: A number of mm is looked for among so many neighbours of the nearest one.
 _NEIGHBOURS = 4
+#: By what is taken of a film, the option that says so.
+_FILM = {"from_s": "--from", "to_s": "--to", "every": "--every", "most": "--most"}
 #: Digits of a degree that the angles of views are known to.
 _DIGITS = 9
 
@@ -96,14 +100,24 @@ def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
             "No angles, elevation and lamp on the command line give exactly this cube's lamps and screens."
         )
     yield from disc or ()
+    yield from _film(provenance)
     if provenance.get("fit", "crop") != "crop":
         yield from ("--fit", str(provenance["fit"]))
+    if "focus" in provenance:
+        yield from ("--focus", _listed(np.array(provenance["focus"])))
     if "order" in provenance:
         yield from ("--order", "best")
     if "shift" in provenance:
         yield from ("--shift", str(provenance["shift"]))
     yield from ("--hold-deg", _number(cube.hold_deg))
     yield from _lamp(cube)
+
+
+def _film(provenance: Mapping[str, Any]) -> Iterator[str]:
+    """What was taken of a film, where that is not as usual."""
+    part = provenance.get("film", {})
+    if part != Options().film:
+        yield from (word for name, value in part.items() for word in (_FILM[name], _number(value)))
 
 
 def _lamp(cube: Cube) -> Iterator[str]:
@@ -196,7 +210,9 @@ def _passes(made: Mapping[str, Any], command: Command) -> Iterator[str]:
     else:
         known = {"enough": "were enough", "best": "were best", "converged": "left nothing to do"}
         reason = known.get(made.get("stop_reason", ""), "came")
-        passes = f"{made['iterations']} passes {reason}" if "iterations" in made else "nothing is said of passes"
+        passes = (
+            f"{counted(made['iterations'], 'pass')} {reason}" if "iterations" in made else "nothing is said of passes"
+        )
         command.doubts.append(
             f"How many passes were allowed, and which PSNR was enough, is not recorded ({passes}); the default is "
             "taken here."
@@ -215,7 +231,7 @@ def _doubt_origin(cube: Cube, command: Command, source: str | None) -> None:
     if cube.status != "complete":
         doubts.append("The solver was stopped early; the command goes on to its end.")
     if "started_from" in made:
-        doubts.append("It was started from another cube, which is not kept: add --from with that one.")
+        doubts.append("It was started from another cube, which is not kept: add --start-from with that one.")
     if made.get("lightcube") != version("lightcube"):
         written = made.get("lightcube", "an unknown version")
         doubts.append(f"It was made by lightcube {written}; another version may come to other bits.")

@@ -2,7 +2,7 @@
 
 import json
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -35,8 +35,18 @@ _QUICK = 40
 
 #: Options that a stage file leaves no room for.
 _SAID_BY_STAGE = (
-    *("n", "shape", "size_mm", "slices_tall", "picture_width", "pixel", "fit", "angles_deg", "span_deg"),
-    *("elevation_deg", "paper", "order", "shift", "lamp_power", "lamp_max", "black", "lamp_deg", "screen_mm"),
+    *("n", "shape", "size_mm", "slices_tall", "picture_width", "pixel", "fit", "focus", "angles_deg", "span_deg"),
+    *(
+        "elevation_deg",
+        "paper",
+        "order",
+        "shift",
+        "lamp_power",
+        "lamp_max",
+        "black",
+        "lamp_deg",
+        "screen_mm",
+    ),
 )
 
 
@@ -68,6 +78,7 @@ def read(source: str, options: Options, *, told: bool = True) -> Planning:
 
 def _read_stage(source: str, options: Options) -> Callable[..., Plan]:
     """Read a stage file, which says all there is."""
+    part(source, options)
     recipe, nothing = options.recipe, Options()
     smooth = options.grain is None and not recipe.beams.is_thin
     for name in _SAID_BY_STAGE:
@@ -85,9 +96,11 @@ def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
     if options.mat is None and recipe.solver.chooses_lamps and not recipe.beams.is_thin:
         recipe = replace(recipe, mat=Mat())
     check_memory(memory_needed(recipe.solver, Grid(shape), (1, 1), 1, units=3))
+    focus = options.middle
+    pictures = io.read_pictures(source, transfer=options.transfer, **part(source, options))
     return partial(
         plan,
-        io.read_pictures(source, transfer=options.transfer),
+        replace(pictures, focus=focus),
         max(shape),
         recipe,
         size_mm=options.size_mm,
@@ -103,6 +116,15 @@ def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
     )
 
 
+def part(source: str, options: Options) -> dict[str, Any]:
+    """What of a film is taken; `InputError` where something of that is said of what is none."""
+    if options.is_of_a_film and not io.is_film(source):
+        raise InputError(
+            f"--most, --every, --from and --to are for films and animations, not for {source}: leave them out"
+        )
+    return options.film if io.is_film(source) else {}
+
+
 def another_order(planned: Plan, small: Rehearsals) -> "Order | None":
     """The best order of a plan: its own, or one that is looked for where that does not take long; none of a stage."""
     if planned.order is not None or planned.stage is not None or len(planned.pictures) > _QUICK:
@@ -110,8 +132,18 @@ def another_order(planned: Plan, small: Rehearsals) -> "Order | None":
     return small.best_order(planned.targets, planned.grid, planned.recipe)
 
 
-def job(planned: Plan, *, memory: int | None = None, units: int | None = None, start: Cube | None = None) -> Job:
-    """Settle all that decides the cube; `InputError` where it cannot be, or does not fit into `memory` bytes."""
+def job(
+    planned: Plan,
+    *,
+    memory: int | None = None,
+    units: int | None = None,
+    start: Cube | None = None,
+    film: Mapping[str, Any] | None = None,
+) -> Job:
+    """Settle all that decides the cube; `InputError` where it cannot be, or does not fit into `memory` bytes.
+
+    `film` is what was taken of a film, where it was one: the cube remembers it.
+    """
     if planned.impossible:
         raise InputError(f"on this stage {planned.impossible[0]}")
     made = make_job(
@@ -121,7 +153,7 @@ def job(planned: Plan, *, memory: int | None = None, units: int | None = None, s
         units=units,
         memory=memory,
         start=start,
-        provenance=_origin(planned),
+        provenance=_origin(planned) | ({"film": dict(film)} if film else {}),
     )
     needed = job_memory(made)
     if memory is not None and needed > memory:
@@ -137,6 +169,8 @@ def _origin(planned: Plan) -> dict[str, Any]:
     known: dict[str, Any] = {}
     if planned.stage is None:
         known["fit"] = planned.fit
+        if planned.pictures.focus != (0.5, 0.5):
+            known["focus"] = list(planned.pictures.focus)
     if planned.prediction.is_known:
         known["predicted"] = as_json(planned.prediction)
     if planned.shift:

@@ -1,105 +1,56 @@
-"""What is said of plans, stages and jobs, in sentences and tables."""
+"""What is said of plans, jobs and cubes, in sentences: what is well, what is wrong, what to do."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lightcube.backward.wishes import held
+from lightcube.backward.solution import Solution
 from lightcube.jobs.publishing import Published
 from lightcube.optics.light import Beams
 from lightcube.optics.rig import Rig
-from lightcube.optics.stage import Stage
 from lightcube.optics.tables import POWER_MOST
 from lightcube.pictures.fitting import fit_report
-from lightcube.pictures.targets import Targets
-from lightcube.planning import feasibility
 from lightcube.planning.consistency import advice, check
 from lightcube.planning.measured import is_measured
 from lightcube.planning.plan import Plan, narrower
-from lightcube.planning.prediction import MOST_DB, as_json
 from lightcube.planning.rehearsals import Rehearsals
+from lightcube.scoring.metrics import FAIR_DB, grain_word, nearness
+from lightcube.wording import counted, in_ev
 
 if TYPE_CHECKING:
     from lightcube.planning.order import Order
 
-#: A picture below this PSNR, dB, is hardly recognised.
-POOR_DB = 25.0
-
-
-def table(planned: Plan) -> list[str]:
-    """Aligned lines: how full the cube is, what contradicts itself, and where all stands on a stage."""
-    full = (
-        _contradictions(check(planned.targets, planned.grid)) if is_measured(planned.targets.rig, planned.grid) else []
-    )
-    return full if planned.stage is None else [*full, *([""] if full else []), *_places(planned.stage)]
-
-
-def _contradictions(facts: dict[str, Any]) -> list[str]:
-    totals = facts["moments"]
-    off = f"{totals['across']:.1%} of the width" + f", {totals['down']:.1%} of the height" * (
-        facts["elevation_deg"] != 0
-    )
-    conflicts = len({(each["row"]) for each in facts["row_conflicts"]})
-    rows = {
-        "load": f"{facts['load']:.1f}, well up to {facts['load_limit']:g}",
-        "mirrored pairs": len(facts["mirrored"]) or "none",
-        "same pictures": len(facts["duplicates"]) or "none",
-        "white rows": sum(last - first + 1 for runs in facts["white_rows"].values() for first, last in runs) or "none",
-        "row conflicts": f"in {conflicts} of {facts['rows']} rows" if conflicts else "none",
-        "totals differ": f"{totals['total']:.0%} (a solid's shadows: 5% at most); margin and lamp take it up",
-        "centroids": f"off by {off}",
-    }
-    return [f"{name:<16}{value}" for name, value in rows.items()]
-
-
-def _places(stage: Stage) -> list[str]:
-    """A line for each picture of a stage."""
-    heads = f"{'picture':>20} {'screen':>12} {'stop':>5} {'angle':>8} {'pixels':>11} {'through cube':>13}"
-    lines = [f"{heads} {'voxels a pixel':>15}  lamps"]
-    for each in feasibility.facts(stage)["per_picture"]:
-        where = f"{each['name'][:20]:>20} {each['screen'][:12]:>12} {each['stop']:>5} {each['angle_deg']:>8.2f}"
-        seen = f"{each['beams_in_cube']:>13.0%} {each['pixel_in_voxels']:>15.2f}"
-        lines.append(f"{where} {each['columns']:>4} x {each['rows']:<4} {seen}  {', '.join(each['lamps'])}")
-    return lines
-
-
-def facts(planned: Plan, order: "Order | None") -> dict[str, Any]:
-    """What can be known before solving, for JSON; `order` is the best one, if it was looked for."""
-    targets = planned.targets
-    known: dict[str, Any] = {
-        "names": list(targets.names),
-        "angles_deg": [float(angle_deg) for angle_deg in targets.angles_deg],
-        "voxels": list(planned.grid.shape),
-        "picture_width": _picture_width(planned),
-        "hold_deg": planned.recipe.hold_deg,
-        "predicted": as_json(planned.prediction),
-        "shift": planned.shift,
-        "order": None
-        if order is None
-        else {"best": [int(picture) for picture in order.pictures], "gain_db": order.best_db - order.given_db},
-        "impossible": planned.impossible,
-        "doubtful": planned.doubtful,
-    }
-    if is_measured(targets.rig, planned.grid):
-        known |= check(targets, planned.grid)
-    return known if planned.stage is None else known | feasibility.facts(planned.stage)
+#: An order that gains so many dB is worth a word.
+_WORTH_DB = 1.0
+#: So many pictures are named; and so many characters of a name.
+_NAMED, _LONGEST = 5, 40
+#: What is said of grain.
+_FROM_NEAR = {
+    "smooth": "the light is smooth, from near by too",
+    "fine": "from near by the light inside pixels is a little uneven",
+    "coarse": "from near by the light inside pixels is uneven: look from further away, or use a larger --grain",
+}
 
 
 def in_short(planned: Plan, order: "Order | None") -> list[str]:
     """Lines that `solve` says before it starts; `order` is the best one, if it was looked for."""
-    nz, ny, nx = planned.grid.shape
-    hold_deg = planned.recipe.hold_deg
-    lines = [_wanted(planned), f"cube of {nx} x {ny} x {nz} voxels{expected(planned)}"]
-    if hold_deg:
-        angles = len(held(planned.targets.rig, planned.recipe, planned.grid)) // len(planned.targets)
-        lines.append(f"held {hold_deg:g} degrees either way: {angles} angles a picture, and as many times the work")
+    hold_deg, rig = planned.recipe.hold_deg, planned.targets.rig
+    held = f"; each picture stands for {hold_deg:.2g} degrees to either side of its stop" if hold_deg else ""
     return [
-        *lines,
+        _wanted(planned),
+        f"cube of {voxels(planned.grid.shape)} voxels, {planned.grid.size_mm[2]:.3g} mm wide{held}",
+        *expected(planned),
         *gain(planned, order),
-        *planned.doubtful,
-        *unsampled(planned.targets.rig, "thin" if planned.recipe.beams.is_thin else "area"),
+        *(f"doubtful: {sentence}" for sentence in planned.doubtful),
+        *unsampled(rig, "thin" if planned.recipe.beams.is_thin else "area"),
     ]
+
+
+def voxels(shape: tuple[int, int, int]) -> str:
+    """``(z, y, x)`` as people say it: across, in depth, upwards."""
+    return " x ".join(str(count) for count in reversed(shape))
 
 
 def _wanted(planned: Plan) -> str:
@@ -113,8 +64,7 @@ def _wanted(planned: Plan) -> str:
         "lamp": len(rig.lamps.names),
         "stop": len(planned.stage.stops_deg),
     }
-    views = f", {len(rig.views)} views" if len(rig.views) != len(rig) else ""
-    return ", ".join(f"{count} {name}{'s' * (count != 1)}" for name, count in counts.items()) + views
+    return ", ".join(counted(count, name) for name, count in counts.items())
 
 
 def unsampled(rig: Rig, light: Beams) -> list[str]:
@@ -125,80 +75,122 @@ def unsampled(rig: Rig, light: Beams) -> list[str]:
     return [f"thin beams do not mind the size of lamp {', '.join(map(repr, names))}: leave out --light thin"]
 
 
-def expected(planned: Plan) -> str:
-    """What is predicted, in words that go on with a sentence."""
-    prediction = planned.prediction
-    if not prediction.is_known:
-        told = planned.impossible or is_measured(planned.targets.rig, planned.grid)
-        return "" if told else "; how good they become was not measured in rooms like this"
-    more = " or more" if prediction.psnr_mean >= MOST_DB else ""
-    by = " by method display" * (planned.recipe.method != "display")
-    return f", PSNR of {prediction.psnr_mean:.0f} dB{more} expected (worst {prediction.psnr_min:.0f}){by}"
+def expected(planned: Plan) -> list[str]:
+    """What the pictures will be like, as far as it is known."""
+    prediction, by = planned.prediction, " (by method display)" * (planned.recipe.method != "display")
+    if prediction.is_known:
+        return [f"{judged(planned.targets.names, prediction.psnr, 'will be')}{by}"]
+    told = planned.impossible or is_measured(planned.targets.rig, planned.grid)
+    return [] if told else ["how good the pictures become was not measured in rooms like this"]
+
+
+def judged(names: Sequence[str], psnr: Iterable[float], are: str) -> str:
+    """How near pictures come, in words, the nearest first, and which of them are no good."""
+    kinds: dict[str, list[str]] = {}
+    for decibels, name in sorted(zip(map(float, psnr), names, strict=True), key=lambda each: -each[0]):
+        kinds.setdefault(nearness(decibels), []).append(name)
+    label, one = "wrong" if "poor" in kinds else "well", "is" if are == "are" else are
+    many = counted(len(names), "picture")
+    if len(kinds) == 1:
+        (kind,) = kinds
+        return f"{label}: all {many} {are} {kind}" if len(names) > 1 else f"{label}: it {one} {kind}"
+    said = [
+        f"{len(those)} {are if len(those) > 1 else one} {kind}{_those(kind, those)}" for kind, those in kinds.items()
+    ]
+    return f"{label}: of {many} {', '.join(said[:-1])} and {said[-1]}"
+
+
+def _those(kind: str, names: Sequence[str]) -> str:
+    """Which pictures are fair or poor, the worst first."""
+    if kind not in ("fair", "poor"):
+        return ""
+    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+    return f" ({', '.join(name[:_LONGEST] for name in reversed(names[-_NAMED:]))}{more})"
 
 
 def gain(planned: Plan, order: "Order | None") -> list[str]:
     """What another order would gain, or which one is used."""
     if order is None:
         return []
-    better = order.best_db - order.given_db
     if planned.order is not None:
-        return [f"order (worth {better:.1f} dB in a draft): {', '.join(planned.targets.names)}"]
-    return [f"another order would gain about {better:.1f} dB: --order best"] if better >= 1 else []
+        return [f"order: {', '.join(planned.targets.names)}"]
+    better = order.best_db - order.given_db
+    less = 1 - 10 ** (-better / 20)
+    return (
+        [f"better: in another order pictures come nearer, by {less:.0%} (--order best)"] if better >= _WORTH_DB else []
+    )
 
 
-def what_to_change(planned: Plan, small: Rehearsals) -> list[str]:
-    """Sentences on what is wrong with the pictures, and where the prediction is poor, what would help and how much.
+def is_poor(planned: Plan) -> bool:
+    """Whether poor pictures are expected."""
+    return planned.prediction.is_known and planned.prediction.psnr_mean < FAIR_DB
+
+
+def what_to_change(planned: Plan, remedies: Mapping[str, float]) -> list[str]:
+    """Sentences on what is wrong with the pictures, and on what would help, by the PSNR that it brings.
 
     None of a stage: they name options that it leaves no room for.
     """
     if planned.stage is not None:
         return []
-    found = advice(check(planned.targets, planned.grid))
-    if planned.prediction.is_known and planned.prediction.psnr_mean < POOR_DB:
-        return [*found, *_remedies(planned, small)]
-    return [sentence for sentence in found if not sentence.startswith("The load")]
+    found = advice(check(planned.targets, planned.grid), crowded=is_poor(planned))
+    return [*(f"wrong: {sentence}" for sentence in found), *_helps(remedies)]
 
 
-def _remedies(planned: Plan, small: Rehearsals) -> list[str]:
-    """What three changes would bring, predicted."""
+def _helps(remedies: Mapping[str, float]) -> list[str]:
+    """What makes pictures better than poor, the best first; several changes together where none is enough."""
+    enough = [each for each in sorted(remedies.items(), key=lambda each: -each[1]) if each[1] >= FAIR_DB]
+    if remedies and not enough:
+        return [f"try: several of these together, one is not enough: {', '.join(remedies)}"]
+    return [f"try: {change}, then they will be {nearness(decibels)}" for change, decibels in enough]
+
+
+def remedies(planned: Plan, small: Rehearsals) -> dict[str, float]:
+    """The PSNR that three changes would bring where poor pictures are expected on a turntable, dB, predicted."""
+    if planned.stage is not None or not is_poor(planned):
+        return {}
     rig, lamps = planned.targets.rig, planned.targets.rig.lamps
-    power = float(lamps.most.max())
-    now = _picture_width(planned)
-    tried: list[str] = []
-
-    def tell(change: str, targets: Targets) -> None:
-        tried.append(f"{change}: {small.predict(targets, planned.grid, planned.recipe).psnr_mean:.0f} dB")
-
+    power, now = float(lamps.most.max()), planned.picture_width
+    changed = {}
     every_second = np.arange(0, len(planned.targets), 2)
     if len(every_second) > 1:
-        tell(f"{len(every_second)} of the pictures", planned.targets.take(every_second))
-    tell(f"--picture-width {0.7 * now:.2g}", narrower(planned, 0.7 * now))
+        changed[f"{len(every_second)} of the pictures"] = planned.targets.take(every_second)
+    changed[f"--picture-width {0.7 * now:.2g}"] = narrower(planned, 0.7 * now)
     most = min(16 * power, POWER_MOST)
     if not lamps.are_fixed and most > power:
         stronger = replace(rig, lamps=replace(lamps, most=np.full(len(lamps.names), most)))
-        tell(f"--lamp-max {most:g}", replace(planned.targets, rig=stronger))
-    return [f"Hardly recognisable pictures are expected; what would come of {'; of '.join(tried)}."] if tried else []
+        changed[f"--lamp-max {most:g} ({in_ev(most)})"] = replace(planned.targets, rig=stronger)
+    return {
+        change: small.predict(targets, planned.grid, planned.recipe).psnr_mean for change, targets in changed.items()
+    }
 
 
-def _picture_width(planned: Plan) -> float:
-    """Width of a plan's pictures as a part of the cube's."""
-    rig, grid = planned.targets.rig, planned.grid
-    return rig.picture_shape[1] * rig.views.pixel_in(grid)[1] / grid.shape[1]
-
-
-def needed(needs: dict[str, Any]) -> str:
-    """What a job will need, in words."""
-    units = f"in {needs['units']} units" if needs["units"] > 1 else "in one unit"
+def needed(needs: dict[str, Any], *, verbose: bool = False) -> str:
+    """What a job will need, in words; with how many passes and units if `verbose`."""
     memory = f"{needs['memory'] / 1e9:.2g} GB of memory ({needs['free_memory'] / 1e9:.2g} GB are free)"
+    parts = f", in {counted(needs['units'], 'unit')}" if verbose or needs["units"] > 1 else ""
     if needs["seconds"] is None:
-        return f"{memory}, {units}"
-    return f"{memory}, {units}, at most {needs['passes']:.0f} passes, about {duration(needs['seconds'])}"
+        return f"{memory}{parts}"
+    passes = f", at most {counted(round(needs['passes']), 'pass')}" if verbose else ""
+    return f"{memory}{parts}{passes}, about {duration(needs['seconds'])}"
 
 
 def holds(made: Published) -> str:
     """How much of a published cube is finished, and what the rest is."""
     rest = "the rest is as far as it was solved, or what it would start from; solve --overwrite goes on with it"
-    return f"{made.path} holds {made.done} of {made.units} units, {rest}"
+    return f"{made.path} holds {made.done} of {counted(made.units, 'unit')}, {rest}"
+
+
+def solved(solution: Solution) -> list[str]:
+    """How good a cube is, how strong a lamp it takes, and what it looks like from near by."""
+    cube, scores = solution.cube, solution.cube.scores
+    lines = [judged(cube.names, (view["psnr"] for view in scores["pictures"]), "are")]
+    power = float(cube.powers.max())
+    if power != 1:
+        lines.append(
+            f"lamp: at most {power:.3g} times as strong as one that makes the bare wall white ({in_ev(power)})"
+        )
+    return [*lines, _FROM_NEAR[grain_word(scores["grain_rms"])]]
 
 
 def duration(seconds: float) -> str:

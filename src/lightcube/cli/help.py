@@ -1,0 +1,72 @@
+"""How a command's help is laid out: options in groups, most used first, and examples at the end, in plain text."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from typer.core import TyperCommand
+
+#: The groups in the order in which they are shown: beside what may be said of a cube, where it goes and who computes.
+GROUPS = ("Output", "Pictures", "Geometry", "Lamp", "Material", "Quality", "Machine")
+#: What a command's own options stand under that are in no group.
+_OTHERS = "Options"
+
+#: By command: what one might type, and what it is for.
+EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
+    "solve": [
+        ("lightcube solve photos -o cube.zarr", "a folder of photographs, all else is chosen"),
+        ("lightcube solve photos -o cube.zarr --n 64 --quality draft", "smaller and quicker, to try"),
+        ("lightcube solve photos -o cube.zarr --size-mm 60 --lamp-max 4", "60 mm wide, for a weaker lamp"),
+        ("lightcube solve photos -o cube.zarr --dry-run", "how much memory and time it takes"),
+    ],
+    "check": [
+        ("lightcube check photos", "how good they will be, and what would help"),
+        (
+            "lightcube check photos --sheet wanted.png --focus 0.5,0.3",
+            "look at what will be cropped, a little higher up",
+        ),
+        ("lightcube check photos --n 64 --lamp-max 4", "the same of a smaller cube and a weaker lamp"),
+    ],
+    "score": [
+        ("lightcube score cube.zarr", "how near each picture comes"),
+        ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
+        ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
+    ],
+    "draw": [
+        ("lightcube draw cube.zarr -o room.png", "the room, at the cube's first stop"),
+        ("lightcube draw room.toml -o room.svg", "a stage from above and from the side"),
+    ],
+}
+
+
+class Laid(TyperCommand):
+    """A command whose help has groups and examples."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write arguments, options by groups, and last how help is asked for."""
+        parameters = self.get_params(ctx)
+        about: dict[str, list[tuple[str, str]]] = {}
+        for parameter in parameters:
+            record = parameter.get_help_record(ctx)
+            if record is not None:
+                argument = parameter.param_type_name == "argument"
+                about.setdefault("Arguments" if argument else group_of(parameter), []).append(record)
+        asked = about.get(_OTHERS, [])[-1:]  # --help itself is the last of all
+        del about.get(_OTHERS, asked)[-1:]
+        shown = [name for name in ("Arguments", _OTHERS, *GROUPS) if about.get(name)]
+        about.setdefault(shown[-1], []).extend(asked)
+        for name in shown:
+            with formatter.section(name):
+                formatter.write_dl(about[name])
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        """Write examples, each as it is typed."""
+        examples = EXAMPLES.get(str(self.name), ())
+        if examples:
+            with formatter.section("Examples"):
+                for typed, said in examples:
+                    formatter.write(f"  # {said}\n  {typed}\n")
+
+
+def group_of(parameter: Any) -> str:
+    """The group that an option stands in."""
+    return getattr(parameter, "rich_help_panel", None) or _OTHERS
