@@ -31,6 +31,7 @@ VECTORS = {name: np.ones((2, 3)) for name in ("origins_mm", "column_steps_mm", "
 GIVEN: dict[str, dict[str, Any]] = {
     "Cube": {"extinction": CUBE.extinction, "grid": GRID, "rig": RIG},
     "Grid": {"shape": (3, 5, 7)},
+    "Label": {"title": "a"},
     "Lamp": {"name": "sun", "direction": (1, 0, -0.5)},
     "Light": {},
     "Mat": {},
@@ -69,7 +70,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "dot_test": {"operator": lc.Projector(GRID, RIG)},
     "fit": {"pictures": PICTURES, "rig": RIG},
     "load": {"path": "no.zarr"},
-    "page": {"cube": CUBE, "title": "a"},
+    "page": {"cube": CUBE, "label": "a"},
     "plan": {"pictures": PICTURES, "n": 6, "picture_width": 0.5},
     "film": {"cube": CUBE},
     "play": {"cube": CUBE},
@@ -111,6 +112,8 @@ ABSURD: dict[str, Any] = {
 #: Of what is absurd elsewhere, what some arguments may be: by function, argument and value, ``*`` for any.
 SENSIBLE = {
     *((name, argument, "a word") for name in GIVEN for argument in ("name", "title", "screen", "stop_reason")),
+    *(("Label", argument, "a word") for argument in ("by", "note", "picture")),
+    ("page", "label", "a word"),
     *((name, argument, value) for name in ("Targets", "Cube", "Pictures") for argument, value in [("names", "words")]),
     ("Shot", "lamps", "words"),
     ("Cube", "scores", "a table"),

@@ -66,13 +66,21 @@ def visit(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
     tabs = []
 
     def go(
-        name: str = "turntable", *, width: int = 920, height: int = 440, details: bool = False, **context: Any
+        name: str = "turntable",
+        *,
+        width: int = 920,
+        height: int = 440,
+        details: bool = False,
+        untouched: bool = False,
+        **context: Any,
     ) -> Any:
         context.setdefault("device_scale_factor", 0.25)  # fewer pixels: the room may be drawn in software
         tab, heard = opened(browser, pages[name], width=width, height=height, **context)
         tabs.append((tab, heard))
         until(tab, CUBE)
         rested(tab)
+        if not untouched:  # else it turns by itself after a while
+            tab.evaluate("document.getElementById('lightcube').dispatchEvent(new PointerEvent('pointerdown'))")
         if details:
             tab.keyboard.press("d")
             rested(tab)

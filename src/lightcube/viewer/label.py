@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 from lightcube.errors import InputError, encodable
+from lightcube.optics.checks import check_fields
 
 #: Letters that each part of a label may have.
 _MOST = {"title": 200, "by": 200, "note": 600, "picture": 200}
@@ -37,6 +38,7 @@ class Label:
     picture: str = ""
 
     def __post_init__(self) -> None:
+        check_fields(self)
         for each in fields(self):
             text, most = encodable(getattr(self, each.name)), _MOST[each.name]
             if len(text) > most:

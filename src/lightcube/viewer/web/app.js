@@ -47,7 +47,7 @@ export function mount(root, scene, cube, { compact = false } = {}) {
   app.loop = createLoop(show, rested);
   view.aim(turning.angle, app.chosen, false);
   const ends = [
-    compact ? () => {} : beckon(app),
+    compact ? () => {} : beckoning(app),
     listenToTheme(app, compact),
     listenToKeys(compact ? root : document, app.does),
     listenToRoom(app, compact),
@@ -86,17 +86,23 @@ function nothingChosen() {
   return { place: 0, row: null, column: null, whole: false, thin: false, lampsEye: false, details: false, dark: null };
 }
 
-/** Turn to the next stop, once, so that one sees what this is; whoever touches anything before is not disturbed. */
-function beckon({ root, turning, loop }) {
+/**
+ * Turn to the next stop, once, some time after all was drawn, so that one sees what this is; whoever touches anything
+ * before is not disturbed. Returns what ends it.
+ */
+function beckoning(app) {
+  const { root, turning } = app;
   const touches = ["pointerdown", "keydown", "wheel"];
+  let timer = 0;
   const go = () => {
     end();
     if (turning.calm || turning.moving || turning.stops.length < 2 || turning.angle !== turning.stops[0]) return;
     turning.glideTo(turning.stops[1], BECKONING);
-    loop.ask();
+    app.loop.ask();
   };
-  const timer = setTimeout(go, BECKONS_AFTER);
+  app.drawn = () => (timer = setTimeout(go, BECKONS_AFTER));
   function end() {
+    app.drawn = null;
     clearTimeout(timer);
     for (const touch of touches) root.removeEventListener(touch, end, true);
   }
@@ -282,6 +288,8 @@ function showing(app) {
   }
 
   function rested() {
+    app.drawn?.();
+    app.drawn = null;
     app.root.dataset.drawn = "";
     const now = momentOf(scene, turning, view.exposures, chosen);
     showCards(now);
