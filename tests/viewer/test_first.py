@@ -198,8 +198,9 @@ def test_the_wall_stands_wide_and_faces_the_eye(evaluate: Open) -> None:
 
 def test_the_lamps_eye_sees_the_picture(evaluate: Open) -> None:
     """Through the glass along the lamp's light each pixel has the colour that its thin beam brings to the wall."""
-    cube = turning()
-    for where in (STOPS[0], 95.0):
+    level = turntable(Grid((6, 8, 10), 1.3), [0.0, 70.0], picture_shape=(6, 8))
+    glass = np.random.default_rng(5).uniform(0, 0.1, (3, 6, 8, 10)).astype(np.float32)
+    for cube, where in ((turning(), STOPS[0]), (turning(), 95.0), (Cube(glass, Grid((6, 8, 10), 1.3), level), 70.0)):
         seen = evaluate(MODULES, SEES, {**given(cube), "angle": where})
         found = np.array(seen["found"], float).reshape(seen["rows"], seen["columns"], 3)
         off = np.abs(found - right(cube, where, thin=True)[0])

@@ -16,21 +16,27 @@ const [LAMPS_SIGHT, FAR_FIELD] = [0.72, 0.8];
 
 const RADIANS = Math.PI / 180;
 
+/** The same of an eye that is where a lamp is, which may be anywhere. */
+const OF_LAMPS = [-89.9, 89.9];
+
 /**
  * The orbit that a described camera is on.
  * @param {{eye: number[], target: number[], field_deg: number}} described
- * @returns {{azimuth: number, height: number, distance: number, target: number[], field_deg: number}} angles in degrees
+ * @param {number[]} [bounds] of the eye's height, degrees
+ * @returns {{azimuth: number, height: number, distance: number, target: number[], field_deg: number, bounds: number[]}}
+ *   angles in degrees
  */
-export function orbitFrom({ eye, target, field_deg }) {
+export function orbitFrom({ eye, target, field_deg }, bounds = [LOWEST, HIGHEST]) {
   const way = sub(eye, target);
   const distance = norm(way);
   const azimuth = Math.atan2(way[1], way[0]) / RADIANS;
-  return limited({ azimuth, height: Math.asin(way[2] / distance) / RADIANS, distance, target, field_deg });
+  return limited({ azimuth, height: Math.asin(way[2] / distance) / RADIANS, distance, target, field_deg, bounds });
 }
 
 /** The orbit with its height within bounds: the eye stays above the floor, and up is up in its picture. */
 function limited(orbit) {
-  return { ...orbit, height: Math.min(Math.max(orbit.height, LOWEST), HIGHEST) };
+  const [lowest, highest] = orbit.bounds;
+  return { ...orbit, height: Math.min(Math.max(orbit.height, lowest), highest) };
 }
 
 /** Where the eye is. */
@@ -96,19 +102,13 @@ export function lampsOrbit(scene, exposures, room) {
   const lamp = room.lamps[lampsLighting(scene, exposures[lit])[0] ?? 0];
   const high = Math.max(norm(screen.down) * screen.pixels[0], norm(screen.right) * screen.pixels[1]);
   if (!lamp.parallel) {
-    const distance = norm(sub(lamp.place, middle));
-    const seen = { ...orbitFrom({ eye: lamp.place, target: middle, field_deg: 1 }) };
-    return { ...seen, field_deg: widthOf(high, distance) };
+    const half = (high * ASPECT) / (2 * LAMPS_SIGHT * norm(sub(lamp.place, middle)));
+    return orbitFrom({ eye: lamp.place, target: middle, field_deg: (2 * Math.atan(half)) / RADIANS }, OF_LAMPS);
   }
-  const distance = high / (2 * LAMPS_SIGHT * Math.tan((FAR_FIELD / 2) * RADIANS)) * ASPECT;
+  const distance = (high * ASPECT) / (2 * LAMPS_SIGHT * Math.tan((FAR_FIELD / 2) * RADIANS));
   const ahead = unit(scaled(lamp.place, -1));
   const target = sub(middle, scaled(ahead, dot(middle, ahead))); // where its light passes the cube's middle
-  return orbitFrom({ eye: sub(target, scaled(ahead, distance)), target, field_deg: FAR_FIELD });
-}
-
-/** The field, degrees, in which something so high has the lamp's part of the sight. */
-function widthOf(high, distance) {
-  return (2 * Math.atan((high * ASPECT) / (2 * LAMPS_SIGHT * distance))) / RADIANS;
+  return orbitFrom({ eye: sub(target, scaled(ahead, distance)), target, field_deg: FAR_FIELD }, OF_LAMPS);
 }
 
 /** An orbit between two, the way that is shorter round the cube; what is seen of the target grows evenly. */
@@ -122,6 +122,7 @@ export function between(one, other, part) {
     distance: Math.exp(mixed(sight(one), sight(other))) / Math.tan((field_deg / 2) * RADIANS),
     target: one.target.map((each, axis) => mixed(each, other.target[axis])),
     field_deg,
+    bounds: other.bounds,
   };
 }
 
