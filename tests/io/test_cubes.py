@@ -399,7 +399,7 @@ def test_a_file_without_our_metadata_is_no_cube(tmp_path: Path, suffix: str, doc
         (put("lamp_powers", 0, 0, value="bright"), r"lamp_powers\.0\.0"),
         (put("lamp_powers", value=[[1.0, 1.0, 1.0]]), "lamp powers"),
         (put("lamp_powers", value=[[1.0, 1.0, 1.0], [1.0]]), "lamp_powers|inhomogeneous"),
-        (put("names", value=["one"]), "names"),
+        (put("names", value=["one"]), "with 1 name"),
         (put("transfer", value="gamma"), "transfer"),
         (put("status", value="done"), "status"),
         (put("more", value=1), "more"),
