@@ -126,6 +126,16 @@ def test_pictures_that_flow_into_each_other_turn_evenly() -> None:
     assert "flow into each other" in film.said
 
 
+def test_unlike_pictures_rest_however_softly_one_becomes_the_other() -> None:
+    """The wall is dark on one side at one stop, on the other at the other; nothing jumps on the way."""
+    rig = lc.turntable(GRID, [0.0, 180.0], elevation_deg=20.0, picture_shape=(4, 6))
+    extinction = np.zeros((3, *GRID.shape), np.float32)
+    extinction[...] = np.linspace(0.1, 0, GRID.shape[1])[:, None]
+    film = lc.film(lc.Cube(extinction, GRID, rig), picture_only=True)
+    assert "rests for 1 s" in film.said
+    assert shows.flickers(lc.Cube(extinction, GRID, rig), np.arange(0, 360, 3.0), shows.Look(True)) <= 0.03
+
+
 def test_where_nothing_turns_the_one_stop_fades_in_and_out() -> None:
     sun, wall = lc.Lamp("sun", (1, 0, -0.2)), lc.Screen("wall", (60, 0, -9), (20, 16), 4.0)
     stage = lc.Stage(GRID, (sun,), (wall,), (lc.Shot("a", "wall", ("sun",)),), cube_turns=False)

@@ -28,6 +28,8 @@ Angles = NDArray[np.float64]
 FPS = 30.0
 #: Small frames are so many times less wide and high.
 _LESS = 3
+#: Stops whose pictures flow into each other differ in so much of the wall at most.
+_ALIKE = 0.15
 #: Rows and columns of a room's frames where nothing is said, and seconds that the table turns between two stops.
 _ROOM, _TURN_S = (540, 960), 0.7
 
@@ -177,8 +179,9 @@ def filmed(
         As `lightcube.drawing.shows` has them: the wanted picture beside each, all screens side by side.
     """
     beside = screens or len(cube.rig.screens.names) > 1
-    share = shows.flickers(cube, turned, look) if len(turned) > 1 and not even else 0.0
-    if even or (len(turned) > 1 and share <= Flicker.MUCH):
+    may_flow = len(turned) > 1 and not even and shows.unlike(cube, look) <= _ALIKE
+    share = shows.flickers(cube, turned, look) if may_flow else 1.0
+    if even or share <= Flicker.MUCH:
         if style.view == "room":
             steady = in_room(cube, style, turned)
             return steady if even else replace(steady, said=_flows(share))

@@ -152,6 +152,15 @@ def flickers(cube: Cube, angles_deg: NDArray[np.float64], look: Look) -> float:
     return float(np.mean(shares))
 
 
+def unlike(cube: Cube, look: Look) -> float:
+    """How much of a wall jumps from a stop's pictures to the next stop's, 0 to 1: the mean round the turn."""
+    stops = np.unique(cube.angles_deg)
+    flicker = Flicker()
+    for _ in flicker.watched(of_screens(cube, np.append(stops, stops[:1]), look).pictures, cube.transfer):
+        pass
+    return flicker.share
+
+
 def resting(cube: Cube, show: Show, course: Course) -> Show:
     """Each picture of a show, fading in, resting, and fading out into the dark: 8-bit display levels."""
     frames = dimmed(cast("Iterator[Picture]", show.pictures), course, cube.transfer)
