@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.drawing.sheet import MOST, triple
+from lightcube.drawing.sheet import MOST, difference, pair
 from lightcube.drawing.standing import Standing, corners_of, drawn, extent, standing, table_of
 from lightcube.drawing.svg import hull
 from lightcube.errors import InputError
@@ -103,7 +103,8 @@ def sheet_plot(cube: Cube, targets: Targets | None = None) -> "Figure":
     panels = figure.subplots(lines, across, squeeze=False).ravel()
     for axes, view in zip(panels, chosen, strict=False):
         gap = np.full((max(1, rows // 32), columns, 3), 255, np.uint8)
-        above, middle, below = triple(shown[view], wanted, int(view))
+        above, middle = pair(shown[view], wanted, int(view))
+        below = difference(shown[view], wanted, int(view))
         axes.imshow(np.concatenate([above, gap, middle, gap, below]), interpolation="nearest")
         score = scores[view]
         axes.set_title(

@@ -13,6 +13,8 @@ from lightcube.pictures.targets import Targets
 #: Shorter side that a picture is enlarged to, by whole pixels; gap and line height in pixels.
 _SIDE, _GAP, _LINE = 128, 8, 16
 _PAPER, _INK = (250, 250, 248), (40, 40, 40)
+#: Level of pixels that nobody cares about.
+_FREE = 128
 #: Views shown at most: of more, so many evenly chosen ones.
 MOST = 32
 
@@ -52,19 +54,28 @@ def contact_sheet(shown: NDArray[np.float32], targets: Targets, psnr: list[float
         label = f"{targets.names[view]}"[:16]
         draw.text((left, top), label, _INK, font)
         draw.text((left, top + _LINE - 3), f"{targets.angles_deg[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
-        for index, picture in enumerate(triple(shown[view], targets, int(view))):
+        for index, picture in enumerate(pair(shown[view], targets, int(view))):
             tile = Image.fromarray(picture).resize((columns * scale, rows * scale), Image.Resampling.NEAREST)
             sheet.paste(tile, (left, top + 2 * _LINE + index * (rows * scale + 2)))
     return np.asarray(sheet)
 
 
-def triple(shown: NDArray[np.float32], targets: Targets, view: int) -> list[NDArray[np.uint8]]:
-    """Wanted, shown and difference of one view, 8-bit RGB; grey where there is nothing wanted."""
-    wanted, weight = targets.pictures[view], targets.weight[view][..., None] > 0
-    difference = 0.5 + encode(shown, targets.transfer) - encode(wanted, targets.transfer)
-    eighth = np.clip(np.rint(difference * 255), 0, 255).astype(np.uint8)
-    pictures = [to_uint8(wanted, targets.transfer), to_uint8(shown, targets.transfer), eighth]
-    return [np.broadcast_to(np.where(weight, p, 128), (*p.shape[:2], 3)).astype(np.uint8) for p in pictures]
+def pair(shown: NDArray[np.float32], targets: Targets, view: int) -> list[NDArray[np.uint8]]:
+    """Wanted and shown of one view, 8-bit RGB; grey where there is nothing wanted."""
+    weighed = targets.weight[view][..., None] > 0
+    levels = [to_uint8(light, targets.transfer) for light in (targets.pictures[view], shown)]
+    return [_as_colours(np.where(weighed, each, _FREE)) for each in levels]
+
+
+def difference(shown: NDArray[np.float32], targets: Targets, view: int, gain: float = 1) -> NDArray[np.uint8]:
+    """How far display values are off what was wanted, so many times as large, around mid grey: 8-bit RGB."""
+    off = gain * (encode(shown, targets.transfer) - encode(targets.pictures[view], targets.transfer))
+    levels = np.clip(np.rint((0.5 + off) * 255), 0, 255)
+    return _as_colours(np.where(targets.weight[view][..., None] > 0, levels, _FREE))
+
+
+def _as_colours(levels: NDArray[Any]) -> NDArray[np.uint8]:
+    return np.broadcast_to(levels, (*levels.shape[:2], 3)).astype(np.uint8)
 
 
 def beside_targets(
