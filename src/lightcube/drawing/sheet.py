@@ -1,5 +1,6 @@
-"""Contact sheets: wanted, shown and the difference of every view, as one picture."""
+"""Contact sheets: every picture as it is shown, beside what was wanted; and pictures beside each other in movies."""
 
+import math
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -7,20 +8,29 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from lightcube.drawing.poster import in_line
 from lightcube.optics.transfer import encode, to_uint8
 from lightcube.pictures.targets import Targets
 
-#: Shorter side that a picture is enlarged to, by whole pixels; gap and line height in pixels.
-_SIDE, _GAP, _LINE = 128, 8, 16
-_PAPER, _INK = (250, 250, 248), (40, 40, 40)
+#: Longer side that pictures are enlarged to by whole pixels, and the longest one that is left as it is; pixels.
+_SIDE, _LONGEST = 240, 400
+#: What stays free around pairs, and between the two of a pair; the least width of a pair, for its name.
+_GAP, _BETWEEN, _NARROWEST = 44, 6, 230
+#: Letters of title, note, names and figures, pixels; each line of them is so many times as high.
+_TITLE, _NOTE, _NAME, _FIGURE, _LINE = 54, 26, 28, 22, 1.35
+#: Width of a sheet over its height, about: that of paper.
+_PAPER_SHAPE = math.sqrt(2)
+_PAPER, _INK, _QUIET = (252, 251, 248), (35, 38, 41), (104, 108, 112)
 #: Level of pixels that nobody cares about.
 _FREE = 128
 #: Views shown at most: of more, so many evenly chosen ones.
 MOST = 32
 
 
-def contact_sheet(shown: NDArray[np.float32], targets: Targets, psnr: list[float]) -> NDArray[np.uint8]:
-    """Draw wanted, shown and difference of each view, with its name and PSNR (dB).
+def contact_sheet(
+    shown: NDArray[np.float32], targets: Targets, psnr: list[float], title: str = ""
+) -> NDArray[np.uint8]:
+    """Draw each picture as it is shown beside what was wanted, with its name, angle and PSNR (dB).
 
     Parameters
     ----------
@@ -30,34 +40,75 @@ def contact_sheet(shown: NDArray[np.float32], targets: Targets, psnr: list[float
         What was wanted.
     psnr
         One figure per view.
+    title
+        Stands above; empty = how many pictures there are.
 
     Returns
     -------
-    ``(row, column, 3)`` 8-bit sRGB. The difference of display values is drawn around mid grey. Of more than 32
-    views, 32 are shown.
+    ``(row, column, 3)`` 8-bit sRGB. Of more than 32 views, 32 are shown.
     """
     count = len(targets)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
-    rows, columns = targets.rig.picture_shape
-    scale = max(1, round(_SIDE / min(rows, columns)))
-    cell_height, cell_width = rows * scale * 3 + 2 * _LINE + 2 * _GAP, max(columns * scale, 96) + _GAP
-    per_line = max(1, min(len(chosen), 1800 // cell_width))
-    lines = -(-len(chosen) // per_line)
-    per_line = -(-len(chosen) // lines)
-    sheet = Image.new("RGB", (per_line * cell_width + _GAP, lines * cell_height + _GAP + _LINE), _PAPER)
+    many = f"{count} picture{'s' * (count > 1)}" if len(chosen) == count else f"{len(chosen)} of {count} pictures"
+    note = "left what was wanted, right what the wall shows"
+    lines = (title, f"{many}: {note}") if title else (many, note)
+    tiles = [_pair_tile(pair(shown[view], targets, int(view)), targets, int(view)) for view in chosen]
+    said = [(targets.names[view], f"{targets.angles_deg[view]:.6g}°  ·  {psnr[view]:.1f} dB") for view in chosen]
+    return np.asarray(_laid_out(tiles, said, lines))
+
+
+def _pair_tile(levels: list[NDArray[np.uint8]], targets: Targets, view: int) -> Image.Image:
+    """Wanted and shown side by side, as wide and high as those of all other views; smaller ones stand in the middle."""
+    largest = targets.rig.picture_shape
+    rows, columns = (int(side) for side in targets.rig.stops.window[view])
+    wide, high = (round(side * _zoom(*largest)) for side in largest[::-1])
+    zoom = min(_zoom(rows, columns), wide / columns, high / rows)
+    zoom = math.floor(zoom) if zoom >= 1 else zoom
+    size = max(1, round(columns * zoom)), max(1, round(rows * zoom))
+    way = Image.Resampling.NEAREST if zoom >= 1 else Image.Resampling.LANCZOS
+    tile = Image.new("RGB", (max(2 * wide + _BETWEEN, _NARROWEST), high), _PAPER)
+    for number, picture in enumerate(levels):
+        image = Image.fromarray(np.ascontiguousarray(picture[:rows, :columns])).resize(size, way)
+        tile.paste(image, (number * (wide + _BETWEEN) + (wide - size[0]) // 2, (high - size[1]) // 2))
+    return tile
+
+
+def _zoom(rows: int, columns: int) -> float:
+    """How many times as large a picture is drawn: a whole number, unless it is too large."""
+    longest = max(rows, columns)
+    return max(1, round(_SIDE / longest)) if longest <= _LONGEST else _LONGEST / longest
+
+
+def _laid_out(tiles: list[Image.Image], said: list[tuple[str, str]], lines: tuple[str, str]) -> Image.Image:
+    """Tiles of one size with a name and figures below each, under a title and a note."""
+    count, (wide, high) = len(tiles), tiles[0].size
+    font = {size: ImageFont.load_default(size) for size in (_TITLE, _NOTE, _NAME, _FIGURE)}
+    name, figure, title, note = (math.ceil(_LINE * size) for size in (_NAME, _FIGURE, _TITLE, _NOTE))
+    top, step = title + note + 2 * _GAP, (wide + _GAP, high + name + figure + _GAP)
+
+    def unlike_paper(across: int) -> float:
+        """How far off the shape of paper a sheet is, and how much of its last line is empty."""
+        lines = -(-count // across)
+        shape = (across * step[0] + _GAP) / (lines * step[1] + top)
+        return abs(math.log(shape / _PAPER_SHAPE)) + 4 * (across * lines - count) / count
+
+    across = min(range(1, count + 1), key=unlike_paper)
+    width, height = across * step[0] + _GAP, -(-count // across) * step[1] + top
+    width = max(width, math.ceil(font[_NOTE].getlength(lines[1])) + 2 * _GAP)
+    sheet = Image.new("RGB", (width, height), _PAPER)
     draw = ImageDraw.Draw(sheet)
-    font = ImageFont.load_default(11)
-    draw.text((_GAP, 3), "from top to bottom: wanted, shown, difference (around grey; flat grey is free)", _INK, font)
-    for place, view in enumerate(chosen):
-        left = _GAP + place % per_line * cell_width
-        top = _GAP + _LINE + place // per_line * cell_height
-        label = f"{targets.names[view]}"[:16]
-        draw.text((left, top), label, _INK, font)
-        draw.text((left, top + _LINE - 3), f"{targets.angles_deg[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
-        for index, picture in enumerate(pair(shown[view], targets, int(view))):
-            tile = Image.fromarray(picture).resize((columns * scale, rows * scale), Image.Resampling.NEAREST)
-            sheet.paste(tile, (left, top + 2 * _LINE + index * (rows * scale + 2)))
-    return np.asarray(sheet)
+
+    def write(left: int, above: int, text: str, size: int, ink: tuple[int, int, int], most: int) -> None:
+        draw.text((left, above), in_line(text, font[size], most), ink, font[size])
+
+    write(_GAP, _GAP, lines[0], _TITLE, _INK, width - 2 * _GAP)
+    write(_GAP, _GAP + title, lines[1], _NOTE, _QUIET, width - 2 * _GAP)
+    for place, (tile, (called, figures)) in enumerate(zip(tiles, said, strict=True)):
+        left, above = _GAP + place % across * step[0], top + place // across * step[1]
+        sheet.paste(tile, (left, above))
+        write(left, above + high + 6, called, _NAME, _INK, wide)
+        write(left, above + high + name + 2, figures, _FIGURE, _QUIET, wide)
+    return sheet
 
 
 def pair(shown: NDArray[np.float32], targets: Targets, view: int) -> list[NDArray[np.uint8]]:
