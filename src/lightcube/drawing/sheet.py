@@ -53,7 +53,9 @@ def contact_sheet(
     note = "left what was wanted, right what the wall shows"
     lines = (title, f"{many}: {note}") if title else (many, note)
     tiles = [_pair_tile(pair(shown[view], targets, int(view)), targets, int(view)) for view in chosen]
-    said = [(targets.names[view], f"{targets.angles_deg[view]:.6g}°  ·  {psnr[view]:.1f} dB") for view in chosen]
+    said = [
+        (targets.names[view], f"{round(targets.angles_deg[view], 2):g}°  ·  {psnr[view]:.1f} dB") for view in chosen
+    ]
     return np.asarray(_laid_out(tiles, said, lines))
 
 

@@ -41,7 +41,7 @@ def opening(found: Findings, heading: Heading) -> str:
     lines.append(text("p", _what(found), class_="lead"))
     if heading.note:
         lines.append(text("p", heading.note, class_="dedication"))
-    stop = f"{cube.angles_deg[0]:.6g}°"
+    stop = f"{round(cube.angles_deg[0], 2):g}°"
     seen = image(
         found.room, f"The cube in its room, the table at {stop}, the wall showing {cube.names[0]}", exact=False
     )

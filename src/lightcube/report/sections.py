@@ -148,7 +148,7 @@ def _card(found: Findings, index: int) -> str:
     view = found.scores["pictures"][index]
     both = "".join(_image(found, index, kind) for kind in ("wanted", "shown"))
     how = mark(view["psnr"])
-    caption = f"{_named(found, index)} {text('span', how, class_=how)} at {view['angle_deg']:.6g}°"
+    caption = f"{_named(found, index)} {text('span', how, class_=how)} at {round(view['angle_deg'], 2):g}°"
     return figure(element("div", both, class_="pair"), caption, class_="card")
 
 
