@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lightcube.optics.cube import Cube
 from lightcube.report import verdict
 from lightcube.report.html import element, figure, image, sentences, text
 from lightcube.report.measuring import Findings
@@ -41,13 +42,17 @@ def opening(found: Findings, heading: Heading) -> str:
     lines.append(text("p", _what(found), class_="lead"))
     if heading.note:
         lines.append(text("p", heading.note, class_="dedication"))
-    stop = f"{round(cube.angles_deg[0], 2):g}°"
-    seen = image(
-        found.room, f"The cube in its room, the table at {stop}, the wall showing {cube.names[0]}", exact=False
-    )
-    caption = text("span", f"In its room, the table at {stop}: lamp, glass, and {cube.names[0]} on the wall.")
+    stop, there = f"{round(cube.angles_deg[0], 2):g}°", _first_shown(cube)
+    seen = image(found.room, f"The cube in its room, the table at {stop}, lit: {there}", exact=False)
+    caption = text("span", f"In its room, the table at {stop}: lamp, glass, and {there}.")
     lines.append(figure(seen, caption, class_="room-picture"))
     return "\n".join(lines)
+
+
+def _first_shown(cube: Cube) -> str:
+    """What stands on the walls at the first stop."""
+    names = [cube.names[number] for number in np.flatnonzero(cube.angles_deg == cube.angles_deg[0])]
+    return f"{names[0]} on the wall" if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]} on the walls"
 
 
 def _what(found: Findings) -> str:
