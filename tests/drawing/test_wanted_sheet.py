@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lightcube.drawing.sheet import wanted_sheet
+from lightcube.drawing.crops import wanted_sheet
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.pictures.fitting import Fit, fit

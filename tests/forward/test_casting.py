@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import ArrayLike
 from skimage.color import deltaE_ciede2000, rgb2lab
 
-from lightcube.drawing.sheet import beside_targets, contact_sheet
+from lightcube.drawing.sheet import beside_targets
 from lightcube.errors import InputError
 from lightcube.forward import casting
 from lightcube.forward.turning import moment, turn
@@ -235,22 +235,6 @@ def test_mirror_conflicts_are_found_only_where_there_are_any() -> None:
         assert mirror_conflicts(Targets(pictures, rig)) == expected
         pictures[2] = pictures[0][:, ::-1]
         assert mirror_conflicts(Targets(pictures, rig)) == []
-
-
-def test_contact_sheets_show_wanted_above_shown_above_difference() -> None:
-    cube = make_cube([10.0, 100.0])
-    shown = play(cube)
-    pictures = np.ones_like(shown)
-    sheet = contact_sheet(shown, Targets(pictures, cube.rig), [1.0, 2.0])
-    assert sheet.ndim == 3
-    assert sheet.dtype == np.uint8
-    tile = 43 * 3  # 3 rows enlarged 43-fold
-    top = 8 + 16 + 32
-    assert np.all(sheet[top + 5, 12] == 255)
-    expected = np.rint(encode(shown[0, 0, 0]) * 255)
-    assert np.all(np.abs(sheet[top + tile + 2 + 5, 12].astype(int) - expected) <= 1)
-    many = Targets(np.ones((50, 3, 5, 3), np.float32), turntable(cube.grid, np.arange(50), picture_shape=(3, 5)))
-    assert contact_sheet(many.pictures, many, [1.0] * 50).shape[1] <= 1800 + 8
 
 
 def test_the_nearest_stop_stands_beside() -> None:

@@ -13,6 +13,7 @@ from lightcube.backward.recipe import recipe_of
 from lightcube.cli.arguments import short
 from lightcube.errors import InputError, encodable, shown
 from lightcube.report.measuring import Findings, measure
+from lightcube.report.opening import Heading
 from lightcube.report.page import page
 from lightcube.scoring.facts import facts
 from lightcube.verbs.refitting import refitted
@@ -37,7 +38,7 @@ def found() -> Findings:
 
 def look(found: Findings, cube: lc.Cube) -> str:
     """A report of a cube of which all that is measured is known."""
-    return page(replace(found, cube=cube), "x", "", reproducing(cube, TARGETS, None, "x.zarr"), [])
+    return page(replace(found, cube=cube), Heading("x"), "", reproducing(cube, TARGETS, None, "x.zarr"), [])
 
 
 def test_an_honest_cube_is_told_whole(found: Findings) -> None:

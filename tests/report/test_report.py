@@ -365,6 +365,7 @@ def test_a_stage_has_its_room(run: Run, pictures: Path) -> None:
     page = reported(run, "a.npz", "stage.toml")
     assert [row[-1] for row in page.rows("Every picture")[1:]] == ["wall", "floor"]
     assert [row[2] for row in page.rows("Where the pictures stand")[1:]] == ["sun & <moon>", "top"]
+    assert any(words.endswith("lamp, glass, and 1 and 2 on the walls.") for words in page.texts("span"))
     assert "30 dB over" in page.rows("Every picture")[0]
     read = [(row[0], row[1], row[-1]) for row in page.rows("What was read")[1:]]
     inside = [Path("stage.toml"), Path("pictures/1.png"), Path("pictures/2.png")]

@@ -76,7 +76,7 @@ def test_scores_hold_what_was_asked_for(cube: Cube) -> None:
     assert more.scores == {**plain.scores, "between": more.scores["between"], "robust": more.scores["robust"]}
     assert more.curve is not None
     assert len(more.curve.psnr) == len(more.scores["between"]["psnr"])
-    assert scoring.sheet(cube, wanted, plain).dtype == np.uint8
+    assert scoring.sheet(cube, wanted, plain, "a").dtype == np.uint8
 
 
 def test_a_page_says_what_it_holds(cube: Cube, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -66,8 +66,15 @@ def test_the_page_is_drawn(
 
 def test_the_report_is_drawn(run: Any, browser: Any, cube: Cube, tmp_path: Path) -> None:
     io.save(cube, tmp_path / "photographs.zarr")
-    assert run("report", tmp_path / "photographs.zarr", "-o", tmp_path / "report.html").code == 0
-    tab, heard = opened(browser, tmp_path / "report.html", width=1000, height=700)
+    title = ("--title", "Eight photographs")
+    assert run("report", tmp_path / "photographs.zarr", "-o", tmp_path / "report.html", *title).code == 0
+    tab, heard = opened(browser, tmp_path / "report.html", width=1000, height=1330)
     assert np.std(kept(tab.screenshot(), "report.png", tmp_path)) > 20
     assert not heard
     tab.context.close()
+
+
+def test_the_sheet_is_drawn(run: Any, cube: Cube, tmp_path: Path) -> None:
+    io.save(cube, tmp_path / "photographs.zarr")
+    assert run("score", tmp_path / "photographs.zarr", "--sheet", tmp_path / "sheet.png").code == 0
+    assert np.std(kept((tmp_path / "sheet.png").read_bytes(), "sheet.png", tmp_path)) > 20

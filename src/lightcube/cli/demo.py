@@ -85,7 +85,10 @@ def _made(wonder: Wonder, folder: Path) -> tuple[Cube, float]:
     cube = replace(solution.cube, scores=metrics.score(solution.cube, targets))
     io.save(cube, folder / f"{wonder.name}.zarr", overwrite=True)
     sheet = contact_sheet(
-        casting.play(cube, picture_only=True), targets, [view["psnr"] for view in cube.scores["pictures"]]
+        casting.play(cube, picture_only=True),
+        targets,
+        [view["psnr"] for view in cube.scores["pictures"]],
+        wonder.title,
     )
     io.save(sheet, folder / f"{wonder.name}.png", overwrite=True)
     movie = film(cube, picture_only=True)

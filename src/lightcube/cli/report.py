@@ -9,6 +9,7 @@ from lightcube.cli.console import done, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.jobs.reading import load
 from lightcube.verbs import reporting
+from lightcube.viewer.label import Label
 
 
 @threaded
@@ -21,16 +22,20 @@ def report(
         str | None,
         typer.Option("-o", "--out", help="The page to write.  [default: the cube's name, -report.html, here]"),
     ] = None,
+    title: Annotated[str | None, typer.Option("--title", help="What it is called.  [default: the cube's name]")] = None,
+    by: Annotated[str, typer.Option("--by", help="Who made it.", show_default=False)] = "",
+    note: Annotated[str, typer.Option("--note", help="A dedication, or a word on it.", show_default=False)] = "",
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, how it was made."""
     target = f"{io.bare_name(cube)}-report.html" if output is None else output
+    label = Label(io.bare_name(cube) if title is None else title, by, note)
     page_file = io.Output(target, "page", overwrite)
     page_file.check()
     loaded = load(cube)
     with telling("measuring", as_json=as_json) as tell:
-        made = reporting.report(loaded, cube, pictures, tell)
+        made = reporting.report(loaded, cube, pictures, tell, label)
     page_file.write(made.text)
     size, scores = len(made.text.encode()), made.scores
     done(

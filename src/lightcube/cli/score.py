@@ -23,7 +23,7 @@ def score(
         str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
     sheet: Annotated[
-        str | None, typer.Option(help="Draw a contact sheet: wanted, shown, difference (PNG, WebP or JPEG).")
+        str | None, typer.Option(help="Draw a contact sheet: shown beside wanted (PNG, WebP or JPEG).")
     ] = None,
     between_pictures: Annotated[
         bool, typer.Option("--between", help="Add PSNR and SSIM between the pictures, and how far each one stands.")
@@ -49,7 +49,7 @@ def score(
     if plot_file is not None and found.curve is not None:
         drawn.append((plot_file, scoring.plot(found.curve)))
     if sheet_file is not None:
-        drawn.append((sheet_file, scoring.sheet(loaded, wanted, found)))
+        drawn.append((sheet_file, scoring.sheet(loaded, wanted, found, io.bare_name(cube))))
     io.write_together(*drawn)
     if as_json:
         json_document(found.scores)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.drawing.sheet import MOST, triple
+from lightcube.drawing.sheet import MOST, pair
 from lightcube.drawing.standing import Standing, corners_of, drawn, extent, standing, table_of
 from lightcube.drawing.svg import hull
 from lightcube.errors import InputError
@@ -76,7 +76,7 @@ def between_plot(curves: dict[str, Curve]) -> "Figure":
 
 
 def sheet_plot(cube: Cube, targets: Targets | None = None) -> "Figure":
-    """Contact sheet: wanted, shown and their difference (around grey) of each picture, with its angle and PSNR.
+    """Contact sheet: each picture as it is shown below what was wanted, with its angle and PSNR.
 
     Parameters
     ----------
@@ -98,13 +98,13 @@ def sheet_plot(cube: Cube, targets: Targets | None = None) -> "Figure":
     lines = math.ceil(len(chosen) / max(2, round(8 * min(1.0, rows / columns))))
     across = math.ceil(len(chosen) / lines)
     wide = 1.25 * max(1.0, columns / rows)
-    figure = _figure(wide * across, lines * (3 * wide * rows / columns + 0.45) + 0.2)
-    figure.suptitle("from top to bottom: wanted, shown, difference (around grey)", fontsize=9, color=_INK)
+    figure = _figure(wide * across, lines * (2 * wide * rows / columns + 0.45) + 0.2)
+    figure.suptitle("above what was wanted, below what is shown", fontsize=9, color=_INK)
     panels = figure.subplots(lines, across, squeeze=False).ravel()
     for axes, view in zip(panels, chosen, strict=False):
         gap = np.full((max(1, rows // 32), columns, 3), 255, np.uint8)
-        above, middle, below = triple(shown[view], wanted, int(view))
-        axes.imshow(np.concatenate([above, gap, middle, gap, below]), interpolation="nearest")
+        above, below = pair(shown[view], wanted, int(view))
+        axes.imshow(np.concatenate([above, gap, below]), interpolation="nearest")
         score = scores[view]
         axes.set_title(
             f"{score['name'][:16]}\n{score['angle_deg']:.4g}°  {score['psnr']:.1f} dB", fontsize=7, color=_INK

@@ -1,30 +1,37 @@
-"""Contact sheets: wanted, shown and the difference of every view, as one picture."""
+"""Contact sheets: every picture as it is shown, beside what was wanted; and pictures beside each other in movies."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont, ImageOps
+from PIL import Image, ImageDraw, ImageFont
 
-from lightcube.optics.arrays import Images, Levels
-from lightcube.optics.transfer import Transfer, encode, to_uint8
-from lightcube.pictures.fitting import Fit, source_box
-from lightcube.pictures.pictures import Pictures
+from lightcube.drawing.poster import in_line
+from lightcube.optics.transfer import encode, to_uint8
 from lightcube.pictures.targets import Targets
+from lightcube.wording import counted
 
-#: Shorter side that a picture is enlarged to, by whole pixels; gap and line height in pixels.
-_SIDE, _GAP, _LINE = 128, 8, 16
-#: Longer side of what is shown of a picture as it was read, pixels.
-_READ = 144
-_PAPER, _INK = (250, 250, 248), (40, 40, 40)
+#: Longer side that pictures are enlarged to by whole pixels, and the longest one that is left as it is; pixels.
+_SIDE, _LONGEST = 240, 400
+#: What stays free around pairs, and between the two of a pair; the least width of a pair, for its name.
+_GAP, _BETWEEN, _NARROWEST = 44, 6, 230
+#: Letters of title, note, names and figures, pixels; each line of them is so many times as high.
+_TITLE, _NOTE, _NAME, _FIGURE, _LINE = 54, 26, 28, 22, 1.35
+#: Width of a sheet over its height, about: that of paper.
+_PAPER_SHAPE = math.sqrt(2)
+_PAPER, _INK, _QUIET = (252, 251, 248), (35, 38, 41), (104, 108, 112)
+#: Level of pixels that nobody cares about.
+_FREE = 128
 #: Views shown at most: of more, so many evenly chosen ones.
 MOST = 32
 
 
-def contact_sheet(shown: NDArray[np.float32], targets: Targets, psnr: list[float]) -> NDArray[np.uint8]:
-    """Draw wanted, shown and difference of each view, with its name and PSNR (dB).
+def contact_sheet(
+    shown: NDArray[np.float32], targets: Targets, psnr: list[float], title: str = ""
+) -> NDArray[np.uint8]:
+    """Draw each picture as it is shown beside what was wanted, with its name, angle and PSNR (dB).
 
     Parameters
     ----------
@@ -34,103 +41,95 @@ def contact_sheet(shown: NDArray[np.float32], targets: Targets, psnr: list[float
         What was wanted.
     psnr
         One figure per view.
+    title
+        Stands above; empty = how many pictures there are.
 
     Returns
     -------
-    ``(row, column, 3)`` 8-bit sRGB. The difference of display values is drawn around mid grey. Of more than 32
-    views, 32 are shown.
+    ``(row, column, 3)`` 8-bit sRGB. Of more than 32 views, 32 are shown.
     """
     count = len(targets)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
-    rows, columns = targets.rig.picture_shape
-    scale = max(1, round(_SIDE / min(rows, columns)))
-    cell_height, cell_width = rows * scale * 3 + 2 * _LINE + 2 * _GAP, max(columns * scale, 96) + _GAP
-    per_line = max(1, min(len(chosen), 1800 // cell_width))
-    lines = -(-len(chosen) // per_line)
-    per_line = -(-len(chosen) // lines)
-    sheet = Image.new("RGB", (per_line * cell_width + _GAP, lines * cell_height + _GAP + _LINE), _PAPER)
+    many = counted(count, "picture") if len(chosen) == count else f"{len(chosen)} of {counted(count, 'picture')}"
+    note = "left what was wanted, right what the wall shows"
+    lines = (title, f"{many}: {note}") if title else (many, note)
+    tiles = [_pair_tile(pair(shown[view], targets, int(view)), targets, int(view)) for view in chosen]
+    said = [
+        (targets.names[view], f"{round(targets.angles_deg[view], 2):g}°  ·  {psnr[view]:.1f} dB") for view in chosen
+    ]
+    return np.asarray(_laid_out(tiles, said, lines))
+
+
+def _pair_tile(levels: list[NDArray[np.uint8]], targets: Targets, view: int) -> Image.Image:
+    """Wanted and shown side by side, as wide and high as those of all other views; smaller ones stand in the middle."""
+    largest = targets.rig.picture_shape
+    rows, columns = (int(side) for side in targets.rig.stops.window[view])
+    wide, high = (round(side * _zoom(*largest)) for side in largest[::-1])
+    zoom = min(_zoom(rows, columns), wide / columns, high / rows)
+    zoom = math.floor(zoom) if zoom >= 1 else zoom
+    size = max(1, round(columns * zoom)), max(1, round(rows * zoom))
+    way = Image.Resampling.NEAREST if zoom >= 1 else Image.Resampling.LANCZOS
+    tile = Image.new("RGB", (max(2 * wide + _BETWEEN, _NARROWEST), high), _PAPER)
+    for number, picture in enumerate(levels):
+        image = Image.fromarray(np.ascontiguousarray(picture[:rows, :columns])).resize(size, way)
+        tile.paste(image, (number * (wide + _BETWEEN) + (wide - size[0]) // 2, (high - size[1]) // 2))
+    return tile
+
+
+def _zoom(rows: int, columns: int) -> float:
+    """How many times as large a picture is drawn: a whole number, unless it is too large."""
+    longest = max(rows, columns)
+    return max(1, round(_SIDE / longest)) if longest <= _LONGEST else _LONGEST / longest
+
+
+def _laid_out(tiles: list[Image.Image], said: list[tuple[str, str]], lines: tuple[str, str]) -> Image.Image:
+    """Tiles of one size with a name and figures below each, under a title and a note."""
+    count, (wide, high) = len(tiles), tiles[0].size
+    font = {size: ImageFont.load_default(size) for size in (_TITLE, _NOTE, _NAME, _FIGURE)}
+    name, figure, title, note = (math.ceil(_LINE * size) for size in (_NAME, _FIGURE, _TITLE, _NOTE))
+    top, step = title + note + 2 * _GAP, (wide + _GAP, high + name + figure + _GAP)
+
+    def unlike_paper(across: int) -> float:
+        """How far off the shape of paper a sheet is, and how much of its last line is empty."""
+        lines = -(-count // across)
+        shape = (across * step[0] + _GAP) / (lines * step[1] + top)
+        return abs(math.log(shape / _PAPER_SHAPE)) + 4 * (across * lines - count) / count
+
+    across = min(range(1, count + 1), key=unlike_paper)
+    width, height = across * step[0] + _GAP, -(-count // across) * step[1] + top
+    width = max(width, math.ceil(font[_NOTE].getlength(lines[1])) + 2 * _GAP)
+    sheet = Image.new("RGB", (width, height), _PAPER)
     draw = ImageDraw.Draw(sheet)
-    font = ImageFont.load_default(11)
-    draw.text((_GAP, 3), "from top to bottom: wanted, shown, difference (around grey; flat grey is free)", _INK, font)
-    for place, view in enumerate(chosen):
-        left = _GAP + place % per_line * cell_width
-        top = _GAP + _LINE + place // per_line * cell_height
-        label = f"{targets.names[view]}"[:16]
-        draw.text((left, top), label, _INK, font)
-        draw.text((left, top + _LINE - 3), f"{targets.angles_deg[view]:.2f}°  {psnr[view]:.1f} dB", _INK, font)
-        for index, picture in enumerate(triple(shown[view], targets, int(view))):
-            tile = Image.fromarray(picture).resize((columns * scale, rows * scale), Image.Resampling.NEAREST)
-            sheet.paste(tile, (left, top + 2 * _LINE + index * (rows * scale + 2)))
-    return np.asarray(sheet)
+
+    def write(left: int, above: int, text: str, size: int, ink: tuple[int, int, int], most: int) -> None:
+        draw.text((left, above), in_line(text, font[size], most), ink, font[size])
+
+    write(_GAP, _GAP, lines[0], _TITLE, _INK, width - 2 * _GAP)
+    write(_GAP, _GAP + title, lines[1], _NOTE, _QUIET, width - 2 * _GAP)
+    for place, (tile, (called, figures)) in enumerate(zip(tiles, said, strict=True)):
+        left, above = _GAP + place % across * step[0], top + place // across * step[1]
+        sheet.paste(tile, (left, above))
+        write(left, above + high + 6, called, _NAME, _INK, wide)
+        write(left, above + high + name + 2, figures, _FIGURE, _QUIET, wide)
+    return sheet
 
 
-def wanted_sheet(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit], order: Sequence[int]) -> Levels:
-    """Draw what will be asked for: each picture as it was read, dimmed where it is cut off, above what is left of it.
-
-    Parameters
-    ----------
-    ways
-        How pictures were fitted, all of them or each.
-    order
-        Number of the picture that each target is of.
-    """
-    fits = [ways] * len(pictures) if isinstance(ways, str) else list(ways)
-    chosen = np.unique(np.linspace(0, len(targets) - 1, min(len(targets), MOST)).round().astype(int))
-    tiles = []
-    for view in chosen:
-        rows, columns = (int(count) for count in targets.rig.stops.window[view])
-        box = source_box(pictures.images[order[view]].shape[:2], (rows, columns), fits[order[view]], pictures.focus)
-        read = _dimmed(pictures.images[order[view]], box, targets.transfer)
-        weight = targets.weight[view][:rows, :columns, None] > 0
-        kept = np.where(weight, to_uint8(targets.pictures[view][:rows, :columns], targets.transfer), 128)
-        label = f"{targets.names[view]}"[:18], f"{targets.angles_deg[view]:.2f}°, {columns} x {rows}"
-        tiles.append((label, read, Image.fromarray(kept.astype(np.uint8))))
-    return _tiled(
-        tiles, "what will be asked for: above as it was read, dark where it is cut off; below as it is wanted"
-    )
+def pair(shown: NDArray[np.float32], targets: Targets, view: int) -> list[NDArray[np.uint8]]:
+    """Wanted and shown of one view, 8-bit RGB; grey where there is nothing wanted."""
+    weighed = targets.weight[view][..., None] > 0
+    levels = [to_uint8(light, targets.transfer) for light in (targets.pictures[view], shown)]
+    return [_as_colours(np.where(weighed, each, _FREE)) for each in levels]
 
 
-def _dimmed(image: Images, box: tuple[float, float, float, float], transfer: Transfer) -> Image.Image:
-    """A picture as it was read, small, dimmed outside of a box."""
-    shown = Image.fromarray(to_uint8(image, transfer))
-    small = ImageOps.contain(shown, (_READ, _READ))
-    inside = [round(edge * small.width / shown.width) for edge in box]
-    inside[1::2] = [round(edge * small.height / shown.height) for edge in box[1::2]]
-    dim = small.point(lambda level: level // 4)
-    dim.paste(small.crop(tuple(inside)), (inside[0], inside[1]))  # type: ignore[arg-type]
-    return dim
+def difference(shown: NDArray[np.float32], targets: Targets, view: int, gain: float = 1) -> NDArray[np.uint8]:
+    """How far display values are off what was wanted, so many times as large, around mid grey: 8-bit RGB."""
+    off = gain * (encode(shown, targets.transfer) - encode(targets.pictures[view], targets.transfer))
+    levels = np.clip(np.rint((0.5 + off) * 255), 0, 255)
+    return _as_colours(np.where(targets.weight[view][..., None] > 0, levels, _FREE))
 
 
-def _tiled(tiles: Sequence[tuple[tuple[str, str], Image.Image, Image.Image]], title: str) -> Levels:
-    """Tiles of two lines of words and two pictures, as even as can be."""
-    lines = -(-len(tiles) // math.ceil(math.sqrt(len(tiles) * 2)))
-    per_line = -(-len(tiles) // lines)
-    cell_width, cell_height = _READ + 2 * _GAP, 2 * _READ + 2 * _LINE + 3 * _GAP
-    font = ImageFont.load_default(12)
-    wide = max(per_line * cell_width, round(font.getlength(title)) + 2 * _GAP)
-    sheet = Image.new("RGB", (wide, lines * cell_height + 2 * _GAP + _LINE), _PAPER)
-    draw = ImageDraw.Draw(sheet)
-    draw.text((_GAP, _GAP), title, _INK, font)
-    for place, (label, read, kept) in enumerate(tiles):
-        line, column = divmod(place, per_line)
-        left, top = column * cell_width + _GAP, line * cell_height + 2 * _GAP + _LINE
-        for number, words in enumerate(label):
-            draw.text((left, top + number * _LINE), words, _INK, font)
-        scale = _READ / max(kept.size)
-        shown = kept.resize((round(kept.width * scale), round(kept.height * scale)), Image.Resampling.NEAREST)
-        for number, picture in enumerate((read, shown)):
-            below = top + 2 * _LINE + number * (_READ + _GAP)
-            sheet.paste(picture, (left + (_READ - picture.width) // 2, below + (_READ - picture.height) // 2))
-    return np.asarray(sheet)
-
-
-def triple(shown: NDArray[np.float32], targets: Targets, view: int) -> list[NDArray[np.uint8]]:
-    """Wanted, shown and difference of one view, 8-bit RGB; grey where there is nothing wanted."""
-    wanted, weight = targets.pictures[view], targets.weight[view][..., None] > 0
-    difference = 0.5 + encode(shown, targets.transfer) - encode(wanted, targets.transfer)
-    eighth = np.clip(np.rint(difference * 255), 0, 255).astype(np.uint8)
-    pictures = [to_uint8(wanted, targets.transfer), to_uint8(shown, targets.transfer), eighth]
-    return [np.broadcast_to(np.where(weight, p, 128), (*p.shape[:2], 3)).astype(np.uint8) for p in pictures]
+def _as_colours(levels: NDArray[Any]) -> NDArray[np.uint8]:
+    return np.broadcast_to(levels, (*levels.shape[:2], 3)).astype(np.uint8)
 
 
 def beside_targets(

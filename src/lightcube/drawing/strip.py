@@ -13,8 +13,10 @@ from lightcube.optics.transfer import to_uint8
 from lightcube.wording import counted
 
 #: Pictures in all and side by side, shorter side that they are enlarged to by whole pixels, gap, line height; pixels.
-_MOST, _PER_LINE, _SIDE, _GAP, _LINE = 16, 8, 96, 6, 22
-_PAPER, _INK = (250, 250, 248), (40, 40, 40)
+_MOST, _PER_LINE, _SIDE, _GAP, _LINE = 16, 8, 96, 6, 30
+#: Height of the letters, pixels.
+_LETTERS = 17
+_PAPER, _INK = (252, 251, 248), (35, 38, 41)
 
 
 def still(cube: Cube) -> dict[str, Any]:
@@ -45,13 +47,13 @@ def _strip(tiles: list[Image.Image], facts: str) -> Image.Image:
     lines = -(-len(tiles) // _PER_LINE)
     across = -(-len(tiles) // lines)
     wide, high = max(tile.width for tile in tiles) + _GAP, max(tile.height for tile in tiles) + _GAP
-    font = ImageFont.load_default(12)
+    font = ImageFont.load_default(_LETTERS)
     width = max(across * wide + _GAP, int(font.getlength(facts)) + 2 * _GAP)
     strip = Image.new("RGB", (width, lines * high + _GAP + _LINE), _PAPER)
     for number, tile in enumerate(tiles):
         line, place = divmod(number, across)
         strip.paste(tile, (_GAP + place * wide, _GAP + line * high))
-    ImageDraw.Draw(strip).text((_GAP, lines * high + _GAP), facts, _INK, font)
+    ImageDraw.Draw(strip).text((_GAP, lines * high + _GAP + 2), facts, _INK, font)
     return strip
 
 

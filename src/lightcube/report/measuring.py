@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.drawing.sheet import triple
+from lightcube.drawing.room import camera_for, room_picture
+from lightcube.drawing.sheet import difference, pair
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.stage import Stage
+from lightcube.optics.transfer import to_uint8
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets
 from lightcube.planning.consistency import advice, check
@@ -25,6 +27,10 @@ Levels = NDArray[np.uint8]
 #: Pixels of all pictures together that a page holds without loss, and those that it holds at all (with a little loss):
 #: wanted, shown and difference of so many stay below 10 MB.
 EXACT, MOST = 700_000, 8_000_000
+#: Rows and columns of the picture of the room.
+ROOM = (720, 1280)
+#: Differences of pictures that are at least so good (dB) are drawn so many times as large.
+_SMALL_DB, _GAIN = 30.0, 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +43,8 @@ class Findings:
         The cube, what was wanted of it, and the stage that they are from.
     scores
         As `lightcube.score`.
+    room
+        The cube in its room at its first stop, 8-bit RGB.
     pictures
         By their number: wanted, shown and difference, 8-bit RGB; evenly chosen ones where there are too many.
     curve
@@ -56,6 +64,7 @@ class Findings:
     targets: Targets
     stage: Stage | None
     scores: dict[str, Any]
+    room: Levels
     pictures: dict[int, list[Levels]]
     curve: Curve | None
     robust: dict[str, Any]
@@ -93,13 +102,16 @@ def measure(
     for number, picture in enumerate(cast(cube)):
         if number in pictures:
             rows, columns = targets.rig.stops.window[number]
-            pictures[number] = [each[:rows, :columns] for each in triple(picture, targets, number)]
+            off = difference(picture, targets, number, gain(scores["pictures"][number]["psnr"]))
+            three = [*pair(picture, targets, number), off]
+            pictures[number] = [each[:rows, :columns] for each in three]
     tell(of, of)
     facts = check(targets, cube.grid) if cube.rig.is_thin and cube.rig.elevation_deg is not None else None
     said = sentences(targets) if facts is None else advice(facts)
     if stage is not None:
         said = [*doubtful(stage), *said]
-    return Findings(cube, targets, stage, scores, pictures, between, left, facts, said, _apart(cube, targets))
+    room = to_uint8(room_picture(cube, float(cube.angles_deg[0]), camera_for(cube, ROOM)))
+    return Findings(cube, targets, stage, scores, room, pictures, between, left, facts, said, _apart(cube, targets))
 
 
 def chosen(targets: Targets, most: int = MOST) -> list[int]:
@@ -107,6 +119,11 @@ def chosen(targets: Targets, most: int = MOST) -> list[int]:
     rows, columns = targets.rig.picture_shape
     room = min(len(targets), max(1, most // (rows * columns)))
     return [int(number) for number in np.unique(np.linspace(0, len(targets) - 1, room).round())]
+
+
+def gain(psnr: float) -> int:
+    """How many times as large as it is the difference of such a picture is drawn."""
+    return _GAIN if psnr >= _SMALL_DB else 1
 
 
 def _apart(cube: Cube, targets: Targets) -> int | None:

@@ -1,4 +1,4 @@
-"""A report as one HTML page: what is to be read first comes first, and nothing in it tells the date."""
+"""A report as one HTML page: what is to be read first comes first, and nothing in it tells when it was written."""
 
 import hashlib
 import platform
@@ -13,6 +13,7 @@ from lightcube.optics.cube import Cube
 from lightcube.report import sections
 from lightcube.report.html import element, pairs, plain, sentences, table, text
 from lightcube.report.measuring import Findings
+from lightcube.report.opening import Heading, judged, opening
 
 #: What a page may load: its own style, and pictures that it holds itself. Nothing in it is run.
 POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
@@ -60,15 +61,15 @@ class Command:
     doubts: list[str] = field(default_factory=list)
 
 
-def page(found: Findings, title: str, compared: str, command: Command, origins: Sequence[Origin]) -> str:
+def page(found: Findings, heading: Heading, compared: str, command: Command, origins: Sequence[Origin]) -> str:
     """The text of a report.
 
     Parameters
     ----------
     found
         What was measured.
-    title
-        Name of the cube.
+    heading
+        What the cube is called, by whom and when it was made.
     compared
         What the cube was compared with, in words.
     command
@@ -77,16 +78,18 @@ def page(found: Findings, title: str, compared: str, command: Command, origins: 
         The files that were read.
     """
     parts = {
+        "In words": judged(found),
         "Pictures": sections.pictures(found),
+        "Figures": sections.figures(found, compared),
+        "Settings": sections.settings(found),
         "Curves": sections.curves(found),
         "A set-up that is a little off": sections.disturbances(found),
         "Before solving": sections.before(found),
         "How it was made": _provenance(found.cube, command, origins),
     }
     body = [
-        element("header", text("h1", title) + sections.head(found, compared)),
+        element("header", opening(found, heading)),
         element("nav", "".join(_link(name) for name in parts), aria_label="Parts of this report"),
-        element("section", text("h2", "Settings") + sections.settings(found)),
         *(element("section", text("h2", name, id=_anchor(name)) + inside) for name, inside in parts.items()),
     ]
     head = [
@@ -94,7 +97,7 @@ def page(found: Findings, title: str, compared: str, command: Command, origins: 
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
         '<meta name="color-scheme" content="light dark">',
-        text("title", f"{title} – light cube report"),
+        text("title", f"{heading.title} – light cube report"),
         element("style", files("lightcube.report").joinpath("style.css").read_text(encoding="utf-8")),
     ]
     lines = ["<!doctype html>", '<html lang="en">', "<head>", *head, "</head>", "<body>"]

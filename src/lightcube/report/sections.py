@@ -15,32 +15,25 @@ from lightcube.optics.told import remembered
 from lightcube.planning.feasibility import facts
 from lightcube.planning.prediction import MOST_DB
 from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
-from lightcube.report.measuring import EXACT, Findings
+from lightcube.report.measuring import EXACT, Findings, gain
+from lightcube.report.verdict import mark
+from lightcube.report.words import span
 from lightcube.scoring.between import LOBE_DB
-from lightcube.scoring.metrics import grain_word
+from lightcube.scoring.metrics import FAIR_DB, GOOD_DB, WELL_DB, grain_word
 from lightcube.wording import counted, in_ev
 
 #: What a PSNR means.
-_LADDER = "PSNR, of what a wall shows: 20 dB is recognisable, 30 good, 40 hardly to be told apart."
-#: Pictures in the strip at the top.
-_STRIP = 12
+_LADDER = (
+    f"PSNR is of what a wall shows: from {FAIR_DB:g} dB on a picture is called fair here, from {WELL_DB:g} dB on good, "
+    f"and {GOOD_DB:g} dB can hardly be told from what was wanted."
+)
 #: What extinction in few levels costs where it is worth a word, dB, and the absorbance of a voxel that is dark enough.
 _COARSE_DB, _DARK = 20, 10
 
 
-def head(found: Findings, compared: str) -> str:
-    """What is to be seen at one look: what it is, what it casts, and how good that is."""
+def figures(found: Findings, compared: str) -> str:
+    """How good it is, in numbers: of the whole, and of every picture."""
     cube, scores = found.cube, found.scores
-    nz, ny, nx = cube.grid.shape
-    wide, high = _size(cube)
-    size = " × ".join(f"{length:.6g}" for length in cube.grid.size_mm[::-1])
-    count = len(cube.names)
-    pictures = counted(count, "picture")
-    what = f"A light cube of {nx} × {ny} × {nz} voxels, {size} mm, for {pictures} of {wide} × {high} pixels."
-    lines = [text("p", what.replace(" × ", "\u00a0×\u00a0"), class_="lead")]
-    if cube.status != "complete":
-        warning = "This cube is unfinished: its solver was stopped early, or it is still being made."
-        lines.insert(0, text("p", warning, class_="warning"))
     worst = min(scores["pictures"], key=lambda view: float(view["psnr"]))["name"]
     tiles = {
         "mean PSNR": (f"{number(scores['psnr_mean'])} dB", _predicted(cube, "psnr_mean")),
@@ -57,18 +50,13 @@ def head(found: Findings, compared: str) -> str:
         element("div", text("dt", name) + text("dd", value, class_="figure") + text("dd", more, class_="more"))
         for name, (value, more) in tiles.items()
     )
-    numbers = sorted(found.pictures)
-    few = [
-        numbers[i] for i in np.unique(np.linspace(0, len(numbers) - 1, min(_STRIP, len(numbers))).round().astype(int))
-    ]
-    strip = "".join(image(found.pictures[i][1], f"shown: {cube.names[i]}", exact=_exact(found)) for i in few)
-    which = "all its pictures" if len(few) == count else f"{len(few)} of its {pictures}"
-    lines += [
-        figure(element("div", strip, class_="strip"), f"What it casts: {which}."),
-        element("dl", shown, class_="tiles"),
-        text("p", f"{compared} {_LADDER}", class_="note"),
-    ]
-    return "\n".join(lines)
+    return "\n".join(
+        [
+            element("dl", shown, class_="tiles"),
+            text("p", f"{compared} {_LADDER}", class_="note"),
+            sideways(_table(found), "The figures"),
+        ]
+    )
 
 
 def _predicted(cube: Cube, name: str) -> str:
@@ -77,17 +65,6 @@ def _predicted(cube: Cube, name: str) -> str:
     if predicted is None:
         return "mean over the pictures" if name == "psnr_mean" else ""
     return f"predicted: {number(predicted[name], 1)} dB" + " or more" * (predicted[name] >= MOST_DB)
-
-
-def _size(cube: Cube) -> tuple[str, str]:
-    """Width and height of the pictures, from the least to the largest where they differ."""
-    rows, columns = cube.rig.stops.window.T
-    return _range(columns), _range(rows)
-
-
-def _range(values: NDArray[Any], form: str = "g") -> str:
-    least, most = f"{values.min():{form}}", f"{values.max():{form}}"
-    return least if least == most else f"{least} to {most}"
 
 
 def _range_ev(cube: Cube) -> str:
@@ -118,7 +95,7 @@ def settings(found: Findings) -> str:
         {
             "Voxels": f"{nx} × {ny} × {nz} of {cube.grid.sides_in_words.replace('x', '×')}",
             **_placed(cube),
-            "Lamp power": f"{_range(cube.powers, '.4g')}, that is {_range_ev(cube)} ({kind}{most})",
+            "Lamp power": f"{span(cube.powers, '.4g')}, that is {_range_ev(cube)} ({kind}{most})",
             "Hold": f"{cube.hold_deg:g}° on either side of a stop" if cube.hold_deg else "none",
             "Method": str(made.get("method", "–")),
             "Passes": f"{passes}: {reason}" if reason else passes,
@@ -157,17 +134,15 @@ def _stops(angles_deg: NDArray[np.float64]) -> str:
 
 
 def pictures(found: Findings) -> str:
-    """Wanted, shown and difference of every picture, and their figures."""
+    """Every picture as it is cast, beside what was wanted."""
     total = len(found.cube.names)
-    note = "From left to right: wanted, shown, and the difference around grey; flat grey is what nobody asked for."
+    note = "On the left what was wanted, on the right what the wall shows; grey is what nobody asked for."
     if len(found.pictures) < total:
-        note += f" {len(found.pictures)} of {total} pictures are here, evenly chosen; the table has all."
+        note += f" {len(found.pictures)} of {total} pictures are here, evenly chosen; the table of figures has all."
     if not _exact(found):
         note += " To keep the page small they lost a little; no figure did."
     cards = "\n".join(_card(found, number) for number in sorted(found.pictures))
-    return "\n".join(
-        [text("p", note, class_="note"), element("div", cards, class_="sheet"), sideways(_table(found), "The figures")]
-    )
+    return "\n".join([text("p", note, class_="note"), element("div", cards, class_="sheet")])
 
 
 def _exact(found: Findings) -> bool:
@@ -176,14 +151,37 @@ def _exact(found: Findings) -> bool:
 
 
 def _card(found: Findings, index: int) -> str:
-    """Three pictures, side by side, and what they are."""
+    """Wanted and shown, side by side, and what they are."""
     view = found.scores["pictures"][index]
-    kinds = zip(("wanted", "shown", "difference"), found.pictures[index], strict=True)
-    three = "".join(image(levels, f"{kind}: {view['name']}", exact=_exact(found)) for kind, levels in kinds)
-    caption = (
-        text("b", f"{index + 1} {view['name']}") + " " + escape(f"{view['angle_deg']:.6g}°, {number(view['psnr'])} dB")
+    both = "".join(_image(found, index, kind) for kind in ("wanted", "shown"))
+    how = mark(view["psnr"])
+    caption = f"{_named(found, index)} {text('span', how, class_=how)} at {round(view['angle_deg'], 2):g}°"
+    return figure(element("div", both, class_="pair"), caption, class_="card")
+
+
+def _named(found: Findings, index: int) -> str:
+    """Number and name of a picture."""
+    return f"{index + 1} {text('b', found.cube.names[index])}"
+
+
+def _image(found: Findings, index: int, kind: str) -> str:
+    """One of the three pictures that are kept of each."""
+    levels = found.pictures[index][("wanted", "shown", "difference").index(kind)]
+    return image(levels, f"{kind}: {found.cube.names[index]}", exact=_exact(found))
+
+
+def _differences(found: Findings) -> str:
+    """Shown less wanted, of every picture."""
+    cards = []
+    for index in sorted(found.pictures):
+        times = gain(found.scores["pictures"][index]["psnr"])
+        said = _named(found, index) + text("div", f"{times}\u00a0times" if times > 1 else "as it is")
+        cards.append(figure(_image(found, index, "difference"), said, class_="card"))
+    note = (
+        "What the wall shows less what was wanted, around grey: brighter where it is too bright. Small differences are "
+        "drawn larger, as many times as stands below each."
     )
-    return figure(element("div", three, class_="three"), caption, class_="card")
+    return text("h3", "Differences") + text("p", note, class_="note") + element("div", "".join(cards), class_="tiny")
 
 
 def _table(found: Findings) -> str:
@@ -227,6 +225,7 @@ def curves(found: Findings) -> str:
             figure(sideways(bars, "PSNR of each picture"), escape(said + " Numbers are those of the table.")),
             *_between(found),
             figure(sideways(_powers(cube), "Lamp powers"), escape(_powers_said(cube))),
+            _differences(found),
         ]
     )
 
@@ -248,7 +247,7 @@ def _powers(cube: Cube) -> str:
     """The lamp's powers over the pictures."""
     places, most = (cube.rig.pairs[:, 0] + 1).astype(np.float64), float(cube.rig.lamps.most.max())
     return charts.lamp_powers(
-        places, cube.powers, most, f"Lamp powers from {_range(cube.powers, '.4g')}, at most {most:g}"
+        places, cube.powers, most, f"Lamp powers from {span(cube.powers, '.4g')}, at most {most:g}"
     )
 
 

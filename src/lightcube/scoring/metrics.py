@@ -25,13 +25,13 @@ from lightcube.pictures.targets import Targets
 
 #: The best PSNR that is reported, dB.
 BEST_DB = 100.0
-#: Pictures of this PSNR, dB, are good: they are made small enough for it.
+#: Pictures of this PSNR, dB, are hard to tell from what is wanted: they are made small enough for it.
 GOOD_DB = 40.0
-
-#: The least PSNR, dB, of a picture that is fair: recognisable, with faults that one sees. A worse one is poor.
-FAIR_DB = 26.0
+#: The least PSNR, dB, of a picture that is called good, and of one that is fair: recognisable, with faults that one
+#: sees. A worse one is poor.
+WELL_DB, FAIR_DB = 33.0, 26.0
 #: What a picture of at least so many dB looks like.
-_NEARNESS = {GOOD_DB: "hard to tell from what is wanted", 33.0: "good", FAIR_DB: "fair"}
+_NEARNESS = {GOOD_DB: "hard to tell from what is wanted", WELL_DB: "good", FAIR_DB: "fair"}
 
 Display = NDArray[np.floating[Any]]
 

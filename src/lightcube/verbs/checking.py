@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from lightcube.drawing.sheet import wanted_sheet
+from lightcube.drawing.crops import wanted_sheet
 from lightcube.optics.arrays import Levels
 from lightcube.planning.plan import Plan
 from lightcube.planning.rehearsals import Rehearsals

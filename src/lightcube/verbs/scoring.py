@@ -63,11 +63,10 @@ def score(cube: Cube, targets: Targets, tell: Tell, *, between: bool = False, of
     return Found(scores, found)
 
 
-def sheet(cube: Cube, targets: Targets, found: Found) -> NDArray[np.uint8]:
-    """Wanted, shown and difference of each view, ``(row, column, 3)`` display levels."""
-    return contact_sheet(
-        casting.play(cube, picture_only=True), targets, [view["psnr"] for view in found.scores["pictures"]]
-    )
+def sheet(cube: Cube, targets: Targets, found: Found, title: str) -> NDArray[np.uint8]:
+    """Each view as it is shown beside what was wanted, under a title, ``(row, column, 3)`` display levels."""
+    psnr = [view["psnr"] for view in found.scores["pictures"]]
+    return contact_sheet(casting.play(cube, picture_only=True), targets, psnr, title)
 
 
 def plot(found: Curve) -> "Figure":

@@ -1,0 +1,85 @@
+"""How a report begins: what the cube is called, what it looks like, and what is good of it and what is not."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lightcube.optics.cube import Cube
+from lightcube.report import verdict
+from lightcube.report.html import element, figure, image, sentences, text
+from lightcube.report.measuring import Findings
+from lightcube.report.words import span
+
+
+@dataclass(frozen=True)
+class Heading:
+    """What stands at the head of a report.
+
+    Parameters
+    ----------
+    title
+        What the cube is called.
+    by, date, note
+        Who made it, when, and a word on it; empty = nothing is said of that.
+    """
+
+    title: str
+    by: str = ""
+    date: str = ""
+    note: str = ""
+
+
+def opening(found: Findings, heading: Heading) -> str:
+    """Title, date, what it is, and the cube in its room."""
+    cube = found.cube
+    lines = [text("p", "Light cube", class_="kind"), text("h1", heading.title)]
+    signed = " · ".join(filter(None, (heading.by, heading.date)))
+    if signed:
+        lines.append(text("p", signed, class_="signed"))
+    if cube.status != "complete":
+        warning = "This cube is unfinished: its solver was stopped early, or it is still being made."
+        lines.insert(0, text("p", warning, class_="warning"))
+    lines.append(text("p", _what(found), class_="lead"))
+    if heading.note:
+        lines.append(text("p", heading.note, class_="dedication"))
+    stop, there = f"{round(cube.angles_deg[0], 2):g}°", _first_shown(cube)
+    seen = image(found.room, f"The cube in its room, the table at {stop}, lit: {there}", exact=False)
+    caption = text("span", f"In its room, the table at {stop}: lamp, glass, and {there}.")
+    lines.append(figure(seen, caption, class_="room-picture"))
+    return "\n".join(lines)
+
+
+def _first_shown(cube: Cube) -> str:
+    """What stands on the walls at the first stop."""
+    names = [cube.names[number] for number in np.flatnonzero(cube.angles_deg == cube.angles_deg[0])]
+    return f"{names[0]} on the wall" if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]} on the walls"
+
+
+def _what(found: Findings) -> str:
+    """What it is, in two sentences."""
+    cube = found.cube
+    nz, ny, nx = cube.grid.shape
+    rows, columns = cube.rig.stops.window.T
+    size = " × ".join(f"{length:.6g}" for length in cube.grid.size_mm[::-1])
+    count = len(cube.names)
+    if count == 1:
+        shows = "its shadow is a picture"
+    elif len(np.unique(cube.angles_deg)) == count:
+        shows = f"at each of {count} stops its shadow is another picture"
+    else:
+        shows = f"its shadows are {count} pictures"
+    said = (
+        f"Light falls through a block of coloured glass; {shows}. It is {size} mm large, of {nx} × {ny} × {nz} "
+        f"voxels; its pictures have {span(columns)} × {span(rows)} pixels."
+    )
+    return said.replace(" × ", "\u00a0×\u00a0").replace(" mm ", "\u00a0mm ")
+
+
+def judged(found: Findings) -> str:
+    """What is good and what is not, side by side."""
+    columns = {"What is good": verdict.good(found), "What is not": verdict.wanting(found)}
+    parts = []
+    for name, said in columns.items():
+        told = list(said) or ["Nothing that was looked at."]
+        parts.append(element("div", text("h3", name) + sentences(told)))
+    return element("div", "".join(parts), class_="verdict")
