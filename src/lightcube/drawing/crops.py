@@ -1,25 +1,25 @@
 """The sheet of what will be asked for: pictures as they were read, what is cut off, and what is left of them."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont, ImageOps
+from PIL import Image, ImageOps
 
-from lightcube.drawing.sheet import MOST
+from lightcube.drawing.sheet import BETWEEN, FREE, MOST, PAPER, laid_out
 from lightcube.optics.arrays import Images, Levels
 from lightcube.optics.transfer import Transfer, to_uint8
 from lightcube.pictures.fitting import Fit, source_box
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
+from lightcube.wording import counted
 
-#: Longer side of what is shown of a picture, gap and line height, pixels.
-_READ, _GAP, _LINE = 144, 8, 16
-_PAPER, _INK = (250, 250, 248), (40, 40, 40)
+#: Longer side of what is shown of a picture, pixels.
+_SIDE = 240
+_NOTE = "left as they were read, dark where they are cut off; right as they are wanted"
 
 
 def wanted_sheet(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit], order: Sequence[int]) -> Levels:
-    """Draw what will be asked for: each picture as it was read, dimmed where it is cut off, above what is left of it.
+    """Draw what will be asked for: each picture as it was read, dimmed where it is cut off, beside what is left of it.
 
     Parameters
     ----------
@@ -30,24 +30,23 @@ def wanted_sheet(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit]
     """
     fits = [ways] * len(pictures) if isinstance(ways, str) else list(ways)
     chosen = np.unique(np.linspace(0, len(targets) - 1, min(len(targets), MOST)).round().astype(int))
-    tiles = []
+    tiles, said = [], []
     for view in chosen:
         rows, columns = (int(count) for count in targets.rig.stops.window[view])
         box = source_box(pictures.images[order[view]].shape[:2], (rows, columns), fits[order[view]], pictures.focus)
         read = _dimmed(pictures.images[order[view]], box, targets.transfer)
         weight = targets.weight[view][:rows, :columns, None] > 0
-        kept = np.where(weight, to_uint8(targets.pictures[view][:rows, :columns], targets.transfer), 128)
-        label = f"{targets.names[view]}"[:18], f"{targets.angles_deg[view]:.2f}°, {columns} x {rows}"
-        tiles.append((label, read, Image.fromarray(kept.astype(np.uint8))))
-    return _tiled(
-        tiles, "what will be asked for: above as it was read, dark where it is cut off; below as it is wanted"
-    )
+        kept = np.where(weight, to_uint8(targets.pictures[view][:rows, :columns], targets.transfer), FREE)
+        size = max(1, round(_SIDE * columns / max(rows, columns))), max(1, round(_SIDE * rows / max(rows, columns)))
+        tiles.append(_beside(read, Image.fromarray(kept.astype(np.uint8)).resize(size, Image.Resampling.NEAREST)))
+        said.append((targets.names[view], f"{round(targets.angles_deg[view], 2):g}°  ·  {columns} x {rows}"))
+    return np.asarray(laid_out(tiles, said, (f"{counted(len(targets), 'picture')} that will be asked for", _NOTE)))
 
 
 def _dimmed(image: Images, box: tuple[float, float, float, float], transfer: Transfer) -> Image.Image:
     """A picture as it was read, small, dimmed outside of a box."""
     shown = Image.fromarray(to_uint8(image, transfer))
-    small = ImageOps.contain(shown, (_READ, _READ))
+    small = ImageOps.contain(shown, (_SIDE, _SIDE))
     inside = [round(edge * small.width / shown.width) for edge in box]
     inside[1::2] = [round(edge * small.height / shown.height) for edge in box[1::2]]
     dim = small.point(lambda level: level // 4)
@@ -55,24 +54,10 @@ def _dimmed(image: Images, box: tuple[float, float, float, float], transfer: Tra
     return dim
 
 
-def _tiled(tiles: Sequence[tuple[tuple[str, str], Image.Image, Image.Image]], title: str) -> Levels:
-    """Tiles of two lines of words and two pictures, as even as can be."""
-    lines = -(-len(tiles) // math.ceil(math.sqrt(len(tiles) * 2)))
-    per_line = -(-len(tiles) // lines)
-    cell_width, cell_height = _READ + 2 * _GAP, 2 * _READ + 2 * _LINE + 3 * _GAP
-    font = ImageFont.load_default(12)
-    wide = max(per_line * cell_width, round(font.getlength(title)) + 2 * _GAP)
-    sheet = Image.new("RGB", (wide, lines * cell_height + 2 * _GAP + _LINE), _PAPER)
-    draw = ImageDraw.Draw(sheet)
-    draw.text((_GAP, _GAP), title, _INK, font)
-    for place, (label, read, kept) in enumerate(tiles):
-        line, column = divmod(place, per_line)
-        left, top = column * cell_width + _GAP, line * cell_height + 2 * _GAP + _LINE
-        for number, words in enumerate(label):
-            draw.text((left, top + number * _LINE), words, _INK, font)
-        scale = _READ / max(kept.size)
-        shown = kept.resize((round(kept.width * scale), round(kept.height * scale)), Image.Resampling.NEAREST)
-        for number, picture in enumerate((read, shown)):
-            below = top + 2 * _LINE + number * (_READ + _GAP)
-            sheet.paste(picture, (left + (_READ - picture.width) // 2, below + (_READ - picture.height) // 2))
-    return np.asarray(sheet)
+def _beside(read: Image.Image, kept: Image.Image) -> Image.Image:
+    """Two pictures, each in the middle of a square."""
+    tile = Image.new("RGB", (2 * _SIDE + BETWEEN, _SIDE), PAPER)
+    for number, picture in enumerate((read, kept)):
+        left, top = (_SIDE - picture.width) // 2, (_SIDE - picture.height) // 2
+        tile.paste(picture, (number * (_SIDE + BETWEEN) + left, top))
+    return tile

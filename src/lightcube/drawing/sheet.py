@@ -16,14 +16,14 @@ from lightcube.wording import counted
 #: Longer side that pictures are enlarged to by whole pixels, and the longest one that is left as it is; pixels.
 _SIDE, _LONGEST = 240, 400
 #: What stays free around pairs, and between the two of a pair; the least width of a pair, for its name.
-_GAP, _BETWEEN, _NARROWEST = 44, 6, 230
+_GAP, BETWEEN, _NARROWEST = 44, 6, 230
 #: Letters of title, note, names and figures, pixels; each line of them is so many times as high.
 _TITLE, _NOTE, _NAME, _FIGURE, _LINE = 54, 26, 28, 22, 1.35
 #: Width of a sheet over its height, about: that of paper.
 _PAPER_SHAPE = math.sqrt(2)
-_PAPER, _INK, _QUIET = (252, 251, 248), (35, 38, 41), (104, 108, 112)
+PAPER, _INK, _QUIET = (252, 251, 248), (35, 38, 41), (104, 108, 112)
 #: Level of pixels that nobody cares about.
-_FREE = 128
+FREE = 128
 #: Views shown at most: of more, so many evenly chosen ones.
 MOST = 32
 
@@ -57,7 +57,7 @@ def contact_sheet(
     said = [
         (targets.names[view], f"{round(targets.angles_deg[view], 2):g}°  ·  {psnr[view]:.1f} dB") for view in chosen
     ]
-    return np.asarray(_laid_out(tiles, said, lines))
+    return np.asarray(laid_out(tiles, said, lines))
 
 
 def _pair_tile(levels: list[NDArray[np.uint8]], targets: Targets, view: int) -> Image.Image:
@@ -69,10 +69,10 @@ def _pair_tile(levels: list[NDArray[np.uint8]], targets: Targets, view: int) -> 
     zoom = math.floor(zoom) if zoom >= 1 else zoom
     size = max(1, round(columns * zoom)), max(1, round(rows * zoom))
     way = Image.Resampling.NEAREST if zoom >= 1 else Image.Resampling.LANCZOS
-    tile = Image.new("RGB", (max(2 * wide + _BETWEEN, _NARROWEST), high), _PAPER)
+    tile = Image.new("RGB", (max(2 * wide + BETWEEN, _NARROWEST), high), PAPER)
     for number, picture in enumerate(levels):
         image = Image.fromarray(np.ascontiguousarray(picture[:rows, :columns])).resize(size, way)
-        tile.paste(image, (number * (wide + _BETWEEN) + (wide - size[0]) // 2, (high - size[1]) // 2))
+        tile.paste(image, (number * (wide + BETWEEN) + (wide - size[0]) // 2, (high - size[1]) // 2))
     return tile
 
 
@@ -82,7 +82,7 @@ def _zoom(rows: int, columns: int) -> float:
     return max(1, round(_SIDE / longest)) if longest <= _LONGEST else _LONGEST / longest
 
 
-def _laid_out(tiles: list[Image.Image], said: list[tuple[str, str]], lines: tuple[str, str]) -> Image.Image:
+def laid_out(tiles: list[Image.Image], said: list[tuple[str, str]], lines: tuple[str, str]) -> Image.Image:
     """Tiles of one size with a name and figures below each, under a title and a note."""
     count, (wide, high) = len(tiles), tiles[0].size
     font = {size: ImageFont.load_default(size) for size in (_TITLE, _NOTE, _NAME, _FIGURE)}
@@ -98,7 +98,7 @@ def _laid_out(tiles: list[Image.Image], said: list[tuple[str, str]], lines: tupl
     across = min(range(1, count + 1), key=unlike_paper)
     width, height = across * step[0] + _GAP, -(-count // across) * step[1] + top
     width = max(width, math.ceil(font[_NOTE].getlength(lines[1])) + 2 * _GAP)
-    sheet = Image.new("RGB", (width, height), _PAPER)
+    sheet = Image.new("RGB", (width, height), PAPER)
     draw = ImageDraw.Draw(sheet)
 
     def write(left: int, above: int, text: str, size: int, ink: tuple[int, int, int], most: int) -> None:
@@ -118,14 +118,14 @@ def pair(shown: NDArray[np.float32], targets: Targets, view: int) -> list[NDArra
     """Wanted and shown of one view, 8-bit RGB; grey where there is nothing wanted."""
     weighed = targets.weight[view][..., None] > 0
     levels = [to_uint8(light, targets.transfer) for light in (targets.pictures[view], shown)]
-    return [_as_colours(np.where(weighed, each, _FREE)) for each in levels]
+    return [_as_colours(np.where(weighed, each, FREE)) for each in levels]
 
 
 def difference(shown: NDArray[np.float32], targets: Targets, view: int, gain: float = 1) -> NDArray[np.uint8]:
     """How far display values are off what was wanted, so many times as large, around mid grey: 8-bit RGB."""
     off = gain * (encode(shown, targets.transfer) - encode(targets.pictures[view], targets.transfer))
     levels = np.clip(np.rint((0.5 + off) * 255), 0, 255)
-    return _as_colours(np.where(targets.weight[view][..., None] > 0, levels, _FREE))
+    return _as_colours(np.where(targets.weight[view][..., None] > 0, levels, FREE))
 
 
 def _as_colours(levels: NDArray[Any]) -> NDArray[np.uint8]:
