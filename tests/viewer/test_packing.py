@@ -217,7 +217,7 @@ def test_the_command_writes_a_page(run: Any, tmp_path: Path, monkeypatch: pytest
         (("nothing.zarr",), "there is no nothing.zarr"),
         ((".",), "'.' names no cube"),
         (("cube.zarr", "-o", "folder.html"), "folder.html is a folder, and what is written is a file"),
-        (("cube.zarr", "-o", "page.png"), "use .html"),
+        (("cube.zarr", "-o", "page.png"), "use one of .html, .htm"),
         (("cube.zarr", "-o", "no/page.html"), "there is no folder no"),
         (("notes.txt",), "no suffix"),
         (("begun.zarr.partial",), "start again"),

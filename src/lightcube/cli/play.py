@@ -17,6 +17,7 @@ from lightcube.errors import InputError
 from lightcube.jobs.reading import load
 from lightcube.optics.light import Beams, check_zoom
 from lightcube.verbs import words
+from lightcube.wording import counted
 
 
 @threaded
@@ -129,7 +130,14 @@ def _told(output: str, film: films.Film, *, as_json: bool) -> None:
     """Say what was made, how it goes, and what is wrong with it."""
     how = f"\n{film.said}" if film.said else ""
     flicker = film.flicker.share if arguments.is_movie(output) else None
-    done(as_json, f"{len(film)} pictures in {output}{how}", out=output, count=len(film), how=film.said, flicker=flicker)
+    done(
+        as_json,
+        f"{counted(len(film), 'picture')} in {output}{how}",
+        out=output,
+        count=len(film),
+        how=film.said,
+        flicker=flicker,
+    )
     if film.warning and arguments.is_movie(output) and not as_json:
         err.print(f"note: {film.warning}")
 

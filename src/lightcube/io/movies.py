@@ -17,6 +17,7 @@ from lightcube.io._places import Place, names_in
 from lightcube.io.pictures_folder import VIEWS_FILE, is_left_by_systems, views_text
 from lightcube.optics.transfer import Transfer, check_transfer, encode, from_levels
 from lightcube.optics.views import Views
+from lightcube.wording import counted
 
 Picture = NDArray[np.float32]
 Levels = NDArray[np.uint8]
@@ -128,7 +129,7 @@ def _count(pictures: Iterable[Frame], count: int | None, each: Mapping[str, Size
         count = len(pictures)
     for what, given in each.items():
         if given is not None and len(given) != count:
-            raise InputError(f"{len(given)} {what} for {count} pictures: give one per picture")
+            raise InputError(f"{len(given)} {what} for {counted(count, 'picture')}: give one per picture")
     return count
 
 
@@ -158,7 +159,7 @@ def _checked(pictures: Iterable[Frame], count: int, scale: int) -> Iterator[Fram
         picture = _real(given, number)
         shape = shape or picture.shape
         if number > count:
-            raise InputError(f"more than the {count} pictures that were announced came: mend the count")
+            raise InputError(f"more came than the {counted(count, 'picture')} announced: mend the count")
         if picture.ndim != 3 or picture.shape != shape or picture.size == 0:
             raise InputError(
                 f"picture number {number} has shape {picture.shape} and the first one {shape}: give pictures of one "
@@ -168,7 +169,7 @@ def _checked(pictures: Iterable[Frame], count: int, scale: int) -> Iterator[Fram
             raise InputError(f"picture number {number} holds NaN or infinite values and cannot be written: mend it")
         yield picture.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else picture
     if number != count:
-        raise InputError(f"{count} pictures were announced and {number} came: mend the count")
+        raise InputError(f"{counted(count, 'picture')} announced and {number} came: mend the count")
 
 
 def _real(picture: Frame, number: int) -> Frame:

@@ -9,6 +9,7 @@ from lightcube.report import verdict
 from lightcube.report.html import element, figure, image, sentences, text
 from lightcube.report.measuring import Findings
 from lightcube.report.words import span
+from lightcube.wording import counted
 
 
 @dataclass(frozen=True)
@@ -65,9 +66,9 @@ def _what(found: Findings) -> str:
     if count == 1:
         shows = "its shadow is a picture"
     elif len(np.unique(cube.angles_deg)) == count:
-        shows = f"at each of {count} stops its shadow is another picture"
+        shows = f"at each of {counted(count, 'stop')} its shadow is another picture"
     else:
-        shows = f"its shadows are {count} pictures"
+        shows = f"its shadows are {counted(count, 'picture')}"
     said = (
         f"Light falls through a block of coloured glass; {shows}. It is {size} mm large, of {nx} × {ny} × {nz} "
         f"voxels; its pictures have {span(columns)} × {span(rows)} pixels."

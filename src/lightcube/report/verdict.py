@@ -6,6 +6,7 @@ from lightcube.optics.disturbance import DISTURBANCES
 from lightcube.report.measuring import Findings
 from lightcube.scoring.between import LOBE_DB
 from lightcube.scoring.metrics import FAIR_DB, GOOD_DB, WELL_DB, grain_word
+from lightcube.wording import counted
 
 #: Turning the table that far off a stop is not felt by a hand, degrees: a picture that stands so long stands at ease.
 _AT_EASE = 1.0
@@ -25,7 +26,9 @@ def good(found: Findings) -> Iterator[str]:
     well = sum(mark(psnr) == "good" for psnr in each)
     best = sum(psnr >= GOOD_DB for psnr in each)
     if well:
-        said = "Every picture comes out well" if well == count else f"{well} of {count} pictures come out well"
+        said = (
+            "Every picture comes out well" if well == count else f"{well} of {counted(count, 'picture')} come out well"
+        )
         yield f"{said}{_alike(best, well)}."
     if found.scores["delta_e_mean"] < 1:
         yield "Colours are right: on average no difference can be seen."
@@ -87,7 +90,7 @@ def _alike(best: int, well: int) -> str:
 
 
 def _pictures(count: int) -> str:
-    return "One picture" if count == 1 else f"{count} pictures"
+    return "One picture" if count == 1 else counted(count, "picture")
 
 
 def _few(names: Sequence[str]) -> str:
