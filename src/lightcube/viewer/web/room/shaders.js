@@ -165,10 +165,7 @@ void main() {
 /** Screens whose light is drawn in the air at most: more would hide the room. */
 export const MOST_BEAMS = 6;
 
-/**
- * The room. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
- * light behind the cube's glass, or on a veil before it. The things' layout is gpu.js's `thingTable`.
- */
+/** Glass that shines under the lamp, seen front to back as a ray walks through it. */
 const EMBERS = `
 vec3 embers = vec3(0.0);  // light that the glass itself throws to the eye, so far
 float unveiled = 1.0;     // and how much of what lies behind still does
@@ -185,6 +182,10 @@ void shine(vec3 dense, float piece) {
 #define LIT(dense, piece) shine(dense, piece)
 `;
 
+/**
+ * The room. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
+ * light behind the cube's glass, or on a veil before it. The things' layout is gpu.js's `thingTable`.
+ */
 export const ROOM = `${HEAD}${TRANSFER}${EMBERS}${GLASS}
 const int MOST_BEAMS = ${MOST_BEAMS};
 uniform vec2 canvas;      // pixels
@@ -376,7 +377,7 @@ vec2 metSheet() {
 }
 
 /* Where the ray is in the light that falls on a screen: from, and to. */
-vec2 metBeam(int i, vec4 source, vec3 corner, vec3 across, vec3 below) {
+vec2 metBeam(vec4 source, vec3 corner, vec3 across, vec3 below) {
   float from = 0.0, to = solid;
   vec3 inside = corner + 0.5 * (across + below);
   for (int side = 0; side < 4; side++) {
@@ -395,14 +396,14 @@ const int STEPS = 14;
 
 /* The light that dust in the air throws to the eye, behind the glass and before it: white up to the cube, then coloured. */
 void drawBeams() {
+  if (onPicture) return;
   float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   float ahead = length(way);
-  if (onPicture) return;
   for (int i = 0; i < min(counts.x, MOST_BEAMS); i++) {
     if (beamTones[i] == vec3(0.0)) continue;
     vec4 corner = things[4 * i], right = things[4 * i + 1], down = things[4 * i + 2], facing = things[4 * i + 3];
     vec3 across = right.xyz * right.w, below = down.xyz * corner.w;
-    vec2 met = metBeam(i, beams[i], corner.xyz, across, below);
+    vec2 met = metBeam(beams[i], corner.xyz, across, below);
     if (met.x >= met.y) continue;
     float piece = (met.y - met.x) / float(STEPS);
     for (int k = 0; k < STEPS; k++) {
