@@ -13,6 +13,7 @@ from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
+from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.viewer.description import describe
 from lightcube.viewer.label import Label
 from lightcube.viewer.packing import pack
@@ -206,6 +207,24 @@ def test_the_lamps_eye_sees_the_picture(evaluate: Open) -> None:
         off = np.abs(found - right(cube, where, thin=True)[0])
         assert np.median(off) < 3
         assert np.mean(off < 16) > 0.9
+
+
+def test_the_lamps_eye_has_the_light_of_its_lamp_on_its_wall(evaluate: Open) -> None:
+    """A lamp that lights two walls, each with a power of its own, beside a weaker one that lights the first too."""
+    room = Grid((3, 5, 7), 1.4)
+    walls = Screen("near", (9, 0, -2), (5.6, 8.4), 1.4), Screen("far", (14, 0, -3.4), (5.6, 8.4), 1.4)
+    lamps = Lamp("sun", (1, 0, -0.3)), Lamp("moon", (1, 0.2, -0.3))
+    shots = Shot("one", "near", ("sun", "moon")), Shot("two", "far", ("sun",))
+    rig = Stage(room, lamps, walls, shots, cube_turns=False).rig()
+    given_powers = {(0, 0): 0.6, (0, 1): 0.2, (1, 0): 0.3}
+    powers = np.array([given_powers[int(picture), int(lamp)] for picture, lamp in rig.pairs])
+    cube = Cube(np.zeros((3, 3, 5, 7), np.float32), room, rig, np.repeat(powers[:, None], 3, axis=1))
+    found = evaluate(
+        ("model/stage.js", "room/furniture.js"),
+        "lampOfEye(argument.scene, exposures(argument.scene, 0), standing(argument.scene, 0)).light",
+        given(cube),
+    )
+    assert found == pytest.approx([0.6, 0.6, 0.6])
 
 
 def test_the_lamps_eye_is_a_key_and_a_way_back(visit: Open) -> None:

@@ -16,6 +16,9 @@ OUT = typer.Option("-o", "--out", help="Where to write; the suffix says what.", 
 OVERWRITE = typer.Option("--overwrite", help="Replace the target if it exists.", rich_help_panel="Output")
 VERBOSE = typer.Option("--verbose", help="Print all numbers too.", rich_help_panel="Output")
 JSON = typer.Option("--json", help="Print JSON for machines.", rich_help_panel="Output")
+TITLE = typer.Option("--title", help="What it is called.  [default: the cube's name]")
+BY = typer.Option("--by", help="Who made it.", show_default=False)
+NOTE = typer.Option("--note", help="A dedication, or a word on it.", show_default=False)
 FPS = typer.Option("--fps", help="Pictures per second of a movie.", rich_help_panel="Output")
 THREADS = Annotated[
     str | None,

@@ -6,7 +6,7 @@ import typer
 
 from lightcube import io
 from lightcube.cli.console import done, telling
-from lightcube.cli.options import JSON, OVERWRITE, threaded
+from lightcube.cli.options import BY, JSON, NOTE, OVERWRITE, TITLE, threaded
 from lightcube.jobs.reading import load
 from lightcube.verbs import reporting
 from lightcube.viewer.label import Label
@@ -22,9 +22,9 @@ def report(
         str | None,
         typer.Option("-o", "--out", help="The page to write.  [default: the cube's name, -report.html, here]"),
     ] = None,
-    title: Annotated[str | None, typer.Option("--title", help="What it is called.  [default: the cube's name]")] = None,
-    by: Annotated[str, typer.Option("--by", help="Who made it.", show_default=False)] = "",
-    note: Annotated[str, typer.Option("--note", help="A dedication, or a word on it.", show_default=False)] = "",
+    title: Annotated[str | None, TITLE] = None,
+    by: Annotated[str, BY] = "",
+    note: Annotated[str, NOTE] = "",
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:

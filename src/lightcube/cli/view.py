@@ -8,7 +8,7 @@ import typer
 
 from lightcube import io
 from lightcube.cli.console import done, err, telling
-from lightcube.cli.options import JSON, OVERWRITE, threaded
+from lightcube.cli.options import BY, JSON, NOTE, OVERWRITE, TITLE, threaded
 from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
 from lightcube.verbs import viewing
@@ -21,9 +21,9 @@ def view(
     output: Annotated[
         str | None, typer.Option("-o", "--out", help="The page to write.  [default: the cube's name with .html, here]")
     ] = None,
-    title: Annotated[str | None, typer.Option("--title", help="What it is called.  [default: the cube's name]")] = None,
-    by: Annotated[str, typer.Option("--by", help="Who made it.", show_default=False)] = "",
-    note: Annotated[str, typer.Option("--note", help="A dedication, or a word on it.", show_default=False)] = "",
+    title: Annotated[str | None, TITLE] = None,
+    by: Annotated[str, BY] = "",
+    note: Annotated[str, NOTE] = "",
     preview: Annotated[
         bool, typer.Option("--preview", help="Write a picture of it too, a PNG beside the page, for who shares it.")
     ] = False,

@@ -45,10 +45,7 @@ def good(found: Findings) -> Iterator[str]:
 def wanting(found: Findings) -> Iterator[str]:
     """What is not good, a sentence each."""
     names, each = found.cube.names, _psnr(found)
-    for kind, how in (
-        ("fair", "recognisable, with faults that one sees"),
-        ("poor", "hard to recognise, or not at all"),
-    ):
+    for kind, how in _SHORT_OF_GOOD.items():
         such = [name for name, psnr in zip(names, each, strict=True) if mark(psnr) == kind]
         if such:
             yield f"{_pictures(len(such))} {'is' if len(such) == 1 else 'are'} {kind}, {how}: {_few(such)}."

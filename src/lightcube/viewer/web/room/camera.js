@@ -1,7 +1,7 @@
 // A camera on an orbit round the cube, and what its rays meet; lengths are mm, in the room.
 
 import { add, cross, dot, modulo, norm, scaled, sub, unit } from "../tools/vectors.js";
-import { extentOf, lampsLighting, screenCorners } from "./furniture.js";
+import { extentOf, lampOfEye, screenCorners } from "./furniture.js";
 
 /** Heights of the eye above its target's level, degrees: above the floor, and with an upright picture. */
 export const LOWEST = 2;
@@ -96,10 +96,8 @@ export function fitted(orbit, scene, rooms, aspect) {
  * @param {object} room
  */
 export function lampsOrbit(scene, exposures, room) {
-  const lit = Math.max(0, exposures.findIndex((exposure) => exposure.lit));
-  const screen = room.screens[lit];
+  const { screen, lamp } = lampOfEye(scene, exposures, room);
   const middle = scaled(screenCorners(screen).reduce(add), 1 / 4);
-  const lamp = room.lamps[lampsLighting(scene, exposures[lit])[0] ?? 0];
   const high = Math.max(norm(screen.down) * screen.pixels[0], norm(screen.right) * screen.pixels[1]);
   if (!lamp.parallel) {
     const half = (high * ASPECT) / (2 * LAMPS_SIGHT * norm(sub(lamp.place, middle)));

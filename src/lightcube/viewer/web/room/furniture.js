@@ -194,6 +194,18 @@ export function lampsLighting(scene, exposure) {
   return numbers.map((_, i) => i).filter((i) => light[i] > 0).sort((a, b) => light[b] - light[a]);
 }
 
+/**
+ * The lamp whose eye one takes: the brightest one that lights the first lit screen, and its light there alone.
+ * @returns {{screen: object, lamp: object, light: number[]}}
+ */
+export function lampOfEye(scene, exposures, room) {
+  const lit = Math.max(0, exposures.findIndex((exposure) => exposure.lit));
+  const number = lampsLighting(scene, exposures[lit])[0] ?? 0;
+  const own = [...new Set(scene.views.map((view) => view.lamp))].sort((a, b) => a - b)[number];
+  const light = exposures[lit].views.filter((view) => view.lamp === own).map((view) => view.power);
+  return { screen: room.screens[lit], lamp: room.lamps[number], light: light.reduce(add, [0, 0, 0]) };
+}
+
 function hintLines(scene, exposures, room, tones) {
   const lines = [];
   const addLine = (...ends) => (parts) => lines.push({ ends, colour: tones.hint, parts, width: 1, over: false });

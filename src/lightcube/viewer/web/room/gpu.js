@@ -3,7 +3,7 @@
 import { pointsOf } from "../model/area.js";
 import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, seenAt } from "./camera.js";
-import { TONES, floorOf, fromFar, halfSides, lampRadius, lampsLighting } from "./furniture.js";
+import { TONES, floorOf, fromFar, halfSides, lampOfEye, lampRadius, lampsLighting } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, tableOf, wallWidth } from "./furniture.js";
 import { CAST, EVERYWHERE, MOST_BEAMS, ROOM } from "./shaders.js";
 
@@ -353,7 +353,7 @@ function setThings(gl, painter, { scene, exposures, parts, room, camera, dark, m
   const lit = room.lamps.reduce((sum, { light }) => add(sum, light), [0, 0, 0]);
   gl.uniform3fv(painter.at("emberTone"), scaled(pureColour(lit) ?? [0, 0, 0], tones.ember));
   gl.uniform1f(painter.at("bare"), bare);
-  gl.uniform3fv(painter.at("bareTone"), lit);
+  gl.uniform3fv(painter.at("bareTone"), lampOfEye(scene, exposures, room).light);
   setBeams(gl, painter, scene, exposures, room, camera.eye);
   const sheet = markedSheet(scene, exposures, room, mark);
   gl.uniform1i(painter.at("sheetKind"), sheet ? sheet.kind : 0);

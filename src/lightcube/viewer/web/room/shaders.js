@@ -208,7 +208,7 @@ uniform vec4 beams[MOST_BEAMS];  // of each screen its brightest lamp: how its l
 uniform vec3 beamTones[MOST_BEAMS];  // that lamp's colour; black where no light falls
 uniform float glow;       // how much light the air shows
 uniform vec3 emberTone;   // of the glass under the lamp; black without one
-uniform vec3 bareTone;    // the light of all lamps, and
+uniform vec3 bareTone;    // the light of the lamp whose eye one takes, and
 uniform float bare;       // 0 glass as one likes to see it, 1 as light goes through it, before bare light
 uniform mat3 sheet;       // a corner of the marked row's beams, and two sides
 uniform int sheetKind;    // 0 none, 1 of parallel light, 2 of a lamp in that corner
