@@ -125,6 +125,7 @@ def test_numbers_wait_behind_details(visit: Open) -> None:
     assert not tab.locator(".scanline").is_visible()
     button = tab.get_by_role("button", name="Details")
     button.click()
+    rested(tab)
     assert button.get_attribute("aria-pressed") == "true"
     assert "dB" in tab.evaluate(seen)
     assert tab.locator(".scanline").is_visible()

@@ -174,6 +174,7 @@ def test_keys_leave_alone_what_is_typed_in(visit: Open) -> None:
     before = tab.locator("#lightcube").get_attribute("data-theme")
     for key in ("t", "Home", "ArrowRight"):
         tab.keyboard.press(key)
+    rested(tab)
     assert tab.locator("#lightcube").get_attribute("data-theme") == before
     assert angle_deg(tab) == STOPS[0]
 
