@@ -36,6 +36,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "Light": {},
     "Mat": {},
     "Material": {},
+    "Mesh": {"vertices_mm": np.eye(4, 3), "faces": [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]},
     "Pictures": {"images": [np.ones((2, 3, 3))], "names": ["a"]},
     "Plan": {
         "pictures": PICTURES,

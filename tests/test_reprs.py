@@ -19,6 +19,7 @@ def of_everything() -> dict[str, object]:
     alike = lc.Pictures((np.ones((2, 3, 3), np.float32), np.ones((2, 3, 3), np.float32)), ("a", "b"))
     values = [pictures, alike, plan, plan.targets, plan.targets.rig, plan.prediction, solution, solution.cube, stage]
     values += [lc.Grid((5, 7, 6)), lc.Recipe(), lc.Material(), lc.METHODS, lc.Projector(plan.grid, plan.targets.rig)]
+    values += [lc.Mesh(np.eye(4, 3), np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]))]
     return {f"{type(value).__name__}-{index}": value for index, value in enumerate(values)}
 
 

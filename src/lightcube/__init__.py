@@ -47,6 +47,7 @@ __getattr__, __dir__, __all__ = when_used(
         "predict": "planning.prediction",
         "Projector": "projection.projector",
         "dot_test": "projection.projector",
+        "Mesh": "solids.mesh",
         "Scene": "scene.scene",
         "scene_targets": "scene.tracer",
         "scene_rig": "scene.tracer",

@@ -30,6 +30,7 @@ from lightcube.projection.projector import Projector, dot_test
 from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.scoring.metrics import score
+from lightcube.solids.mesh import Mesh
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
 from lightcube.viewer.label import Label
@@ -46,6 +47,7 @@ __all__ = [
     "Light",
     "Mat",
     "Material",
+    "Mesh",
     "Pictures",
     "Plan",
     "Prediction",

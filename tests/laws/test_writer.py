@@ -24,11 +24,13 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.io import Output, read_pictures, save
 from lightcube.io.outputs import KINDS, Kind
+from lightcube.io.printable import read_written
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import from_levels, to_uint8
+from lightcube.solids.mesh import Mesh
 
 #: How much a kind that keeps less than all may be off: the mean over a picture, in levels.
 LOSSY = {".mp4": 3.0, ".gif": 6.0, ".jpg": 3.0, ".jpeg": 3.0, ".webp": 3.0}
@@ -56,6 +58,30 @@ def a_cube(number: int, suffix: str) -> Cube:
 
 def is_the_cube(cube: Cube, path: Path, suffix: str) -> None:
     np.testing.assert_array_equal(load(path).extinction, cube.extinction)
+
+
+def a_mesh(number: int, suffix: str) -> Mesh:
+    """A lumpy ball."""
+    around, up = 9 + number, 7
+    turn, rise = np.arange(around) / around * 2 * np.pi, (np.arange(up) + 1) / (up + 1) * np.pi
+    radius = np.random.default_rng(number).uniform(9, 11, (up, around))
+    ring = np.stack([np.outer(np.sin(rise), np.cos(turn)), np.outer(np.sin(rise), np.sin(turn))], axis=2)
+    net = np.concatenate([radius[..., None] * ring, radius[..., None] * np.cos(rise)[:, None, None]], axis=2)
+    vertices = np.concatenate([net.reshape(-1, 3), [(0, 0, 10), (0, 0, -10)]])
+    faces = [(len(vertices) - 2, j, (j + 1) % around) for j in range(around)]
+    low = (up - 1) * around
+    faces += [(len(vertices) - 1, low + (j + 1) % around, low + j) for j in range(around)]
+    for i in range(up - 1):
+        for j in range(around):
+            a, b = i * around + j, i * around + (j + 1) % around
+            faces += [(a, a + around, b), (b, a + around, b + around)]
+    return Mesh(vertices, np.array(faces))
+
+
+def is_the_mesh(mesh: Mesh, path: Path, suffix: str) -> None:
+    read = read_written(path)
+    np.testing.assert_array_equal(read.triangles, mesh.vertices_mm.astype(np.float32)[mesh.faces])
+    assert read.is_watertight
 
 
 def some_pictures(number: int, suffix: str) -> NDArray[np.float32]:
@@ -117,6 +143,7 @@ def is_the_document(document: dict[str, Any], path: Path, suffix: str) -> None:
 
 EXAMPLES: Mapping[Kind, Example] = {
     "cube": Example(a_cube, is_the_cube),
+    "mesh": Example(a_mesh, is_the_mesh),
     "pictures": Example(some_pictures, are_the_pictures),
     "page": Example(a_text, is_the_text),
     "drawing": Example(a_text, is_the_text),

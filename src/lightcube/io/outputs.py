@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.io import cubes, documents, movies
+from lightcube.io import cubes, documents, movies, printable
 from lightcube.io._files import Replaceable, Writer, check_free, suffix_entry, written_whole
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.solids.mesh import Mesh
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,10 +25,12 @@ if TYPE_CHECKING:
 Given = TypeVar("Given", bound=str | Path)
 
 #: What can be written, by name.
-Kind = Literal["cube", "pictures", "page", "drawing", "plot", "picture", "document"]
+Kind = Literal["cube", "mesh", "pictures", "page", "drawing", "plot", "picture", "document"]
 
 #: Whatever is of one of the kinds.
-Thing: TypeAlias = "Cube | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any] | movies.Levels | Figure"
+Thing: TypeAlias = (
+    "Cube | Mesh | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any] | movies.Levels | Figure"
+)
 
 
 @dataclass(frozen=True)
@@ -69,6 +72,7 @@ def _is_picture(thing: Any) -> bool:
 #: The table; of the kinds that take a thing, `save` chooses the first one that knows the suffix.
 KINDS: Mapping[Kind, Row] = {
     "cube": Row("a cube", cubes.WRITERS, lambda thing: isinstance(thing, Cube), {".zarr": cubes.is_cube_folder}),
+    "mesh": Row("a mesh", printable.WRITERS, lambda thing: isinstance(thing, Mesh)),
     "page": Row("a page", dict.fromkeys((".html", ".htm"), documents.write_text), lambda thing: isinstance(thing, str)),
     "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),
     "plot": Row("a plot", documents.PLOTS, lambda thing: hasattr(thing, "savefig")),
@@ -123,6 +127,8 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
     thing
         * A cube: ``.zarr`` (a folder, OME-Zarr 0.5: napari and others open it as it is), ``.zarr.zip`` (the same in
           one file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
+        * A mesh, in mm: ``.stl`` (binary), ``.3mf``, ``.obj`` or ``.ply`` (binary), coordinates in float32. It is read
+          back before it gets its name, and is then as closed and of the same volume to a millionth.
         * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white,
           or 8-bit display levels, which are written as they are:
           ``.png`` for a single one, ``.mp4`` (H.264, visually lossless; at an even `scale` in 4:2:0, which every player
@@ -171,7 +177,8 @@ def _kind(thing: Thing, at: Place) -> Kind:
     kinds: list[Kind] = [kind for kind, row in KINDS.items() if row.takes(thing)]
     if not kinds:
         raise InputError(
-            f"save has no way to write {type(thing).__name__}: give a Cube, pictures, text, a figure or a mapping"
+            f"save has no way to write {type(thing).__name__}: "
+            "give a Cube, a Mesh, pictures, text, a figure or a mapping"
         )
     if len(kinds) == 1:
         return kinds[0]
