@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io import Output, read_pictures, save
+from lightcube.io import Output, read_pictures, read_shape, save
 from lightcube.io.outputs import KINDS, Kind
 from lightcube.io.printable import read_written
 from lightcube.jobs.reading import load
@@ -31,6 +31,8 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import from_levels, to_uint8
 from lightcube.solids.mesh import Mesh
+from lightcube.solids.shape import Shape
+from lightcube.solids.silhouettes import FINE, Silhouettes
 
 #: How much a kind that keeps less than all may be off: the mean over a picture, in levels.
 LOSSY = {".mp4": 3.0, ".gif": 6.0, ".jpg": 3.0, ".jpeg": 3.0, ".webp": 3.0}
@@ -82,6 +84,27 @@ def is_the_mesh(mesh: Mesh, path: Path, suffix: str) -> None:
     read = read_written(path)
     np.testing.assert_array_equal(read.triangles, mesh.vertices_mm.astype(np.float32)[mesh.faces])
     assert read.is_watertight
+
+
+def a_shape(number: int, suffix: str) -> Shape:
+    """A body of noise."""
+    grid = Grid(((9, 11, 13), (13, 9, 11))[number], 0.3, 1.5)
+    rig = turntable(grid, [10.0, 41.7], elevation_deg=20, picture_shape=(3, 5))
+    random = np.random.default_rng(number)
+    field = np.rint(64 * random.normal(size=grid.shape)) / 64 + 1 / 256
+    given = Silhouettes(random.random((2, 3 * FINE, 5 * FINE)) < 0.5, rig, ("a", "ünï"))
+    return Shape(field.astype(np.float32), grid, given, {"size_mm": 2.5, "names": ["a"]})
+
+
+def is_the_shape(shape: Shape, path: Path, suffix: str) -> None:
+    if suffix != ".shape.zarr":
+        is_the_mesh(shape.mesh.standing(), path, suffix)
+        return
+    read = read_shape(path)
+    np.testing.assert_array_equal(read.field, shape.field)
+    np.testing.assert_array_equal(read.silhouettes.inside, shape.silhouettes.inside)
+    np.testing.assert_array_equal(read.rig.views.lamps, shape.rig.views.lamps)
+    assert (read.grid, read.names, read.provenance) == (shape.grid, shape.names, shape.provenance)
 
 
 def some_pictures(number: int, suffix: str) -> NDArray[np.float32]:
@@ -144,6 +167,7 @@ def is_the_document(document: dict[str, Any], path: Path, suffix: str) -> None:
 EXAMPLES: Mapping[Kind, Example] = {
     "cube": Example(a_cube, is_the_cube),
     "mesh": Example(a_mesh, is_the_mesh),
+    "shape": Example(a_shape, is_the_shape),
     "pictures": Example(some_pictures, are_the_pictures),
     "page": Example(a_text, is_the_text),
     "drawing": Example(a_text, is_the_text),

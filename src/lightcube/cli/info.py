@@ -4,19 +4,20 @@ from typing import Annotated
 
 import typer
 
+from lightcube import io
 from lightcube.cli import arguments
 from lightcube.cli.console import json_document, out
 from lightcube.cli.options import JSON
 from lightcube.jobs.reading import load
-from lightcube.scoring.facts import facts
+from lightcube.scoring.facts import facts, shape_facts
 
 
 def info(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
+    thing: Annotated[str, typer.Argument(metavar="CUBE|SHAPE", help="A cube, or a shape.")],
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Say what is in a cube file."""
-    known = facts(load(cube))
+    """Say what is in the file of a cube or of a shape."""
+    known = shape_facts(io.read_shape(thing)) if io.is_shape(thing) else facts(load(thing))
     if as_json:
         json_document(known)
         return

@@ -21,6 +21,9 @@ from lightcube.optics.transfer import Transfer
 #: Of the files that this version writes; earlier ones are told as this one when they are read (`lightcube.io._older`).
 FORMAT_VERSION = 5
 
+#: What to do with files of this package that are no cubes.
+_NO_CUBES = {"shape": "lightcube info tells of it, lightcube.read_shape reads it"}
+
 _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Strict = ConfigDict(extra="forbid", strict=True)
 
@@ -142,6 +145,8 @@ def check_version(path: Path, document: object) -> Mapping[str, Any]:
     """Return `document`, or raise `InputError` unless it is a light cube's, in a format that this version reads."""
     if not isinstance(document, Mapping) or "format_version" not in document:
         raise InputError(f"{path} is no light cube: it has no lightcube metadata, give a file that lightcube wrote")
+    if (kind := document.get("kind", "cube")) != "cube":
+        raise InputError(f"{path} is a {kind}, no cube: {_NO_CUBES.get(str(kind), 'give a cube')}")
     found = document["format_version"]
     if isinstance(found, int) and found > FORMAT_VERSION:
         raise InputError(
