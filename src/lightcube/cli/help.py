@@ -25,6 +25,10 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
             "look at what will be cropped, a little higher up",
         ),
         ("lightcube check photos --n 64 --lamp-max 4", "the same of a smaller cube and a weaker lamp"),
+        (
+            "lightcube check front.png side.png top.png --opaque --walls --map why",
+            "why a word cannot be built",
+        ),
     ],
     "hull": [
         ("lightcube hull front.png side.png top.png --walls -o word.stl", "three letters for three walls"),

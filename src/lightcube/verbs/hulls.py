@@ -4,7 +4,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.solids.certificate import Certificate, certify
 from lightcube.solids.cutting import Cut, cut, plain_ground
 from lightcube.solids.mesh import Mesh
+from lightcube.solids.placement import best, placements
 from lightcube.solids.reach import thin_part
 from lightcube.solids.shape import Shape, hull
 from lightcube.solids.silhouettes import Silhouettes
@@ -32,6 +33,8 @@ from lightcube.wording import counted
 _MANY_NEAR, _MANY_THIN, _SOME = 0.02, 0.01, 0.0005
 
 
+#: Whether pictures stand on three walls as they are given, or as least of them is lost.
+Place = Literal["given", "best"]
 #: Whatever reading gives.
 Read = TypeVar("Read")
 
@@ -44,6 +47,7 @@ class Cutting:
     invert: bool | None = None
     is_walls: bool = False
     fit: Fit | None = None
+    placement: Place = "given"
 
 
 @dataclass(frozen=True)
@@ -105,7 +109,13 @@ def read(sources: Sequence[str], options: Options, how: Cutting) -> Wanted:
     cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
     if how.is_walls and how.fit is not None:
         raise InputError("--fit is for a turntable, and pictures for --walls are stretched to a block: leave out --fit")
-    return _on_walls(cuts, options) if how.is_walls else _on_turntable(pictures, cuts, options, how.fit or "pad")
+    if how.placement != "given" and not how.is_walls:
+        raise InputError("--placement is for three walls: leave it out, or say --walls")
+    return (
+        _on_walls(cuts, options, how.placement)
+        if how.is_walls
+        else _on_turntable(pictures, cuts, options, how.fit or "pad")
+    )
 
 
 def _of_stage(source: str, options: Options, how: Cutting) -> Wanted:
@@ -125,7 +135,7 @@ def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, f
     return Wanted(silhouettes(cuts, options.turntable.rig(pictures, grid), fit), grid, cuts)
 
 
-def _on_walls(cuts: tuple[Cut, ...], options: Options) -> Wanted:
+def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Wanted:
     """Silhouettes on three walls, trimmed to their shapes, in the block that they fill."""
     said = (options.angles_deg, options.span_deg, options.elevation_deg)
     for option, value in zip(("--angles-deg", "--span-deg", "--elevation-deg"), said, strict=True):
@@ -136,6 +146,8 @@ def _on_walls(cuts: tuple[Cut, ...], options: Options) -> Wanted:
     names = [one.name.lower() for one in cuts]
     if sorted(names) == sorted(WALLS):
         cuts = tuple(cuts[names.index(name)] for name in WALLS)
+    if placement == "best":
+        cuts = best(placements(cuts)).of(cuts)
     grid, stretched = block(cuts, max(options.voxels), options.size_mm)
     trimmed = [one.trimmed() for one in cuts]
     return Wanted(silhouettes(trimmed, walls(grid).rig(), "stretch"), grid, cuts, stretched)
@@ -264,6 +276,6 @@ def results(shape: Shape, found: Certificate, pieces: int) -> list[str]:
     if found.missing[worst] > 0.005:
         said.append(
             f"no object casts {found.missing[worst]:.1%} of {shape.names[worst]} while it keeps to the others: "
-            "lightcube check --opaque says where and why"
+            "lightcube check --opaque says where and why, and of three walls which placement is better"
         )
     return said
