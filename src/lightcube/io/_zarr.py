@@ -9,6 +9,7 @@ import math
 import warnings
 import zipfile
 from collections.abc import Callable, Coroutine, Iterable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import Any, TypeVar
@@ -34,6 +35,17 @@ Value = TypeVar("Value")
 #: By an array's name: how many of its chunks are not there, of how many.
 Missing = dict[str, tuple[int, int]]
 Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What a group holds: the name of its second array, what its document must be, and what to say where it is not."""
+
+    second: str
+    check: Callable[[Path, object], object]
+    damaged: Callable[[Path, str], InputError]
+
+
 #: An array with its name and those of its axes.
 Named = tuple[str, NDArray[Any], list[str]]
 
@@ -51,6 +63,8 @@ _IMAGE, _TARGETS, _SILHOUETTES, _ATTRIBUTE = "0", "targets", "silhouettes", "lig
 #: Where a display's white is, among the voxels that are not empty, in per cent: a twentieth of them or more are as dark
 #: as the material can be, ten times as dark as most, and a display that ends there shows a cube as black.
 _WHITE = 90
+_CUBE = _Kind(_TARGETS, _metadata.check_version, _metadata.damaged)
+_SHAPE = _Kind(_SILHOUETTES, _shape_json.check_version, _shape_json.damaged)
 _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
 
 
@@ -79,9 +93,9 @@ def read_shape(path: Path) -> Shape:
 
     async def read() -> Parts:
         store, size = _folder(path)
-        return await _read(path, store, size, missing, second=_SILHOUETTES, check=_shape_json.check_version)
+        return await _read(path, store, size, missing, kind=_SHAPE)
 
-    document, field, given = _reading(path, read)
+    document, field, given = _reading(path, read, _SHAPE)
     if missing:
         raise _shape_json.damaged(path, f"parts of its array {next(iter(missing))!r} are missing")
     return _shape_json.from_json(path, document, field, given)
@@ -140,7 +154,7 @@ def read_zarr_zip(path: Path) -> Cube:
 def _cube(path: Path, read: Callable[[Missing], Coroutine[Any, Any, Parts]]) -> Cube:
     """The cube of what `read` finds; of parts that are not there a note says so."""
     missing: Missing = {}
-    cube = _metadata.from_json(path, *_reading(path, lambda: read(missing)))
+    cube = _metadata.from_json(path, *_reading(path, lambda: read(missing), _CUBE))
     for name, (absent, count) in missing.items():
         warnings.warn(
             f"{absent} of the {count} parts of array {name!r} in {path} are not there and were taken as empty, as the "
@@ -240,25 +254,24 @@ async def _read(
     missing: Missing,
     inside: str = "",
     *,
-    second: str = _TARGETS,
-    check: Callable[[Path, object], object] = _metadata.check_version,
+    kind: _Kind = _CUBE,
 ) -> Parts:
     """Metadata and the two arrays of the group in a store, or in a folder inside it; and what is `missing`."""
-    store = Guarded(opened, size, partial(_metadata.damaged, path))
+    store = Guarded(opened, size, partial(kind.damaged, path))
     try:
         group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
         document = group.attrs.get(_ATTRIBUTE)
-        check(path, document)
-        extinction = await _array(path, store, group, _IMAGE, missing)
+        kind.check(path, document)
+        extinction = await _array(path, store, group, _IMAGE, missing, kind)
         if extinction is None:
-            raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await _array(path, store, group, second, missing)
+            raise kind.damaged(path, f"its array {_IMAGE!r} is missing")
+        return document, extinction, await _array(path, store, group, kind.second, missing, kind)
     finally:
         store.close()
 
 
 async def _array(
-    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing
+    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing, kind: _Kind
 ) -> NDArray[Any] | None:
     """All of an array, or None where there is none; `InputError` where chunks are missing.
 
@@ -268,17 +281,17 @@ async def _array(
         return None
     array = await group.getitem(name)
     if not isinstance(array, zarr.AsyncArray) or array.ndim != 4 or not all(array.shape):
-        raise _metadata.damaged(path, f"{name!r} is not an array with 4 axes, none of them empty")
+        raise kind.damaged(path, f"{name!r} is not an array with 4 axes, none of them empty")
     chunk_bytes = math.prod(array.chunks) * array.dtype.itemsize
     if max(array.nbytes, chunk_bytes) > memory() // 2:
         raise InputError(f"{path} states more than half of this machine's memory: open it on a larger one")
     store.expect(array.metadata.codecs, chunk_bytes)
     counts = [-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True)]
     if not _is_as_written(array) and math.prod(counts) > _MOST_CHUNKS:
-        raise _metadata.damaged(path, f"its array {name!r} has more than {_MOST_CHUNKS:,} chunks: make them larger")
+        raise kind.damaged(path, f"its array {name!r} has more than {_MOST_CHUNKS:,} chunks: make them larger")
     absent = await _absent(store, array, counts)
     if absent and _is_as_written(array):
-        raise _metadata.damaged(path, f"parts of its array {name!r} are missing")
+        raise kind.damaged(path, f"parts of its array {name!r} are missing")
     if absent:
         missing[name] = (absent, math.prod(counts))
     return locked(np.asarray(await array.getitem(...)))
@@ -297,7 +310,7 @@ def _is_as_written(array: zarr.AsyncArray[Any]) -> bool:
     return any(isinstance(codec, ZstdCodec) and codec.checksum for codec in array.metadata.codecs)
 
 
-def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:
+def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]], kind: _Kind) -> Parts:
     """Run `read`; whatever Zarr and its codecs raise over damaged bytes becomes one sentence."""
     try:
         with system_errors(path, "reading"):
@@ -308,7 +321,7 @@ def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Part
         raise InputError(f"{path} does not fit into this machine's memory: open it on a larger one") from error
     except Exception as error:  # Zarr, zipfile and numcodecs raise whatever they trip over
         detail = " ".join(str(error).split())[:100] or type(error).__name__
-        raise _metadata.damaged(path, detail) from error
+        raise kind.damaged(path, detail) from error
 
 
 def _run(work: Callable[[], Coroutine[Any, Any, Value]]) -> Value:

@@ -133,6 +133,8 @@ def _cut(
     invert: bool | None,
 ) -> Cut:
     """One picture's shape."""
+    if not np.all(np.isfinite(image)):
+        raise InputError(f"picture {name} holds NaN or infinities: mend it")
     by_opacity = opacity is not None and float(np.mean(opacity < 0.5)) >= _TRANSPARENT and bool(np.any(opacity >= 0.5))
     if by_opacity and opacity is not None:
         grey, at = 1 - opacity, 0.5 if threshold is None else 1 - threshold

@@ -1,5 +1,6 @@
 """What `hull` does: from pictures or a stage to silhouettes, to the shape that casts them, to what its file casts."""
 
+import math
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -22,13 +23,15 @@ from lightcube.solids.mesh import Mesh
 from lightcube.solids.placement import best, placements
 from lightcube.solids.reach import thin_part
 from lightcube.solids.shape import Shape, hull
-from lightcube.solids.silhouettes import Silhouettes
+from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.standing import silhouettes
 from lightcube.solids.walls import WALLS, block, walls
 from lightcube.verbs import solving
 from lightcube.verbs.options import Options
 from lightcube.wording import counted
 
+#: Bytes that a voxel takes, and a small pixel of a silhouette: field and its surface; silhouettes and their distances.
+_VOXEL_BYTES, _SMALL_BYTES = 12, 4
 #: Parts of pictures that are worth a word: near the threshold, in strokes that are too thin, not cast.
 _MANY_NEAR, _MANY_THIN, _SOME = 0.02, 0.01, 0.0005
 
@@ -123,7 +126,7 @@ def _of_stage(source: str, options: Options, how: Cutting) -> Wanted:
     solving.refuse_beside_stage(source, options)
     stage, pictures, ways = _on_white(lambda: io.read_stage(source, transfer=options.transfer))
     cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
-    return Wanted(silhouettes(cuts, stage.rig(), ways), stage.grid, cuts)
+    return _standing(cuts, stage.rig(), stage.grid, ways)
 
 
 def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, fit: Fit) -> Wanted:
@@ -132,7 +135,7 @@ def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, f
     rows, columns = cuts[0].coverage.shape
     wide, high = max(1, round(n * min(1.0, columns / rows))), max(1, round(n * min(1.0, rows / columns)))
     grid = Grid((high, wide, wide), options.size_mm / n)
-    return Wanted(silhouettes(cuts, options.turntable.rig(pictures, grid), fit), grid, cuts)
+    return _standing(cuts, options.turntable.rig(pictures, grid), grid, fit)
 
 
 def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Wanted:
@@ -149,8 +152,15 @@ def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Want
     if placement == "best":
         cuts = best(placements(cuts)).of(cuts)
     grid, stretched = block(cuts, max(options.voxels), options.size_mm)
-    trimmed = [one.trimmed() for one in cuts]
-    return Wanted(silhouettes(trimmed, walls(grid).rig(), "stretch"), grid, cuts, stretched)
+    made = _standing([one.trimmed() for one in cuts], walls(grid).rig(), grid, "stretch")
+    return replace(made, cuts=cuts, stretched=stretched)
+
+
+def _standing(cuts: Sequence[Cut], rig: Rig, grid: Grid, ways: Fit | Sequence[Fit]) -> Wanted:
+    """Shapes put onto a rig; `InputError` where that, or the block, does not fit into the memory."""
+    small = len(rig) * math.prod(rig.picture_shape) * FINE**2
+    solving.check_memory(_VOXEL_BYTES * math.prod(grid.shape) + _SMALL_BYTES * small)
+    return Wanted(silhouettes(cuts, rig, ways), grid, tuple(cuts))
 
 
 def _pictures(sources: Sequence[str], options: Options) -> Pictures:
