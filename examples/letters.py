@@ -89,10 +89,12 @@ def body(mesh: lc.Mesh) -> tuple[Array, Array]:
     weights = np.array([(a, b, 3 - a - b) for a in range(4) for b in range(4 - a)]) / 3
     points = np.einsum("pk,fkc->fpc", weights, mesh.triangles).reshape(-1, 3)
     a, b, c = mesh.triangles.transpose(1, 0, 2)
-    normals = np.cross(b - a, c - a)
+    around = np.zeros_like(mesh.vertices_mm)
+    np.add.at(around, mesh.faces, np.cross(b - a, c - a)[:, None])  # small faces at a corner count for little
+    normals = np.einsum("pk,fkc->fpc", weights, around[mesh.faces]).reshape(-1, 3)
     lit = normals @ np.array([0.45, -0.5, 0.74]) / np.linalg.norm(normals, axis=1)
     bright = DARKEST + (1 - DARKEST) * np.clip(lit, 0, 1)
-    return points, np.repeat(bright, len(weights))[:, None] * COLOUR
+    return points, bright[:, None] * COLOUR
 
 
 def walls(shape: lc.Shape) -> list[tuple[Array, Array]]:

@@ -32,8 +32,11 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     ],
     "hull": [
         ("lightcube hull front.png side.png top.png --walls -o word.stl", "three letters for three walls"),
-        ("lightcube hull photos --elevation-deg 0 -o thing.3mf", "an object on a turntable, seen level all around"),
-        ("lightcube hull room.toml -o thing.shape.zarr", "any lamps and screens, kept with its silhouettes"),
+        (
+            "lightcube hull photos --elevation-deg 0 --span-deg 360 -o a.3mf",
+            "an object on a turntable, all around",
+        ),
+        ("lightcube hull room.toml -o a.shape.zarr", "any lamps and screens, kept with its silhouettes"),
     ],
     "score": [
         ("lightcube score cube.zarr", "how near each picture comes"),

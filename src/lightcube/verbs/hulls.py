@@ -284,8 +284,9 @@ def results(shape: Shape, found: Certificate, pieces: int) -> list[str]:
     ]
     worst = int(np.argmax(found.missing))
     if found.missing[worst] > 0.005:
+        better = ", and which placement is better" if shape.rig.screens.names == WALLS else ""
         said.append(
             f"no object casts {found.missing[worst]:.1%} of {shape.names[worst]} while it keeps to the others: "
-            "lightcube check --opaque says where and why, and of three walls which placement is better"
+            f"lightcube check --opaque says where and why{better}"
         )
     return said
