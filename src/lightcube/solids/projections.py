@@ -45,7 +45,7 @@ def of_voxels(onto: Reals, grid: Grid) -> Reals:
     return np.ascontiguousarray(onto @ place)
 
 
-def finer(onto: Reals, times: int) -> Reals:
+def finer(onto: Reals, times: float) -> Reals:
     """The same for pictures of `times` as many pixels along each side."""
     made = onto.copy()
     made[:, :2] = times * onto[:, :2] + (times - 1) / 2 * onto[:, 2:]
