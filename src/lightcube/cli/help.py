@@ -6,7 +6,7 @@ from typing import Any
 from typer.core import TyperCommand
 
 #: The groups in the order in which they are shown: beside what may be said of a cube, where it goes and who computes.
-GROUPS = ("Output", "Pictures", "Geometry", "Lamp", "Material", "Quality", "Machine")
+GROUPS = ("Output", "Pictures", "Solid", "Geometry", "Lamp", "Material", "Quality", "Machine")
 #: What a command's own options stand under that are in no group.
 _OTHERS = "Options"
 
@@ -32,6 +32,10 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     ],
     "hull": [
         ("lightcube hull front.png side.png top.png --walls -o word.stl", "three letters for three walls"),
+        (
+            "lightcube hull letters --walls --placement best --overlay bent.png -o a.3mf",
+            "a word, and how it was bent",
+        ),
         (
             "lightcube hull photos --elevation-deg 0 --span-deg 360 -o a.3mf",
             "an object on a turntable, all around",

@@ -10,10 +10,13 @@ from lightcube.cli import arguments
 from lightcube.cli.console import done, err, json_line, out, telling
 from lightcube.cli.fields import flag
 from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
+from lightcube.drawing.overlay import overlays
 from lightcube.events import Progress
 from lightcube.pictures.fitting import Fit
+from lightcube.solids.carving import Carving
 from lightcube.solids.reach import count_pieces
-from lightcube.verbs import hulls, words
+from lightcube.solids.repair import Way
+from lightcube.verbs import hulls, making, words
 from lightcube.verbs.options import Options
 
 SOURCES = Annotated[
@@ -32,8 +35,21 @@ INVERT = typer.Option(
     help="Whether what is light is the shape.  [default: what covers less of the border]",
     rich_help_panel="Pictures",
 )
-#: Steps that are told of.
-_STEPS = 4
+REPAIR = typer.Option(
+    help="Pictures that contradict each other: bend them (warp), leave out (trim) or add (grow) what is in the way, or "
+    "none of it; auto trims what hardly shows, else bends.",
+    rich_help_panel="Solid",
+)
+KEEP = typer.Option(help="A picture, by its name, that stays as it is if it can.", rich_help_panel="Solid")
+WALL = typer.Option(
+    help="How thick walls are at least, mm, where pictures are bent or a shell is made.", rich_help_panel="Solid"
+)
+CARVE = typer.Option(help="Take out what no shadow needs: shell or lace.  [default: nothing]", rich_help_panel="Solid")
+DEEP = typer.Option(help="Voxels that a lace keeps on each ray of light.", min=1, rich_help_panel="Solid")
+DRAIN = typer.Option(help="Width of the holes of a shell, mm; 0 = none.", rich_help_panel="Solid")
+OVERLAY = typer.Option(help="Draw what is cast over what was given (PNG).", rich_help_panel="Output")
+#: Steps that are told of: to have read, to have made, to have written.
+_READ, _MADE, _WRITTEN, _STEPS = 1, 17, 19, 20
 
 
 @threaded
@@ -57,6 +73,13 @@ def hull(
             rich_help_panel="Pictures",
         ),
     ] = None,
+    repair: Annotated[Way, REPAIR] = "auto",
+    keep: Annotated[list[str] | None, KEEP] = None,
+    wall: Annotated[float, WALL] = 1.2,
+    carve: Annotated[Carving | None, CARVE] = None,
+    keep_deep: Annotated[int, DEEP] = 3,
+    drain: Annotated[float, DRAIN] = 3.0,
+    overlay: Annotated[str | None, OVERLAY] = None,
     most: Annotated[int | None, flag("most")] = None,
     every: Annotated[int | None, flag("every")] = None,
     n: Annotated[int | None, flag("n")] = None,
@@ -73,10 +96,18 @@ def hull(
     """Carve the largest solid whose shadows stay within silhouettes: a mesh to print, or a shape, by suffix."""
     file = io.Output(output, "shape", overwrite)
     file.check()
+    overlay_file = None if overlay is None else io.Output(overlay, "picture", overwrite)
+    if overlay_file is not None:
+        overlay_file.check()
+    how = making.Making(repair, keep or (), wall, carve, keep_deep, drain)
     angles = None if angles_deg is None else arguments.numbers(angles_deg, "--angles-deg")
     said: dict[str, Any] = {"most": most, "every": every, "n": n, "size_mm": size_mm, "span_deg": span_deg}
     options = Options(**said, elevation_deg=elevation_deg, angles_deg=angles)
     began = time.monotonic()
+
+    def making_told(done: int, of: int) -> None:
+        tell(Progress(_READ + (_MADE - _READ) * done // of, _STEPS))
+
     with telling("hull", as_json=as_json) as tell:
         wanted = hulls.read(pictures, options, hulls.Cutting(threshold, invert, walls, fit, placement))
         doubts = hulls.doubts(wanted)
@@ -84,11 +115,14 @@ def hull(
             for line in [*hulls.in_short(wanted), *(f"note: {each}" for each in doubts)]:
                 err.print(line)
         if not dry_run:
-            tell(Progress(1, _STEPS))
-            shape = hulls.build(wanted)
-            tell(Progress(2, _STEPS))
+            tell(Progress(_READ, _STEPS))
+            made = making.make(wanted, how, making_told)
+            shape = made.shape
+            tell(Progress(_MADE, _STEPS))
             file.write(shape)
-            tell(Progress(3, _STEPS))
+            if overlay_file is not None:
+                overlay_file.write(overlays(made))
+            tell(Progress(_WRITTEN, _STEPS))
             found, pieces = hulls.certificate(output, shape), count_pieces(shape.inside)
             tell(Progress(_STEPS, _STEPS))
     if dry_run:
@@ -97,9 +131,10 @@ def hull(
     seconds = time.monotonic() - began
     if as_json:
         mesh = shape.mesh
-        facts = {"volume_mm3": mesh.volume_mm3, "faces": len(mesh), "bad_edges": mesh.bad_edges, "pieces": pieces}
+        facts: dict[str, Any] = {"volume_mm3": mesh.volume_mm3, "faces": len(mesh), "bad_edges": mesh.bad_edges}
+        facts |= {"pieces": pieces, "repair": making.facts(made)}
         json_line("result", out=output, seconds=seconds, **facts, **found.facts, **wanted.facts, doubts=doubts)
         return
     out.print(f"{output} is ready after {words.duration(seconds)}")
-    for line in hulls.results(shape, found, pieces):
+    for line in [*making.in_words(made), *hulls.results(shape, found, pieces)]:
         out.print(line)

@@ -29,9 +29,7 @@ def overlays(found: Repaired, title: str = "") -> NDArray[np.uint8]:
     pairs = zip(found.given.inside, found.shape.silhouettes.inside, windows, strict=True)
     tiles = [_tile(given[:rows, :columns], cast[:rows, :columns]) for given, cast, (rows, columns) in pairs]
     high, wide = (max(tile.size[axis] for tile in tiles) for axis in (1, 0))
-    said = [
-        (name, f"overlap {overlap:.0%}") for name, overlap in zip(found.given.names, found.overlaps, strict=True)
-    ]
+    said = [(name, f"overlap {overlap:.0%}") for name, overlap in zip(found.given.names, found.overlaps, strict=True)]
     how = "dark: given and cast; orange: given, not cast; blue: cast beside it"
     head = title or f"{counted(len(tiles), 'silhouette')}, outlines moved by {found.moved_px:.1f} pixels"
     return np.asarray(laid_out([_in_middle(tile, wide, high) for tile in tiles], said, (head, how)))

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import ndimage
 
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Counts, Flags, Volume, locked
+from lightcube.optics.arrays import Counts, Flags, Integers, Volume, locked
 from lightcube.optics.checks import checked
 from lightcube.solids import projections
 from lightcube.solids.shape import Shape
@@ -27,7 +27,9 @@ _PASSES, _WORTH = 6, 0.001
 
 
 @checked
-def carve(shape: Shape, how: Carving, *, wall_mm: float = 1.2, drain_mm: float = 3.0, deep: int = 3, seed: int = 0) -> Shape:
+def carve(
+    shape: Shape, how: Carving, *, wall_mm: float = 1.2, drain_mm: float = 3.0, deep: int = 3, seed: int = 0
+) -> Shape:
     """Take material out of a solid that none of its shadows needs.
 
     Parameters
@@ -100,7 +102,8 @@ def _drained(field: Volume, shape: Shape, radius: float) -> Volume:
     if radius == 0:
         return field
     before = _cast(field, shape)
-    labels, count = ndimage.label(field > 0)
+    numbers, count = ndimage.label(field > 0)
+    labels = numbers.astype(np.int64)
     outside = set(np.unique(np.concatenate([side.ravel() for axis in range(3) for side in _ends(labels, axis)])))
     made = field
     for cavity in range(1, count + 1):
@@ -114,7 +117,7 @@ def _drained(field: Volume, shape: Shape, radius: float) -> Volume:
     return locked(made)
 
 
-def _ends(labels: Counts, axis: int) -> tuple[Counts, Counts]:
+def _ends(labels: Integers, axis: int) -> tuple[Integers, Integers]:
     """The first and last layers along an axis."""
     return np.take(labels, 0, axis), np.take(labels, -1, axis)
 

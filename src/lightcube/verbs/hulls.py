@@ -22,7 +22,7 @@ from lightcube.solids.cutting import Cut, cut, plain_ground
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.placement import best, placements
 from lightcube.solids.reach import thin_part
-from lightcube.solids.shape import Shape, hull
+from lightcube.solids.shape import Shape
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.standing import silhouettes
 from lightcube.solids.walls import WALLS, block, walls
@@ -192,13 +192,6 @@ def _on_white(read: Callable[[], Read]) -> Read:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", io.TransparentPictures)
         return read()
-
-
-def build(wanted: Wanted) -> Shape:
-    """The hull of silhouettes, which remembers how they were cut out."""
-    made = hull(wanted.silhouettes, wanted.grid)
-    told = {name: fact for name, fact in wanted.facts.items() if name in ("pictures", "stretched")}
-    return replace(made, provenance={"command": "hull", **told})
 
 
 def certificate(output: str, shape: Shape) -> Certificate:

@@ -1,4 +1,4 @@
-"""What `hull` does with silhouettes that contradict each other: which are bent, trimmed or added to, and in words."""
+"""What `hull` makes of silhouettes: bent, trimmed or added to where they contradict each other, then carved."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -9,6 +9,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Flags
 from lightcube.solids import projections
+from lightcube.solids.carving import Carving, carve
 from lightcube.solids.repair import MOST_BENT, Repaired, Way, repair
 from lightcube.verbs.hulls import Wanted
 
@@ -17,30 +18,47 @@ _SOME, _MUCH = 0.0005, 0.05
 
 
 @dataclass(frozen=True)
-class Repairing:
-    """How silhouettes are made to agree: the way, how thick walls are to be (mm), and the pictures that stay."""
+class Making:
+    """How a solid is made of silhouettes.
+
+    Parameters
+    ----------
+    way, keep
+        How they are made to agree, and the names of pictures that stay as they are if they can.
+    wall_mm
+        How thick walls are to be.
+    carving, deep, drain_mm
+        What is taken out, as `lightcube.carve` takes it; None = nothing.
+    """
 
     way: Way = "auto"
-    wall_mm: float = 1.2
     keep: Sequence[str] = ()
+    wall_mm: float = 1.2
+    carving: Carving | None = None
+    deep: int = 3
+    drain_mm: float = 3.0
 
 
-def repaired(wanted: Wanted, how: Repairing, told: Callable[[int, int], None] | None = None) -> Repaired:
-    """The object that casts what is wanted, or what that had to become."""
-    if how.wall_mm < 0:
+def make(wanted: Wanted, how: Making, told: Callable[[int, int], None] | None = None) -> Repaired:
+    """The solid that casts what is wanted, or what that had to become."""
+    if not how.wall_mm >= 0:
         raise InputError(f"--wall is how thick walls are, 0 mm or more, not {how.wall_mm:g}")
-    held = _held(wanted, how.keep)
-    found = repair(wanted.silhouettes, wanted.grid, how.way, wall_px=_wall_px(wanted, how), held=held, told=told)
-    provenance = {**found.shape.provenance, **wanted.provenance, "repair": facts(found)}
-    return replace(found, shape=replace(found.shape, provenance=provenance))
+    held, wall_px = _held(wanted, how.keep), _wall_px(wanted, how.wall_mm)
+    found = repair(wanted.silhouettes, wanted.grid, how.way, wall_px=wall_px, held=held, told=told)
+    shape = found.shape
+    if how.carving is not None:
+        shape = carve(shape, how.carving, wall_mm=how.wall_mm, drain_mm=how.drain_mm, deep=how.deep)
+    cuts = {name: fact for name, fact in wanted.facts.items() if name in ("pictures", "stretched")}
+    made = {"command": "hull", **cuts, "repair": facts(found), "carving": how.carving}
+    return replace(found, shape=replace(shape, provenance=made))
 
 
-def _wall_px(wanted: Wanted, how: Repairing) -> float:
+def _wall_px(wanted: Wanted, wall_mm: float) -> float:
     """By how much silhouettes go back so that walls between them are thick enough: half of it, and half a pixel."""
-    if how.wall_mm == 0:
+    if wall_mm == 0:
         return 0.0
     pixel_mm = wanted.grid.voxel_mm * float(np.mean(projections.voxels_a_pixel(wanted.silhouettes.rig, wanted.grid)))
-    return how.wall_mm / 2 / pixel_mm + 0.5
+    return wall_mm / 2 / pixel_mm + 0.5
 
 
 def _held(wanted: Wanted, keep: Sequence[str]) -> Flags | None:
