@@ -101,7 +101,7 @@ def test_what_hangs_together_is_told_by_all_ways_through_it() -> None:
 def test_a_shell_is_as_thick_as_asked_for() -> None:
     whole = block()
     made = carve(whole, "shell", wall_mm=3.0, drain_mm=0)
-    eaten = ndimage.binary_erosion(whole.inside, np.ones((3, 3, 3)), iterations=2)
+    eaten = ndimage.binary_erosion(whole.inside, np.ones((3, 3, 3), bool), iterations=2)
     assert np.array_equal(made.inside, whole.inside & ~eaten)
     assert made.mesh.is_watertight
     assert np.allclose(certify(made.mesh, whole.silhouettes).overlap, certify(whole.mesh, whole.silhouettes).overlap)
