@@ -42,17 +42,22 @@ def kept(picture: bytes, name: str, tmp_path: Path) -> np.ndarray[Any, np.dtype[
 
 
 @pytest.mark.parametrize(
-    ("name", "width", "height", "scheme"),
-    [("page.png", 1200, 750, "dark"), ("page-phone.png", 390, 844, "light")],
+    ("name", "width", "height", "scheme", "keys"),
+    [
+        ("page.png", 1200, 750, "dark", ["Home"]),  # so that it does not turn by itself
+        ("page-phone.png", 390, 844, "light", ["Home"]),
+        ("page-tour.png", 1200, 750, "light", ["g", *["ArrowRight"] * 6]),
+    ],
 )
 def test_the_page_is_drawn(
-    browser: Any, cube: Cube, tmp_path: Path, name: str, width: int, height: int, scheme: str
+    browser: Any, cube: Cube, tmp_path: Path, name: str, width: int, height: int, scheme: str, keys: list[str]
 ) -> None:
     io.save(page(cube, "photographs"), tmp_path / "photographs.html")
     tab, heard = opened(browser, tmp_path / "photographs.html", width=width, height=height, color_scheme=scheme)
     room = tab.locator("canvas.room")
     room.wait_for()
-    tab.keyboard.press("Home")  # so that it does not turn by itself
+    for key in keys:
+        tab.keyboard.press(key)
     tab.evaluate("document.querySelector('.hint').remove()")
     tab.wait_for_timeout(3000)  # what moves comes to rest, and is drawn sharply
     seen = kept(tab.screenshot(), name, tmp_path)

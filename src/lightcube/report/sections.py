@@ -16,10 +16,9 @@ from lightcube.planning.feasibility import facts
 from lightcube.planning.prediction import MOST_DB
 from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
 from lightcube.report.measuring import EXACT, Findings, gain
-from lightcube.report.verdict import mark
 from lightcube.report.words import span
 from lightcube.scoring.between import LOBE_DB
-from lightcube.scoring.metrics import FAIR_DB, GOOD_DB, WELL_DB, grain_word
+from lightcube.scoring.metrics import FAIR_DB, GOOD_DB, WELL_DB, grain_word, mark
 from lightcube.wording import counted, in_ev
 
 #: What a PSNR means.

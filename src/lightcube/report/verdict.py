@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from lightcube.optics.disturbance import DISTURBANCES
 from lightcube.report.measuring import Findings
 from lightcube.scoring.between import LOBE_DB
-from lightcube.scoring.metrics import FAIR_DB, GOOD_DB, WELL_DB, grain_word
+from lightcube.scoring.metrics import GOOD_DB, grain_word, mark
 from lightcube.wording import counted
 
 #: Turning the table that far off a stop is not felt by a hand, degrees: a picture that stands so long stands at ease.
@@ -13,11 +13,6 @@ _AT_EASE = 1.0
 _SHORT_OF_GOOD = {"fair": "recognisable, with faults that one sees", "poor": "hard to recognise, or not at all"}
 #: Names that a sentence holds.
 _NAMED = 5
-
-
-def mark(psnr: float) -> str:
-    """In a word how well a picture came out, as the page that is turned by hand marks it."""
-    return "good" if psnr >= WELL_DB else "fair" if psnr >= FAIR_DB else "poor"
 
 
 def good(found: Findings) -> Iterator[str]:

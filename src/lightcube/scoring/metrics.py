@@ -30,8 +30,6 @@ GOOD_DB = 40.0
 #: The least PSNR, dB, of a picture that is called good, and of one that is fair: recognisable, with faults that one
 #: sees. A worse one is poor.
 WELL_DB, FAIR_DB = 33.0, 26.0
-#: What a picture of at least so many dB looks like.
-_NEARNESS = {GOOD_DB: "hard to tell from what is wanted", WELL_DB: "good", FAIR_DB: "fair"}
 
 Display = NDArray[np.floating[Any]]
 
@@ -47,7 +45,12 @@ def grain_word(rms: float) -> str:
 
 def nearness(decibels: float) -> str:
     """What a picture of such a PSNR looks like, in a few words."""
-    return next((word for least, word in _NEARNESS.items() if decibels >= least), "poor")
+    return "hard to tell from what is wanted" if decibels >= GOOD_DB else mark(decibels)
+
+
+def mark(decibels: float) -> str:
+    """The mark of a picture of such a PSNR: good, fair or poor, as the page that is turned by hand gives it."""
+    return "good" if decibels >= WELL_DB else "fair" if decibels >= FAIR_DB else "poor"
 
 
 def psnr(shown: Display, wanted: Display, weight: Display) -> float:

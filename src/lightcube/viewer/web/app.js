@@ -1,5 +1,6 @@
 // Puts the page together: the turntable, the room and the cards, and what is done to them.
 
+import { lessonOf } from "./model/lesson.js";
 import { momentOf } from "./model/moment.js";
 import { stops } from "./model/stage.js";
 import { nearestOf, neighbourOf, Turning } from "./model/turning.js";
@@ -13,9 +14,10 @@ import { listenToKeys } from "./parts/keys.js";
 import { createLoop } from "./parts/loop.js";
 import { createScanline } from "./parts/scanline.js";
 import { followTheme } from "./parts/theme.js";
+import { createTour } from "./parts/tour.js";
 import { createWall } from "./parts/wall.js";
 import { RoomView } from "./room/roomview.js";
-import { degreesText, element, qualityOf } from "./tools/elements.js";
+import { clampTo, degreesText, element, qualityOf } from "./tools/elements.js";
 
 /** Degrees by which a pixel of a drag turns the cube. */
 const TURN_SPEED = 0.35;
@@ -83,7 +85,7 @@ export function mount(root, scene, cube, { compact = false } = {}) {
 }
 
 function nothingChosen() {
-  return { place: 0, row: null, column: null, whole: false, thin: false, lampsEye: false, details: false, dark: null };
+  return { place: 0, row: null, column: null, whole: false, thin: false, lampsEye: false, details: false, big: false, dark: null, lesson: null };
 }
 
 /**
@@ -151,6 +153,15 @@ function actionsOf(app) {
       chosen.details = !chosen.details;
       root.toggleAttribute("data-details", chosen.details);
     },
+    big() {
+      chosen.big = !chosen.big;
+      root.toggleAttribute("data-big", chosen.big);
+    },
+    tour: () => goTo(app, chosen.lesson === null ? 0 : null),
+    walk(way) {
+      if (chosen.lesson === null) return false;
+      return goTo(app, clampTo(chosen.lesson.number + way, 0, chosen.lesson.count - 1));
+    },
     zoom: (factor, x, y) => view.zoom(factor, x === undefined ? chosenPixel(chosen) : view.pointed(x, y)),
     reset: () => view.comeBack(),
     screen: (place) => Object.assign(chosen, { place, row: null, column: null }),
@@ -161,7 +172,10 @@ function actionsOf(app) {
     },
     fullScreen: () => toggleFullScreen(root),
     help: () => app.parts.help.toggle(),
-    close: () => false, // dialogs and full screen close themselves
+    close() {
+      if (chosen.lesson === null) return false; // dialogs and full screen close themselves
+      return all.tour();
+    },
   };
   const useless = scene.turns ? [] : ["turn", "release", "neighbour", "nearest", "first", "play", "snap"];
   for (const name of useless) all[name] = () => false;
@@ -170,6 +184,24 @@ function actionsOf(app) {
     app.loop.ask();
     return done;
   }]));
+}
+
+/** Go to a step of the tour, by its number, or end it (null); returns true. */
+function goTo(app, number) {
+  const { root, scene, turning, view, chosen, parts } = app;
+  const before = chosen.lesson;
+  if (number === before?.number) return true;
+  if (before?.plays) turning.release(0);
+  parts.hint.done();
+  root.toggleAttribute("data-tour", number !== null);
+  app.steps ??= lessonOf(scene, view.cube);
+  chosen.lesson = number === null ? null : { ...app.steps[number], number, count: app.steps.length };
+  if (number === null) return true;
+  const { angle, screen, plays } = chosen.lesson;
+  Object.assign(chosen, { place: screen, row: null, column: null, whole: false });
+  if (plays && !turning.calm) turning.play();
+  else if (turning.angle !== angle) turning.glideTo(angle);
+  return true;
 }
 
 /** The pixel that is pointed at, or null. */
@@ -235,6 +267,7 @@ function createParts({ scene, turning, view, does }, cube, compact) {
     help: createHelp(scene),
     controls: scene.turns ? createControls(scene, turning.stops, does) : null,
     filmstrip: createFilmstrip(scene, does.picture),
+    tour: compact ? null : createTour(does),
     compare: compact ? null : createCompare(scene, does),
     scanline: compact ? null : createScanline(scene, cube, does.point),
     room: view.canvas,
@@ -244,7 +277,7 @@ function createParts({ scene, turning, view, does }, cube, compact) {
 
 function layoutOf(parts, compact) {
   const stage = element("div", { class: "stage" }, parts.room, parts.header.element, parts.hint.element);
-  const dock = element("div", { class: "dock" }, parts.controls?.element ?? null, parts.filmstrip.element);
+  const dock = element("div", { class: "dock" }, parts.controls?.element ?? null, parts.filmstrip.element, parts.tour?.element ?? null);
   const rest = [parts.said, parts.help.element];
   if (compact) {
     dock.append(...(parts.quiet === null ? [] : [parts.quiet]));
@@ -266,8 +299,9 @@ function showing(app) {
     const goes = view.look(seconds, chosen.lampsEye, turning.calm);
     const now = momentOf(scene, turning, view.exposures, chosen);
     const { place, row, column } = now.spot;
-    view.draw(now.dark, chosen.row === null ? null : { screen: place, row, column }, scale);
+    view.draw(now.dark, now.lesson?.mark ?? (chosen.row === null ? null : { screen: place, row, column }), scale);
     parts.header.update(now);
+    parts.tour?.update(now);
     parts.controls?.update(now);
     parts.wall?.tie(now, view);
     parts.filmstrip.update(now);

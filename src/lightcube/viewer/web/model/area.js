@@ -40,8 +40,8 @@ function overSquare(least) {
   return alongRow(count).map(([across], i) => [across, (((before * i) % count) + 0.5) / count - 0.5]);
 }
 
-/** Whether light is level and every row of pixels exactly a slice of voxels. */
-function inOneSlice({ shape, voxel_mm }, { views, raster }) {
+/** Whether an exposure's light is level and every row of its pixels exactly a slice of the cube's voxels. */
+export function inOneSlice({ shape, voxel_mm }, { views, raster }) {
   return views.every(({ light, origin, right, down }) => {
     const top = (origin[2] - (down[2] * raster[0]) / 2) / voxel_mm + shape[0] / 2;
     const steps = [right[2], down[0], down[1], Math.abs(down[2]) - voxel_mm].map((step) => step / voxel_mm);

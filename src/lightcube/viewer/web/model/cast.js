@@ -38,6 +38,19 @@ export function castRow(cube, exposure, row, points, parts = 1) {
 }
 
 /**
+ * One pixel of a screen's picture.
+ * @param {object} cube
+ * @param {object} exposure of one screen
+ * @param {number} row
+ * @param {number} column
+ * @param {number[][]} points of `pointsOf`
+ * @returns {number[]} red, green and blue, linear light, never clipped
+ */
+export function castPixel(cube, exposure, row, column, points) {
+  return meanOn(cube, exposure, row, column, points, scratchFor(cube));
+}
+
+/**
  * Part of the light that a beam keeps through the pieces of its way, [red, green, blue].
  * @param {object} cube
  * @param {Int32Array} voxels

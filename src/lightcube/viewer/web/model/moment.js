@@ -13,7 +13,8 @@ import { nearestOf, shortestWay } from "./turning.js";
  *   the screen (by its place among the exposures), the pixel of it that is pointed at, whether the whole shadow is shown,
  *   and by thin beams, the theme
  * @returns {Object} angle, away (signed degrees from the nearest stop), pictures (numbers of those that are lit, or
- *   nearest), name (of these), exposures, spot ({place, row, column} on a lit screen), playing, snap, whole, thin, lampsEye, details, dark
+ *   nearest), name (of these), exposures, spot ({place, row, column} on a lit screen), playing, snap, whole, thin,
+ *   lampsEye, details, big, dark, lesson (the step of the tour, or null)
  */
 export function momentOf(scene, turning, exposures, chosen) {
   const stop = turning.stops[nearestOf(turning.stops, turning.angle)];
@@ -32,6 +33,8 @@ export function momentOf(scene, turning, exposures, chosen) {
     thin: chosen.thin,
     lampsEye: chosen.lampsEye,
     details: chosen.details,
+    big: chosen.big,
+    lesson: chosen.lesson,
     dark: chosen.dark,
   };
 }

@@ -43,10 +43,11 @@ function degreesApart(one, other) {
  * @param {object} scene
  * @param {number} angle degrees
  * @param {boolean} [whole] a turntable's whole shadow instead of the picture's window
+ * @param {number[]} [lamp] what all light is multiplied by, in each colour
  * @returns {object[]} one exposure for each screen that has pictures, rising: {screen, angle, picture, lit, window,
  *   raster, transfer, views}; of each view the power is the lamp's times its share, and 0 where the screen is dark
  */
-export function exposures(scene, angle, whole = false) {
+export function exposures(scene, angle, whole = false, lamp = [1, 1, 1]) {
   const screens = [...new Set(scene.pictures.map((picture) => picture.screen))].sort((a, b) => a - b);
   const full = whole ? scene.whole_shadow : null;
   const nearest = Math.min(...scene.pictures.map((picture) => degreesApart(angle, picture.angle_deg)));
@@ -56,7 +57,7 @@ export function exposures(scene, angle, whole = false) {
     const lit = degreesApart(angle, stop) < nearest + SAME;
     const exposed = viewsOf(scene, number).map((view) => {
       const power = lit ? powerBetween(scene, view.pair, angle) : [0];
-      return exposedView(scene, view, angle - stop, power);
+      return exposedView(scene, view, angle - stop, lamp.map((part, channel) => part * ofChannel(power, channel)));
     });
     const views = full === null ? exposed : exposed.map((view) => (
       { ...view, origin: middleOfShadow(exposed, view.lamp) }
@@ -79,7 +80,7 @@ function exposedView(scene, view, degrees, power) {
     origin,
     right,
     down,
-    power: [0, 1, 2].map((channel) => ofChannel(view.share, channel) * ofChannel(power, channel)),
+    power: power.map((each, channel) => ofChannel(view.share, channel) * each),
     reach_mm: view.reach_mm.map(orInfinite),
     falloff_mm: view.falloff_mm.map(orInfinite),
     full_at_mm: orInfinite(view.full_at_mm),
@@ -147,11 +148,12 @@ function interpolated(marks, angle) {
  * @param {object} scene
  * @param {number} angle degrees
  * @param {boolean} [whole] as for `exposures`
+ * @param {number[]} [lamp] too
  * @returns {{turn: number[], axis: number[], screens: object[], lamps: object[]}} `turn` leads from the cube's axes to
  *   the room's; parallel lamps are suns on the lines of their light, clear of the cube
  */
-export function standing(scene, angle, whole = false) {
-  const shown = exposures(scene, angle, whole);
+export function standing(scene, angle, whole = false, lamp = [1, 1, 1]) {
+  const shown = exposures(scene, angle, whole, lamp);
   const turn = rotation(scene.axis, scene.carried ? angle : 0);
   const screens = shown.map((exposure) => placedScreen(turn, exposure));
   const away = sunsAway(scene, screens);

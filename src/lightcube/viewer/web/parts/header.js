@@ -8,11 +8,12 @@ const GLASS = "Light falls through a block of coloured glass";
  * Title, who made it and for whom, what it is, and buttons.
  *
  * @param {Object} scene
- * @param {Object} does `details()`, `theme()`, `fullScreen()`, `help()`
+ * @param {Object} does `tour()`, `details()`, `theme()`, `fullScreen()`, `help()`
  * @param {boolean} compact the title and the buttons of a notebook
  * @returns {{element: HTMLElement, update: function(Object): void}}
  */
 export function createHeader(scene, does, compact) {
+  const tour = wordButton("tour", "Tour", "What light does here, step by step, for a class (G)", does.tour);
   const details = wordButton("details", "Details", "Scores, lamps and the way of the light (D)", does.details);
   const what = scene.turns ? `${GLASS}; at each stop its shadow is another picture.` : `${GLASS}; its shadows are pictures.`;
   const said = [scene.by && `by ${scene.by}`, scene.note].filter(Boolean);
@@ -23,12 +24,22 @@ export function createHeader(scene, does, compact) {
         said.length > 0 ? element("p", { class: "by", text: said.join(" · "), dir: "auto" }) : null,
         compact ? null : element("p", { class: "what", text: what })),
       element("div", { class: "tools" },
-        compact ? null : details,
-        iconButton("theme", "Light or dark", "T", does.theme),
-        document.fullscreenEnabled ? iconButton("screen", "Full screen", "F", does.fullScreen) : null,
-        iconButton("help", "Help", "?", does.help))),
-    update: (now) => setPressed(details, now.details),
+        ...(compact ? [] : [tour, details]),
+        named("theme", "Light or dark", "T", does.theme, "Theme"),
+        document.fullscreenEnabled ? named("screen", "Full screen", "F", does.fullScreen, "Full") : null,
+        named("help", "Help", "?", does.help, "Help"))),
+    update(now) {
+      setPressed(tour, now.lesson !== null);
+      setPressed(details, now.details);
+    },
   };
+}
+
+/** An icon's button that says its name where nothing is pointed at, on phones. */
+function named(name, label, key, pressed, word) {
+  const button = iconButton(name, label, key, pressed);
+  button.append(element("span", { "aria-hidden": "true", text: word }));
+  return button;
 }
 
 /**

@@ -25,6 +25,8 @@ const KEYS = [
   ["+ −", "nearer, farther"],
   ["L", "look from where the lamp is"],
   ["D", "details: scores, lamps, scan-line"],
+  ["G", "tour, step by step: arrows, Escape"],
+  ["A", "larger type, for a projector"],
   ["W", "whole shadow"],
   ["B", "thin beams, as in the paper"],
   ["F", "full screen"],

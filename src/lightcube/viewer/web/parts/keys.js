@@ -8,7 +8,8 @@ const TYPED_IN = "select, textarea, input:not([type=range]), [contenteditable]";
  *
  * @param {EventTarget} area the document, or an element of it
  * @param {Object} does `turn(degrees)`, `neighbour(way)`, `play()`, `nearest()`, `first()`, `zoom(factor)`, `whole()`,
- *   `thin()`, `lampsEye()`, `details()`, `fullScreen()`, `theme()`, `help()`, `close()`
+ *   `thin()`, `lampsEye()`, `details()`, `tour()`, `walk(way)` (false where there is no tour), `big()`, `fullScreen()`,
+ *   `theme()`, `help()`, `close()`
  * @returns {function(): void} stops listening
  */
 export function listenToKeys(area, does) {
@@ -29,13 +30,13 @@ export function listenToKeys(area, does) {
 function actionsOf(does) {
   const fine = (event) => (event.shiftKey ? 0.1 : 1);
   return {
-    ArrowLeft: (event) => does.turn(-fine(event)),
-    ArrowRight: (event) => does.turn(fine(event)),
-    PageUp: () => does.neighbour(-1),
+    ArrowLeft: (event) => does.walk(-1) || does.turn(-fine(event)),
+    ArrowRight: (event) => does.walk(1) || does.turn(fine(event)),
+    PageUp: () => does.walk(-1) || does.neighbour(-1),
     ",": () => does.neighbour(-1),
-    PageDown: () => does.neighbour(1),
+    PageDown: () => does.walk(1) || does.neighbour(1),
     ".": () => does.neighbour(1),
-    " ": () => does.play(),
+    " ": () => does.walk(1) || does.play(),
     n: () => does.nearest(),
     Home: () => does.first(),
     "+": () => does.zoom(1.15),
@@ -45,6 +46,8 @@ function actionsOf(does) {
     b: () => does.thin(),
     l: () => does.lampsEye(),
     d: () => does.details(),
+    g: () => does.tour(),
+    a: () => does.big(),
     f: () => does.fullScreen(),
     t: () => does.theme(),
     "?": () => does.help(),

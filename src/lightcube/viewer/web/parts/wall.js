@@ -17,10 +17,11 @@ export function createWall(scene) {
   const quality = element("span", { class: "quality" });
   const figure = element("figure", { class: "wall" }, canvas, element("figcaption", {}, name, quality));
   const threads = document.createElementNS(SPACE, "svg");
-  const lines = document.createElementNS(SPACE, "path");
+  const [lines, meant] = [0, 1].map(() => document.createElementNS(SPACE, "path"));
+  meant.setAttribute("class", "meant");
   threads.setAttribute("class", "threads");
   threads.setAttribute("aria-hidden", "true");
-  threads.append(lines);
+  threads.append(lines, meant);
 
   return {
     element: figure,
@@ -29,6 +30,11 @@ export function createWall(scene) {
       const exposure = now.exposures[now.spot.place];
       const picture = scene.pictures[exposure.picture];
       view.copyShadow(now.spot.place, canvas);
+      if (now.lesson?.nameless) {
+        name.textContent = quality.textContent = "";
+        canvas.setAttribute("aria-label", `What the wall shows: ${now.lesson.title}`);
+        return;
+      }
       const here = exposure.lit && Math.abs(now.away) < 0.005;
       name.textContent = here ? picture.name : "between two pictures";
       quality.textContent = here ? qualityOf(picture.psnr) : "";
@@ -46,8 +52,17 @@ export function createWall(scene) {
       const below = box.top >= room.bottom - 1;
       const ends = below ? [0, 1] : [0, 3];
       lines.setAttribute("d", ends.map((i) => `M${seen[i]}L${shown[i]}`).join(""));
+      meant.setAttribute("d", outlineOf(now.lesson?.mark ?? null, { ...there, left, top }, canvas));
     },
   };
+}
+
+/** The outline of the pixel or the row that the tour speaks of, around its picture's place. */
+function outlineOf(mark, { left, top, width, height }, { width: columns, height: rows }) {
+  if (mark === null || mark.row === null) return "";
+  const [wide, high] = [width / columns, height / rows];
+  const [x, across] = mark.column === null ? [left, width] : [left + mark.column * wide, wide];
+  return `M${x - 2} ${top + mark.row * high - 2}h${across + 4}v${high + 4}h${-across - 4}z`;
 }
 
 /** Where a picture of some shape stands in a box that it is fitted into. */

@@ -35,6 +35,10 @@ export function createFlat(canvas, scene, cube) {
       [exposed, asked, seen] = [exposures, beams, parts];
       shadows = exposures.map((exposure) => shadowOf(exposure, parts));
     },
+    fill(glass) {
+      cube = glass;
+      kept.clear();
+    },
     shadow(number) {
       const picture = shadowOf(exposed[number], 1);
       const { width, height } = picture;
@@ -90,7 +94,6 @@ function drawRoom(stage) {
   };
   context.setTransform(1, 0, 0, 1, 0, 0);
   drawFloor(stage);
-  drawTable(stage);
   const cubeAway = norm(camera.eye);
   const before = ({ corner, right, down, pixels }) =>
     norm(sub(camera.eye, add(corner, add(scaled(right, pixels[1] / 2), scaled(down, pixels[0] / 2))))) < cubeAway;
@@ -98,6 +101,7 @@ function drawRoom(stage) {
   const lines = linesOf(stage.scene, stage.exposed, room, camera.eye, stage.mark, tones);
   const lamps = room.lamps.map((lamp) => ({ ...lamp, near: norm(sub(camera.eye, lamp.place)) < cubeAway }));
   screens.filter((screen) => !before(screen)).forEach((screen) => drawScreen(stage, screen));
+  drawTable(stage); // before walls that go on below it
   lamps.filter((lamp) => !lamp.near).forEach((lamp) => drawLamp(stage, lamp));
   drawSheet(stage);
   lines.filter((line) => !line.over).forEach((line) => drawLine(stage, line));

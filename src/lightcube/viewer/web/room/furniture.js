@@ -39,6 +39,16 @@ export const TONES = {
   },
 };
 
+/**
+ * What is marked.
+ * @typedef {object} Mark
+ * @property {number} screen by its place among the exposures
+ * @property {number | null} row
+ * @property {number | null} column
+ * @property {boolean} [beam] the way of the light to that pixel instead of the row
+ * @property {number[][] | null} [frame] a box of voxels, [first [x, y, z], after the last]
+ */
+
 /** Angles that stand for all that the table comes to, degrees. */
 const AROUND = Array.from({ length: 12 }, (_, i) => 30 * i);
 /** A lamp so many times as far from the cube as anything else need not be seen. */
@@ -87,9 +97,7 @@ export function fromFar(room, eye) {
 /** The cube's eight corners; those whose numbers differ in one bit share an edge. */
 export function cubeCorners(scene, room) {
   const half = halfSides(scene);
-  return Array.from({ length: 8 }, (_, i) =>
-    apply(room.turn, half.map((side, axis) => ((i >> axis) & 1 ? side : -side))),
-  );
+  return cornersOf(scaled(half, -1), half).map((corner) => apply(room.turn, corner));
 }
 
 /** A screen's corners, in order around it from the upper left. */
@@ -156,7 +164,7 @@ export function floorOf(scene) {
  * @param {object[]} exposures that the room's screens show
  * @param {object} room
  * @param {number[]} eye
- * @param {{screen: number, row: number, column: number | null} | null} mark
+ * @param {Mark | null} mark
  * @param {object} tones
  * @returns {{ends: number[][], colour: number[], parts: number[], width: number, over: boolean}[]} `parts` is how
  *   strong a line is at either end, `width` in pixels of the page; `over` lines are seen through the cube as if it
@@ -164,7 +172,7 @@ export function floorOf(scene) {
  */
 export function linesOf(scene, exposures, room, eye, mark, tones) {
   return [
-    ...(mark && room.screens[mark.screen] ? markLines(room.screens[mark.screen], mark, tones) : []),
+    ...(mark && room.screens[mark.screen] ? markLines(scene, exposures, room, mark, tones) : []),
     ...edgeLines(scene, room, eye, tones),
     ...hintLines(scene, exposures, room, tones),
   ];
@@ -172,17 +180,12 @@ export function linesOf(scene, exposures, room, eye, mark, tones) {
 
 function edgeLines(scene, room, eye, tones) {
   const [corners, half, inside] = [cubeCorners(scene, room), halfSides(scene), applyInverse(room.turn, eye)];
-  const lines = [];
-  for (let a = 0; a < 8; a++) {
-    for (const bit of [1, 2, 4].filter((each) => !(a & each))) {
-      const faces = [0, 1, 2].filter((axis) => 1 << axis !== bit); // those that meet there
-      const before = faces.some((axis) => ((a >> axis) & 1 ? 1 : -1) * inside[axis] > half[axis]);
-      const part = before ? 0.75 : 0.16;
-      const ends = [corners[a], corners[a | bit]];
-      lines.push({ ends, colour: tones.edge, parts: [part, part], width: before ? 1.3 : 1, over: true });
-    }
-  }
-  return lines;
+  return edgesOf(corners).map(([a, b]) => {
+    const faces = [0, 1, 2].filter((axis) => 1 << axis !== b - a); // those that meet there
+    const before = faces.some((axis) => ((a >> axis) & 1 ? 1 : -1) * inside[axis] > half[axis]);
+    const part = before ? 0.75 : 0.16;
+    return { ends: [corners[a], corners[b]], colour: tones.edge, parts: [part, part], width: before ? 1.3 : 1, over: true };
+  });
 }
 
 /** The lamps that light a screen, by their numbers in the room, the brightest first. */
@@ -238,13 +241,38 @@ function rowEnds({ corner, right, down, pixels }, row) {
   return [start, add(start, scaled(right, pixels[1]))];
 }
 
-function markLines(screen, { row, column }, tones) {
-  const lines = [rowEnds(screen, row)];
-  if (column !== null) {
-    const middle = add(lines[0][0], scaled(screen.right, column + 0.5));
-    lines.push([sub(middle, scaled(screen.down, 2)), add(middle, scaled(screen.down, 2))]);
-  }
-  return lines.map((ends) => ({ ends, colour: tones.mark, parts: [0.95, 0.95], width: 1.6, over: false }));
+/** The marked row with its pixel, or that pixel alone with the beam to it; and the frame around some of the glass. */
+function markLines(scene, exposures, room, { screen, row, column, beam, frame }, tones) {
+  const { right, down } = room.screens[screen];
+  const line = (ends, over, width = 1.6) => ({ ends, colour: tones.mark, parts: [0.95, 0.95], width, over });
+  const lines = frame ? frameEdges(scene, room, frame).map((ends) => line(ends, true)) : [];
+  if (row === null) return lines;
+  const [start, end] = rowEnds(room.screens[screen], row);
+  const middle = column === null ? null : add(start, scaled(right, column + 0.5));
+  if (!beam) lines.push(line([start, end], false));
+  if (middle !== null) lines.push(line([sub(middle, scaled(down, 2)), add(middle, scaled(down, 2))], false));
+  if (!beam) return lines;
+  lines.push(line([sub(middle, scaled(right, 2)), add(middle, scaled(right, 2))], false));
+  const [lamp] = lampsLighting(scene, exposures[screen]);
+  if (lamp !== undefined) lines.push(line([beamStart(room.lamps[lamp], middle), middle], true, 2.2));
+  return lines;
+}
+
+/** The edges of a box of voxels, [first [x, y, z], after the last]. */
+function frameEdges(scene, room, box) {
+  const half = halfSides(scene);
+  const corners = cornersOf(...box.map((place) => place.map((count, axis) => count * scene.voxels.voxel_mm - half[axis])));
+  return edgesOf(corners).map(([a, b]) => [apply(room.turn, corners[a]), apply(room.turn, corners[b])]);
+}
+
+/** A box's eight corners; those whose numbers differ in one bit share an edge. */
+function cornersOf(low, high) {
+  return Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((axis) => ((i >> axis) & 1 ? high : low)[axis]));
+}
+
+/** The pairs of corners, by their numbers, between which a box's edges run. */
+function edgesOf(corners) {
+  return corners.flatMap((_, a) => [1, 2, 4].filter((bit) => !(a & bit)).map((bit) => [a, a | bit]));
 }
 
 /**
@@ -253,7 +281,7 @@ function markLines(screen, { row, column }, tones) {
  *   second side; 2: a triangle with the lamp in its corner
  */
 export function markedSheet(scene, exposures, room, mark) {
-  const screen = mark && room.screens[mark.screen];
+  const screen = mark && mark.row !== null && !mark.beam && room.screens[mark.screen];
   const [lamp] = screen && exposures[mark.screen] ? lampsLighting(scene, exposures[mark.screen]) : [];
   if (lamp === undefined) return null;
   const [start, end] = rowEnds(screen, mark.row);

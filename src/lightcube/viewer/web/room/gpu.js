@@ -23,7 +23,8 @@ const MOST_RAYS = 2 ** 20;
  * A renderer that computes shadows and draws the room on a canvas.
  *
  * `cast(exposures, beams, parts)` computes the shadows of all screens, of `beams` as `pointsOf` takes them, with so many
- * `parts` along a pixel's side in the room; `shadow(number)` reads one's whole pixels back as {rows, columns, pixels},
+ * `parts` along a pixel's side in the room; `fill(cube)` puts other glass of the same size there, for what is cast next;
+ * `shadow(number)` reads one's whole pixels back as {rows, columns, pixels},
  * RGBA from the upper left; `drawShadow(number, canvas)` copies them into another canvas of that size;
  * `draw(room, camera, {dark, mark, scale})` draws the room at a part of the canvas's resolution. The drawing context
  * may be lost and come back: then everything is made again, and `onRestored` called.
@@ -49,6 +50,10 @@ export function createRenderer(canvas, scene, cube) {
     cast(exposures, beams, parts) {
       shown = { exposures, beams, parts };
       castAll(kit, scene, cube, shown);
+    },
+    fill(glass) {
+      cube = glass;
+      uploadVoxels(kit, cube);
     },
     shadow: (number) => readShadow(kit, cube, shown, number),
     drawShadow(number, target) {
@@ -110,7 +115,7 @@ function makeKit(gl, scene, cube) {
 /** Codes of 10 bits take four bytes a voxel; longer ones take six, in the browser, and often eight on the card. */
 function uploadVoxels({ gl }, { shape, bits, codes }) {
   const size = [shape[2], shape[1], shape[0], 0];
-  gl.activeTexture(gl.TEXTURE0 + VOXEL_UNIT);
+  gl.activeTexture(gl.TEXTURE0 + VOXEL_UNIT); // where it stays bound
   if (bits > 10) {
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 2); // rows of an odd number of voxels
     gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGB16UI, ...size, gl.RGB_INTEGER, gl.UNSIGNED_SHORT, codes);

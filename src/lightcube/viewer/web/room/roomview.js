@@ -1,6 +1,7 @@
 // The room on its canvas: which renderer draws it, from where it is seen, and what one points at in it.
 
 import { JUDGED, QUICK, THIN } from "../model/area.js";
+import { partOf } from "../model/lesson.js";
 import { exposures, standing } from "../model/stage.js";
 import { clampTo, element, fitCanvas } from "../tools/elements.js";
 import { add, norm, scaled, sub } from "../tools/vectors.js";
@@ -27,7 +28,7 @@ const MOST_PARTS = 1024;
  */
 export class RoomView {
   constructor(scene, cube) {
-    this.scene = scene;
+    Object.assign(this, { scene, cube, box: null });
     const { canvas, renderer, note } = rendererFor(scene, cube);
     Object.assign(this, { canvas, renderer, note });
     this.comeBack();
@@ -36,15 +37,17 @@ export class RoomView {
   }
 
   /**
-   * Cast the shadows of an angle: of the whole turntable's shadow or of its picture window, by thin beams or by all of a
+   * Cast the shadows of an angle, at a step of the tour under its light and through its glass: of the whole turntable's shadow or of its picture window, by thin beams or by all of a
    * pixel's light; more finely where things are `still`, and then in parts of pixels where one has come near.
    */
-  aim(angle, { whole, thin }, still) {
-    const turned = this.angle !== angle || this.whole !== whole;
+  aim(angle, { whole, thin, lesson }, still) {
+    const filled = this.fill(lesson?.box ?? null);
+    const lamp = lesson?.lamp;
+    const turned = filled || this.angle !== angle || this.whole !== whole || this.lamp !== lamp;
     if (turned) {
-      Object.assign(this, { angle, whole });
-      this.exposures = exposures(this.scene, angle, whole);
-      this.room = standing(this.scene, angle, whole);
+      Object.assign(this, { angle, whole, lamp });
+      this.exposures = exposures(this.scene, angle, whole, lamp);
+      this.room = standing(this.scene, angle, whole, lamp);
     }
     const beams = thin ? THIN : still ? JUDGED : QUICK;
     const parts = thin ? 1 : this.partsSeen();
@@ -52,6 +55,14 @@ export class RoomView {
     if (!turned && !finer && thin === (this.beams === THIN)) return; // while the eye moves what was cast stays
     Object.assign(this, { beams, parts });
     this.renderer.cast(this.exposures, beams, parts);
+  }
+
+  /** Let all glass outside of a box be clear, or none of it (null); returns whether that changes anything. */
+  fill(box) {
+    if (this.box === box) return false;
+    this.box = box;
+    this.renderer.fill(box === null ? this.cube : partOf(this.cube, box));
+    return true;
   }
 
   /** Parts along a pixel's side that look as large as a whole pixel does from where the eye began. */
