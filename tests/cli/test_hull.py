@@ -81,7 +81,7 @@ def result(out: str) -> dict[str, Any]:
 @pytest.mark.parametrize("suffix", ["stl", "3mf", "obj", "ply"])
 def test_three_pictures_become_a_mesh(run, tmp_path: Path, three: list[Path], suffix: str) -> None:  # type: ignore[no-untyped-def]
     out = tmp_path / f"a.{suffix}"
-    done = run("hull", *three, "--walls", "-o", out, "--n", 24, "--size-mm", 60, "--json")
+    done = run("hull", *three, "--walls", "-o", out, "--n", 24, "--size-mm", 60, "--json", "--repair", "none")
     assert done.code == 0, done.err
     found = result(done.out)
     mesh = read_written(out)
@@ -96,7 +96,7 @@ def test_three_pictures_become_a_mesh(run, tmp_path: Path, three: list[Path], su
 
 def test_what_it_says_of_the_file_is_true_of_the_file(run, tmp_path: Path, three: list[Path]) -> None:  # type: ignore[no-untyped-def]
     for name in ("a.stl", "a.shape.zarr"):
-        done = run("hull", *three, "--walls", "-o", tmp_path / name, "--n", 20, "--json")
+        done = run("hull", *three, "--walls", "-o", tmp_path / name, "--n", 20, "--json", "--repair", "none")
         found = result(done.out)
         shape = read_shape(tmp_path / "a.shape.zarr") if name.endswith("zarr") else None
         if shape is not None:
@@ -115,7 +115,7 @@ def test_pictures_are_walls_by_their_names_or_else_in_order(run, tmp_path: Path,
             for number, picture in enumerate(three):
                 (given[0] / f"{number}.png").write_bytes(picture.read_bytes())
         out = tmp_path / f"{name}.stl"
-        assert run("hull", *given, "--walls", "-o", out, "--n", 16).code == 0
+        assert run("hull", *given, "--walls", "-o", out, "--n", 16, "--repair", "none").code == 0
         made[name] = out.read_bytes()
     assert made["named"] == made["folder"] == made["ordered"]
 

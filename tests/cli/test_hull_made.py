@@ -102,3 +102,33 @@ def test_many_pictures_are_told_to_be_too_many(run: Any, word: list[Path], tmp_p
     done = run("hull", *six, "--n", 20, "--elevation-deg", 0, "--span-deg", 300, "-o", tmp_path / "a.stl")
     assert done.code == 0
     assert "coloured glass, which holds many more (lightcube solve)" in done.out
+
+
+def test_a_bent_word_has_room(run: Any, word: list[Path], tmp_path: Path) -> None:
+    """What is bent beyond its box is not cut off: nothing touches the walls' edges."""
+    assert run("hull", *word, "--walls", "--n", 32, "-o", tmp_path / "a.shape.zarr").code == 0
+    shape = read_shape(tmp_path / "a.shape.zarr")
+    for inside in shape.silhouettes.inside:
+        assert not (inside[0].any() or inside[-1].any() or inside[:, 0].any() or inside[:, -1].any())
+    assert max(shape.mesh.size_mm) == pytest.approx(100, rel=0.15)
+
+
+def test_all_that_takes_cubes_takes_shapes(run: Any, word: list[Path], tmp_path: Path) -> None:
+    shape = tmp_path / "word.shape.zarr"
+    assert run("hull", *word, "--walls", "--n", 16, "-o", shape).code == 0
+    scored = run("score", shape, "--json")
+    assert scored.code == 0
+    assert json.loads(scored.out)["overlap_min"] > 0.97
+    assert "watertight" in run("score", shape).out
+    assert run("play", shape, "-o", tmp_path / "shadows").code == 0
+    assert len(list((tmp_path / "shadows").glob("*.png"))) == 1
+    assert run("view", shape, "-o", tmp_path / "word.html").code == 0
+    text = (tmp_path / "word.html").read_text(encoding="utf-8")
+    assert "A solid stands in the light, and its shadows are pictures: front, side, top." in text
+    for command, more, said in (
+        ("report", (), "is a shape, and reports are of cubes"),
+        ("score", ("--robust",), "is a shape, and --robust is for cubes: leave it out"),
+    ):
+        done = run(command, shape, *more)
+        assert done.code == 2
+        assert said in done.err

@@ -7,6 +7,7 @@ import typer
 from lightcube import io
 from lightcube.cli.console import done, telling
 from lightcube.cli.options import BY, JSON, NOTE, OVERWRITE, TITLE, threaded
+from lightcube.errors import InputError
 from lightcube.jobs.reading import load
 from lightcube.verbs import reporting
 from lightcube.viewer.label import Label
@@ -33,6 +34,8 @@ def report(
     label = Label(io.bare_name(cube) if title is None else title, by, note)
     page_file = io.Output(target, "page", overwrite)
     page_file.check()
+    if io.is_shape(cube):
+        raise InputError(f"{cube} is a shape, and reports are of cubes: lightcube score and view take it")
     loaded = load(cube)
     with telling("measuring", as_json=as_json) as tell:
         made = reporting.report(loaded, cube, pictures, tell, label)

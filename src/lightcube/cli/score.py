@@ -7,18 +7,19 @@ import typer
 
 from lightcube import io
 from lightcube.cli import printing
-from lightcube.cli.console import json_document, telling
+from lightcube.cli.console import json_document, out, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.errors import InputError
 from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
-from lightcube.verbs import scoring
+from lightcube.solids.reach import count_pieces
+from lightcube.verbs import hulls, scoring
 from lightcube.verbs.refitting import wanted_of
 
 
 @threaded
 def score(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
+    cube: Annotated[str, typer.Argument(help="A cube, or a shape.")],
     pictures: Annotated[
         str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
@@ -33,7 +34,7 @@ def score(
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Compare what a cube really casts with what was wanted."""
+    """Compare what a cube, or a shape's mesh, really casts with what was wanted."""
     sheet_file = None if sheet is None else io.Output(sheet, "picture", overwrite)
     plot_file = None if plot is None else io.Output(plot, "plot", overwrite)
     if plot is not None and sheet is not None and Path(plot) == Path(sheet):
@@ -41,6 +42,11 @@ def score(
     for file in (sheet_file, plot_file):
         if file is not None:
             file.check()
+    if io.is_shape(cube):
+        given = {"--sheet": sheet, "--between": between_pictures, "--robust": robust, "--plot": plot}
+        said = [name for name, value in {"pictures": pictures, **given}.items() if value]
+        _score_shape(cube, said, as_json=as_json)
+        return
     loaded = load(cube)
     wanted = wanted_of(loaded, pictures)
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
@@ -55,3 +61,16 @@ def score(
         json_document(found.scores)
     else:
         printing.scored(found.scores)
+
+
+def _score_shape(path: str, given: list[str], *, as_json: bool) -> None:
+    """Print how far the shadows of a shape's mesh are its silhouettes."""
+    if given:
+        raise InputError(f"{path} is a shape, and {given[0]} is for cubes: leave it out")
+    shape = io.read_shape(path)
+    found, pieces = hulls.certificate(path, shape), count_pieces(shape.inside)
+    if as_json:
+        json_document({"pieces": pieces, "bad_edges": shape.mesh.bad_edges, **found.facts})
+        return
+    for line in hulls.results(shape, found, pieces):
+        out.print(line)

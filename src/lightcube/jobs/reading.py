@@ -8,8 +8,10 @@ from pathlib import Path
 from lightcube.io._files import PARTIAL_SUFFIX
 from lightcube.io._places import Place, name_of, place
 from lightcube.io.cubes import read_cube
+from lightcube.io.shapes import is_shape, read_shape
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.solids.shape import as_cube
 
 
 class UnfinishedCube(UserWarning):
@@ -20,8 +22,8 @@ class UnfinishedCube(UserWarning):
 def load(path: str | Path) -> Cube:
     """Load a cube from a file that `lightcube.io.save` wrote, or from a ``.partial`` folder of one that is being made.
 
-    Of the latter there is what is finished, the state of the unit that is being solved, and for the rest what it
-    would start from.
+    Of a shape, ``NAME.shape.zarr``, it is black glass that casts the same shadows. Of a partial cube there is what is
+    finished, the state of the unit that is being solved, and for the rest what it would start from.
 
     Warns
     -----
@@ -33,6 +35,8 @@ def load(path: str | Path) -> Cube:
     InputError
         Where there is no such file, it is no light cube, it is damaged, or a newer version wrote it.
     """
+    if is_shape(path):
+        return as_cube(read_shape(path))
     at = place(path)
     partial = name_of(at).lower().endswith(PARTIAL_SUFFIX)
     cube = _load_partial(at) if partial else read_cube(path)

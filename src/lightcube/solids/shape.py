@@ -22,6 +22,9 @@ from lightcube.solids.mesh import Mesh
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.surface import surface
 
+#: What cubes remember that were made of shapes.
+_OPAQUE = "opaque"
+
 
 @dataclass(frozen=True, eq=False)
 class Shape:
@@ -136,5 +139,10 @@ def as_cube(shape: Shape, extinction: float = 10.0) -> Cube:
         targets=locked(wanted),
         names=shape.names,
         transfer="linear",
-        provenance=shape.provenance,
+        provenance={**shape.provenance, _OPAQUE: True},
     )
+
+
+def is_opaque(cube: Cube) -> bool:
+    """Whether a cube is black glass that stands for a shape."""
+    return bool(cube.provenance.get(_OPAQUE))

@@ -32,6 +32,10 @@ from lightcube.wording import counted
 
 #: Bytes that a voxel takes, and a small pixel of a silhouette: field and its surface; silhouettes and their distances.
 _VOXEL_BYTES, _SMALL_BYTES = 12, 4
+#: Around shapes on three walls is so much room on either side, in parts of the longest side.
+_ROOM = 0.08
+#: Pictures stretched by less than this part are not worth a word.
+_STRETCHED = 0.005
 #: Parts of pictures that are worth a word: near the threshold, in strokes that are too thin, not cast.
 _MANY_NEAR, _MANY_THIN, _SOME = 0.02, 0.01, 0.0005
 
@@ -152,8 +156,23 @@ def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Want
     if placement == "best":
         cuts = best(placements(cuts)).of(cuts)
     grid, stretched = block(cuts, max(options.voxels), options.size_mm)
-    made = _standing([one.trimmed() for one in cuts], walls(grid).rig(), grid, "stretch")
+    made = _with_room(_standing([one.trimmed() for one in cuts], walls(grid).rig(), grid, "stretch"))
     return replace(made, cuts=cuts, stretched=stretched)
+
+
+def _with_room(wanted: Wanted) -> Wanted:
+    """The same on three larger walls: there is room around shapes that have to be bent."""
+    given, tight = wanted.silhouettes, wanted.grid
+    more = math.ceil(_ROOM * tight.longest)
+    nz, ny, nx = (count + 2 * more for count in tight.shape)
+    grid = Grid((nz, ny, nx), tight.voxel_mm)
+    rig = walls(grid).rig()
+    rows, columns = (FINE * side for side in rig.picture_shape)
+    inside = np.zeros((len(given), rows, columns), np.bool_)
+    room = FINE * more
+    for picture, shape, (high, wide) in zip(inside, given.inside, FINE * given.rig.stops.window, strict=True):
+        picture[room : room + high, room : room + wide] = shape[:high, :wide]
+    return Wanted(Silhouettes(locked(inside), rig, given.names), grid, wanted.cuts)
 
 
 def _standing(cuts: Sequence[Cut], rig: Rig, grid: Grid, ways: Fit | Sequence[Fit]) -> Wanted:
@@ -259,7 +278,7 @@ def in_short(wanted: Wanted) -> list[str]:
     nz, ny, nx = wanted.grid.shape
     size = " x ".join(f"{length:.4g}" for length in wanted.grid.size_mm)
     said.append(f"block of {nz} x {ny} x {nx} voxels, {size} mm (z, y, x)")
-    if wanted.stretched > _SOME:
+    if wanted.stretched >= _STRETCHED:
         said.append(f"pictures are stretched by {wanted.stretched:.0%} so that they share this block")
     return said
 

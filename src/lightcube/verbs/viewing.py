@@ -9,6 +9,7 @@ from lightcube.drawing.room import camera_for, room_picture
 from lightcube.events import Tell, counting
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import to_uint8
+from lightcube.solids.shape import is_opaque
 from lightcube.viewer import smaller
 from lightcube.viewer.label import Label
 from lightcube.viewer.page import contents, page_of
@@ -36,7 +37,7 @@ class Page:
 
 def is_solved_anew(cube: Cube, *, full: bool) -> bool:
     """Whether a page holds a smaller cube, which is solved for it; not where all voxels are asked for."""
-    return not full and cube.grid.longest > smaller.MOST_SIDE
+    return not (full or is_opaque(cube)) and cube.grid.longest > smaller.MOST_SIDE
 
 
 def page(cube: Cube, label: str | Label, tell: Tell, *, full: bool = False) -> Page:

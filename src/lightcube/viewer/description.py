@@ -16,6 +16,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.light import discs_sampled
 from lightcube.optics.rig import Rig
 from lightcube.scoring import metrics
+from lightcube.solids.shape import is_opaque
 from lightcube.viewer.label import Label
 from lightcube.viewer.packing import Packed, lost
 
@@ -60,6 +61,7 @@ def describe(cube: Cube, packed: Packed, label: str | Label) -> dict[str, Any]:
             "least": packed.least,
             "rates": packed.rates,
         },
+        "solid": is_opaque(cube),
         "kept": {"full": cube.grid.shape, "worst_levels": worst, "rms_levels": mean},
         "transfer": cube.transfer,
         "hold_deg": cube.hold_deg,
@@ -99,7 +101,9 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
     """One for each stop and screen; those after the cube's own are their mirror images."""
     own = len(cube.names)
     scores = cube.scores.get("pictures", [])
-    if len(scores) != own:
+    if is_opaque(cube):  # a decibel says little of black and white
+        scores = own * [{"psnr": None}]
+    elif len(scores) != own:
         scores = metrics.score(cube)["pictures"] if wanted else own * [{"psnr": None}]
     return [
         {

@@ -11,6 +11,7 @@ from typing import Any
 from lightcube.backward.pieces import Watching
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.solids.shape import is_opaque
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.label import Label
 from lightcube.viewer.modules import joined, source
@@ -65,7 +66,8 @@ def _sharing(label: Label, description: dict[str, Any]) -> str:
     """What is shown of the page where its address is shared (https://ogp.me)."""
     names = [picture["name"] for picture in description["pictures"] if not picture["mirrored"]]
     shown = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
-    said = f"Light falls through a block of coloured glass, and its shadows are pictures: {shown}."
+    what = "A solid stands in the light" if description["solid"] else "Light falls through a block of coloured glass"
+    said = f"{what}, and its shadows are pictures: {shown}."
     told = {"og:type": "website", "og:title": description["title"], "og:description": said, "og:image": label.picture}
     lines = [f'<meta name="description" content="{html.escape(said)}">']
     lines += [f'<meta property="{name}" content="{html.escape(text)}">' for name, text in told.items() if text]
@@ -77,5 +79,5 @@ def contents(
 ) -> tuple[dict[str, Any], bytes]:
     """Description and voxels, as the page's modules read them; takes and raises what `page` does."""
     cubic = in_cubes(cube)
-    packed = pack(cubic if full else smaller(cubic, callback))
+    packed = pack(cubic if full or is_opaque(cube) else smaller(cubic, callback))
     return describe(cubic, packed, label), packed.data()

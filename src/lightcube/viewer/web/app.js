@@ -178,6 +178,7 @@ function actionsOf(app) {
     },
   };
   const useless = scene.turns ? [] : ["turn", "release", "neighbour", "nearest", "first", "play", "snap"];
+  if (scene.solid) useless.push("tour");
   for (const name of useless) all[name] = () => false;
   return Object.fromEntries(Object.entries(all).map(([name, does]) => [name, (...given) => {
     const done = does(...given);

@@ -2,7 +2,7 @@
 
 import { element, iconButton, oneDecimal, setPressed, wordButton } from "../tools/elements.js";
 
-const GLASS = "Light falls through a block of coloured glass";
+const [GLASS, SOLID] = ["Light falls through a block of coloured glass", "A solid stands in the light"];
 
 /**
  * Title, who made it and for whom, what it is, and buttons.
@@ -15,7 +15,8 @@ const GLASS = "Light falls through a block of coloured glass";
 export function createHeader(scene, does, compact) {
   const tour = wordButton("tour", "Tour", "What light does here, step by step, for a class (G)", does.tour);
   const details = wordButton("details", "Details", "Scores, lamps and the way of the light (D)", does.details);
-  const what = scene.turns ? `${GLASS}; at each stop its shadow is another picture.` : `${GLASS}; its shadows are pictures.`;
+  const lit = scene.solid ? SOLID : GLASS;
+  const what = scene.turns ? `${lit}; at each stop its shadow is another picture.` : `${lit}; its shadows are pictures.`;
   const said = [scene.by && `by ${scene.by}`, scene.note].filter(Boolean);
   return {
     element: element("header", { class: "top" },
@@ -24,7 +25,7 @@ export function createHeader(scene, does, compact) {
         said.length > 0 ? element("p", { class: "by", text: said.join(" · "), dir: "auto" }) : null,
         compact ? null : element("p", { class: "what", text: what })),
       element("div", { class: "tools" },
-        ...(compact ? [] : [tour, details]),
+        ...(compact ? [] : scene.solid ? [details] : [tour, details]),
         named("theme", "Light or dark", "T", does.theme, "Theme"),
         document.fullscreenEnabled ? named("screen", "Full screen", "F", does.fullScreen, "Full") : null,
         named("help", "Help", "?", does.help, "Help"))),

@@ -2,7 +2,7 @@
 
 import { element, icon, iconButton } from "../tools/elements.js";
 
-const WHAT_IT_IS = "Light falls through a block of coloured glass.";
+const [GLASS, SOLID] = ["Light falls through a block of coloured glass.", "A solid stands in the light."];
 const ITS_GLASS = "So that one sees into it the glass is drawn clearer than it is, and shining; what the wall shows, and what the lamp's eye sees, is exact.";
 const ITS_LIGHT = "Each pixel shows all the light that falls on it; nearer, one sees how that varies inside.";
 const AT_STOPS = "At each stop of the turntable its shadow is another picture.";
@@ -61,10 +61,10 @@ export function createHelp(scene) {
   const close = iconButton("close", "Close", "Escape", () => dialog.close());
   const gestures = scene.turns ? [["drag", whatDragDoes(scene)], ...GESTURES] : [["drag", "move the eye"], ...GESTURES.slice(1)];
   const all = [...(scene.turns ? TURNING_KEYS : []), ...KEYS];
-  const keys = all.filter(([key]) => key !== "W" || scene.whole_shadow !== null);
+  const keys = all.filter(([key]) => (key !== "W" || scene.whole_shadow !== null) && (key !== "G" || !scene.solid));
   const dialog = element("dialog", { class: "help", "aria-labelledby": "lightcube-help" },
     element("header", {}, element("h2", { id: "lightcube-help", text: "Turning a light cube" }), close),
-    element("p", { text: `${WHAT_IT_IS} ${scene.turns ? AT_STOPS : ON_SCREENS} ${ITS_LIGHT} ${ITS_GLASS}` }),
+    element("p", { text: `${scene.solid ? SOLID : GLASS} ${scene.turns ? AT_STOPS : ON_SCREENS} ${ITS_LIGHT} ${ITS_GLASS}` }),
     element("div", { class: "lists" }, listOf("gestures", "Mouse and fingers", gestures), listOf("keys", "Keys", keys)));
   dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
   return {
