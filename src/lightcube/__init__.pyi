@@ -8,7 +8,7 @@ from lightcube.cores import threads
 from lightcube.drawing.films import film
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
-from lightcube.io import read_pictures, read_scene, read_stage, read_stage_targets, save
+from lightcube.io import read_pictures, read_relief, read_scene, read_stage, read_stage_targets, save
 from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
@@ -30,7 +30,12 @@ from lightcube.projection.projector import Projector, dot_test
 from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.scoring.metrics import score
+from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.mesh import Mesh
+from lightcube.solids.relief import Relief, ReliefRecipe
+from lightcube.solids.relief_light import relief_shadow
+from lightcube.solids.relief_making import relief
+from lightcube.solids.relief_mesh import relief_mesh
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
 from lightcube.viewer.label import Label
@@ -53,6 +58,8 @@ __all__ = [
     "Prediction",
     "Projector",
     "Recipe",
+    "Relief",
+    "ReliefRecipe",
     "Result",
     "Rig",
     "Scene",
@@ -77,13 +84,18 @@ __all__ = [
     "predict",
     "publish",
     "read_pictures",
+    "read_relief",
     "read_scene",
     "read_stage",
     "read_stage_targets",
+    "relief",
+    "relief_mesh",
+    "relief_shadow",
     "save",
     "scene_rig",
     "scene_targets",
     "score",
+    "score_relief",
     "show",
     "solve",
     "spread_angles",

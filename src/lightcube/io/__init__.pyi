@@ -13,6 +13,7 @@ from lightcube.io.pictures import (
     is_film,
     read_pictures,
 )
+from lightcube.io.reliefs import is_relief, read_relief
 from lightcube.io.remembered import Remembered
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.stages import is_stage, read_stage, read_stage_targets, stage_pictures
@@ -29,9 +30,11 @@ __all__ = [
     "bare_name",
     "free_memory",
     "is_film",
+    "is_relief",
     "is_stage",
     "read_cube",
     "read_pictures",
+    "read_relief",
     "read_scene",
     "read_stage",
     "read_stage_targets",

@@ -52,20 +52,37 @@ _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
 
 def write_zarr(folder: Path, cube: Cube) -> None:
     """Write `cube` as a new Zarr group, format 3, into `folder`, which does not exist yet."""
-    _run(lambda: _write(folder, cube))
+    run(lambda: _write(folder, cube))
 
 
 def read_zarr(path: Path) -> Cube:
     """Read a cube from a Zarr folder."""
     if not (path / _ROOT).is_file():
         raise InputError(f"{path} is no light cube: there is no zarr.json in it, give a folder that lightcube wrote")
+    return _cube(path, lambda missing: _read(path, LocalStore(path, read_only=True), partial(_size, path), missing))
 
-    def size(key: str) -> int:
-        """Bytes of a file in the folder, none where there is none."""
-        member = check_file(path / key)
-        return member.stat().st_size if member.is_file() else 0
 
-    return _cube(path, lambda missing: _read(path, LocalStore(path, read_only=True), size, missing))
+def _size(folder: Path, key: str) -> int:
+    """Bytes of a file in a folder, none where there is none."""
+    member = check_file(folder / key)
+    return member.stat().st_size if member.is_file() else 0
+
+
+def guarded_folder(path: Path) -> Guarded:
+    """A folder as a store that is not trusted."""
+    return Guarded(LocalStore(path, read_only=True), partial(_size, path), partial(_metadata.damaged, path))
+
+
+async def group_of(store: Guarded, inside: str = "") -> zarr.AsyncGroup:
+    """The group in a store, or in a folder inside it."""
+    return await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
+
+
+async def new_group(folder: Path, attributes: dict[str, Any]) -> zarr.AsyncGroup:
+    """A new group in a folder, which does not exist yet."""
+    group = await zarr.AsyncGroup.from_store(LocalStore(folder), attributes=attributes, zarr_format=3)
+    check_text((folder / _ROOT).stat().st_size)
+    return group
 
 
 def write_zarr_zip(file: Path, cube: Cube) -> None:
@@ -103,7 +120,7 @@ def read_zarr_zip(path: Path) -> Cube:
 def _cube(path: Path, read: Callable[[Missing], Coroutine[Any, Any, Parts]]) -> Cube:
     """The cube of what `read` finds; of parts that are not there a note says so."""
     missing: Missing = {}
-    cube = _metadata.from_json(path, *_reading(path, lambda: read(missing)))
+    cube = _metadata.from_json(path, *reading(path, lambda: read(missing)))
     for name, (absent, count) in missing.items():
         warnings.warn(
             f"{absent} of the {count} parts of array {name!r} in {path} are not there and were taken as empty, as the "
@@ -132,8 +149,7 @@ async def _write(folder: Path, cube: Cube) -> None:
     """Write group, arrays and attributes."""
     channels, nz, ny, nx = cube.extinction.shape
     attributes = {"ome": _ome(cube), _ATTRIBUTE: _metadata.to_json(cube)}
-    group = await zarr.AsyncGroup.from_store(LocalStore(folder), attributes=attributes, zarr_format=3)
-    check_text((folder / _ROOT).stat().st_size)
+    group = await new_group(folder, attributes)
     slab = max(1, min(nz, _CHUNK_BYTES // (4 * channels * ny * nx)))
     arrays: list[tuple[str, NDArray[Any], tuple[int, ...], list[str]]] = [
         (_IMAGE, cube.extinction, (channels, slab, ny, nx), ["c", "z", "y", "x"])
@@ -143,17 +159,24 @@ async def _write(folder: Path, cube: Cube) -> None:
         axes = ["view", "row", "column", "channel"]
         arrays.append((_TARGETS, cube.targets, (view, *cube.targets.shape[1:]), axes))
     for name, values, chunks, axes in arrays:
-        array = await group.create_array(
-            name,
-            shape=values.shape,
-            dtype=values.dtype,
-            chunks=chunks,
-            dimension_names=axes,
-            compressors=ZstdCodec(level=3, checksum=True),
-            fill_value=0,
-            config={"write_empty_chunks": True},  # a chunk that is missing is then known to be lost
-        )
-        await array.setitem(..., values)
+        await put_array(group, name, values, chunks, axes)
+
+
+async def put_array(
+    group: zarr.AsyncGroup, name: str, values: NDArray[Any], chunks: tuple[int, ...], axes: list[str]
+) -> None:
+    """Write a new array of a group, its axes named."""
+    array = await group.create_array(
+        name,
+        shape=values.shape,
+        dtype=values.dtype,
+        chunks=chunks,
+        dimension_names=axes,
+        compressors=ZstdCodec(level=3, checksum=True),
+        fill_value=0,
+        config={"write_empty_chunks": True},  # a chunk that is missing is then known to be lost
+    )
+    await array.setitem(..., values)
 
 
 def _ome(cube: Cube) -> dict[str, Any]:
@@ -199,29 +222,29 @@ async def _read(
     """Metadata, extinction and targets of the group in a store, or in a folder inside it; and what is `missing`."""
     store = Guarded(opened, size, partial(_metadata.damaged, path))
     try:
-        group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
+        group = await group_of(store, inside)
         document = group.attrs.get(_ATTRIBUTE)
         _metadata.check_version(path, document)
-        extinction = await _array(path, store, group, _IMAGE, missing)
+        extinction = await get_array(path, store, group, _IMAGE, missing)
         if extinction is None:
             raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await _array(path, store, group, _TARGETS, missing)
+        return document, extinction, await get_array(path, store, group, _TARGETS, missing)
     finally:
         store.close()
 
 
-async def _array(
-    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing
+async def get_array(
+    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing, axes: int = 4
 ) -> NDArray[Any] | None:
-    """All of an array, or None where there is none; `InputError` where chunks are missing.
+    """All of an array of so many axes, or None where there is none; `InputError` where chunks are missing.
 
     Other programs leave out chunks that hold nothing but zeros: of theirs it is told in `missing`.
     """
     if not await group.contains(name):
         return None
     array = await group.getitem(name)
-    if not isinstance(array, zarr.AsyncArray) or array.ndim != 4 or not all(array.shape):
-        raise _metadata.damaged(path, f"{name!r} is not an array with 4 axes, none of them empty")
+    if not isinstance(array, zarr.AsyncArray) or array.ndim != axes or not all(array.shape):
+        raise _metadata.damaged(path, f"{name!r} is not an array with {axes} axes, none of them empty")
     chunk_bytes = math.prod(array.chunks) * array.dtype.itemsize
     if max(array.nbytes, chunk_bytes) > memory() // 2:
         raise InputError(f"{path} states more than half of this machine's memory: open it on a larger one")
@@ -250,11 +273,11 @@ def _is_as_written(array: zarr.AsyncArray[Any]) -> bool:
     return any(isinstance(codec, ZstdCodec) and codec.checksum for codec in array.metadata.codecs)
 
 
-def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:
+def reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:
     """Run `read`; whatever Zarr and its codecs raise over damaged bytes becomes one sentence."""
     try:
         with system_errors(path, "reading"):
-            return _run(read)
+            return run(read)
     except InputError:
         raise
     except MemoryError as error:
@@ -264,7 +287,7 @@ def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Part
         raise _metadata.damaged(path, detail) from error
 
 
-def _run(work: Callable[[], Coroutine[Any, Any, Value]]) -> Value:
+def run(work: Callable[[], Coroutine[Any, Any, Value]]) -> Value:
     """Run a coroutine to its end in a thread of its own: the caller's may have an event loop already."""
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
         return pool.submit(lambda: asyncio.run(work())).result()
