@@ -68,7 +68,7 @@ def test_what_is_no_relief_is_told(tmp_path: Path, kept: Path) -> None:
         read_relief(tmp_path / "none.relief.zarr")
     with pytest.raises(InputError, match=r"cube.zarr is no relief: give a folder that ends with .relief.zarr"):
         read_relief("cube.zarr")
-    with pytest.raises(InputError, match="is a relief, no cube: give it to lightcube play, score or info"):
+    with pytest.raises(InputError, match="is a relief, no cube: lightcube play, score and info take it"):
         load(kept)
 
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io import Output, read_pictures, read_relief, save
+from lightcube.io import Output, read_pictures, read_relief, read_shape, save
 from lightcube.io.outputs import KINDS, Kind
 from lightcube.io.printable import read_written
 from lightcube.jobs.reading import load
@@ -33,6 +33,8 @@ from lightcube.optics.transfer import from_levels, to_uint8
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.relief import Relief, ReliefRecipe
 from lightcube.solids.relief_mesh import relief_mesh
+from lightcube.solids.shape import Shape
+from lightcube.solids.silhouettes import FINE, Silhouettes
 
 #: How much a kind that keeps less than all may be off: the mean over a picture, in levels.
 LOSSY = {".mp4": 3.0, ".gif": 6.0, ".jpg": 3.0, ".jpeg": 3.0, ".webp": 3.0}
@@ -109,6 +111,27 @@ def is_the_relief(relief: Relief, path: Path, suffix: str) -> None:
         is_the_mesh(relief_mesh(relief), path, suffix)
 
 
+def a_shape(number: int, suffix: str) -> Shape:
+    """A body of noise."""
+    grid = Grid(((9, 11, 13), (13, 9, 11))[number], 0.3, 1.5)
+    rig = turntable(grid, [10.0, 41.7], elevation_deg=20, picture_shape=(3, 5))
+    random = np.random.default_rng(number)
+    field = np.rint(64 * random.normal(size=grid.shape)) / 64 + 1 / 256
+    given = Silhouettes(random.random((2, 3 * FINE, 5 * FINE)) < 0.5, rig, ("a", "ünï"))
+    return Shape(field.astype(np.float32), grid, given, {"size_mm": 2.5, "names": ["a"]})
+
+
+def is_the_shape(shape: Shape, path: Path, suffix: str) -> None:
+    if suffix != ".shape.zarr":
+        is_the_mesh(shape.mesh.standing(), path, suffix)
+        return
+    read = read_shape(path)
+    np.testing.assert_array_equal(read.field, shape.field)
+    np.testing.assert_array_equal(read.silhouettes.inside, shape.silhouettes.inside)
+    np.testing.assert_array_equal(read.rig.views.lamps, shape.rig.views.lamps)
+    assert (read.grid, read.names, read.provenance) == (shape.grid, shape.names, shape.provenance)
+
+
 def some_pictures(number: int, suffix: str) -> NDArray[np.float32]:
     return from_levels(noise(number, 1 if suffix == ".png" else 4 - number, 31 + number, 65))
 
@@ -170,6 +193,7 @@ EXAMPLES: Mapping[Kind, Example] = {
     "cube": Example(a_cube, is_the_cube),
     "mesh": Example(a_mesh, is_the_mesh),
     "relief": Example(a_relief, is_the_relief),
+    "shape": Example(a_shape, is_the_shape),
     "pictures": Example(some_pictures, are_the_pictures),
     "page": Example(a_text, is_the_text),
     "drawing": Example(a_text, is_the_text),

@@ -26,6 +26,11 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ),
         ("lightcube check photos --n 64 --lamp-max 4", "the same of a smaller cube and a weaker lamp"),
     ],
+    "hull": [
+        ("lightcube hull front.png side.png top.png --walls -o word.stl", "three letters for three walls"),
+        ("lightcube hull photos --elevation-deg 0 -o thing.3mf", "an object on a turntable, seen level all around"),
+        ("lightcube hull room.toml -o thing.shape.zarr", "any lamps and screens, kept with its silhouettes"),
+    ],
     "score": [
         ("lightcube score cube.zarr", "how near each picture comes"),
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),

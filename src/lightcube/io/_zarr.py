@@ -1,4 +1,4 @@
-"""A cube as a Zarr group: an OME-Zarr 0.5 image with one more attribute.
+"""A cube, a shape or a relief as a Zarr group: an OME-Zarr 0.5 image with one more attribute.
 
 Zarr's own coroutines run in an event loop that ends with each call, so that no thread is left behind.
 """
@@ -8,7 +8,7 @@ import concurrent.futures
 import math
 import warnings
 import zipfile
-from collections.abc import Callable, Coroutine, Iterable
+from collections.abc import Callable, Coroutine, Iterable, Sequence
 from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import Any, TypeVar
@@ -20,18 +20,22 @@ from zarr.codecs import ZstdCodec
 from zarr.storage import LocalStore, StorePath, ZipStore
 
 from lightcube.errors import InputError
-from lightcube.io import _metadata
+from lightcube.io import _metadata, _shape_json
 from lightcube.io._archives import is_crowded
 from lightcube.io._bounds import check_file, check_text, memory
 from lightcube.io._files import system_errors
 from lightcube.io._guarded import Guarded
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.solids.shape import Shape
 
 Value = TypeVar("Value")
 #: By an array's name: how many of its chunks are not there, of how many.
 Missing = dict[str, tuple[int, int]]
 Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
+#: An array with its name and those of its axes.
+Named = tuple[str, NDArray[Any], list[str]]
 
 
 class HollowCube(UserWarning):
@@ -43,7 +47,8 @@ _CHUNK_BYTES = 8 << 20
 #: Other programs make more of them, up to so many: each takes a while to find.
 _MOST_CHUNKS = 100_000
 _ROOT = "zarr.json"
-_IMAGE, _TARGETS, _ATTRIBUTE = "0", "targets", "lightcube"
+_IMAGE, _TARGETS, _SILHOUETTES, _ATTRIBUTE = "0", "targets", "silhouettes", "lightcube"
+_HEIGHTS, _WANTED = "heights", "wanted"
 #: Where a display's white is, among the voxels that are not empty, in per cent: a twentieth of them or more are as dark
 #: as the material can be, ten times as dark as most, and a display that ends there shows a cube as black.
 _WHITE = 90
@@ -52,37 +57,73 @@ _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
 
 def write_zarr(folder: Path, cube: Cube) -> None:
     """Write `cube` as a new Zarr group, format 3, into `folder`, which does not exist yet."""
-    run(lambda: _write(folder, cube))
+    arrays: list[Named] = [(_IMAGE, cube.extinction, ["c", "z", "y", "x"])]
+    if cube.targets is not None:
+        arrays.append((_TARGETS, cube.targets, ["view", "row", "column", "channel"]))
+    _run(lambda: _write(folder, {"ome": _ome(cube), _ATTRIBUTE: _metadata.to_json(cube)}, arrays))
+
+
+def write_shape(folder: Path, shape: Shape) -> None:
+    """Write `shape` as a new Zarr group, format 3, into `folder`, which does not exist yet."""
+    ome = {"version": "0.5", "multiscales": _multiscales("field", shape.grid)}
+    given = shape.silhouettes.inside[..., None].astype(np.uint8)
+    arrays: list[Named] = [
+        (_IMAGE, shape.field[None], ["c", "z", "y", "x"]),
+        (_SILHOUETTES, given, ["view", "row", "column", "channel"]),
+    ]
+    _run(lambda: _write(folder, {"ome": ome, _ATTRIBUTE: _shape_json.to_json(shape)}, arrays))
+
+
+def read_shape(path: Path) -> Shape:
+    """Read a shape from a Zarr folder."""
+    missing: Missing = {}
+
+    async def read() -> Parts:
+        store, size = _folder(path)
+        return await _read(path, store, size, missing, names=(_IMAGE, _SILHOUETTES), check=_shape_json.check_version)
+
+    document, field, given = _reading(path, read)
+    if missing:
+        raise _shape_json.damaged(path, f"parts of its array {next(iter(missing))!r} are missing")
+    return _shape_json.from_json(path, document, field, given)
+
+
+def write_relief(folder: Path, document: dict[str, Any], heights: NDArray[Any], wanted: NDArray[Any]) -> None:
+    """Write a relief as a new Zarr group, format 3, into `folder`, which does not exist yet."""
+    arrays: list[Named] = [(_HEIGHTS, heights, ["row", "column"]), (_WANTED, wanted, ["picture", "row", "column"])]
+    _run(lambda: _write(folder, {_ATTRIBUTE: document}, arrays))
+
+
+def read_relief(path: Path, check: Callable[[Path, object], object]) -> Parts:
+    """The document of a relief in a Zarr folder, its heights and its wanted light."""
+    missing: Missing = {}
+
+    async def read() -> Parts:
+        store, size = _folder(path)
+        return await _read(path, store, size, missing, names=(_HEIGHTS, _WANTED), axes=(2, 3), check=check)
+
+    document, heights, wanted = _reading(path, read)
+    if missing or wanted is None:
+        raise _metadata.damaged(path, "parts of its arrays are missing")
+    return document, heights, wanted
 
 
 def read_zarr(path: Path) -> Cube:
     """Read a cube from a Zarr folder."""
+    store, size = _folder(path)
+    return _cube(path, lambda missing: _read(path, store, size, missing))
+
+
+def _folder(path: Path) -> tuple[LocalStore, Callable[[str], int]]:
+    """A folder as a store, and what tells the bytes of a file in it, none where there is none."""
     if not (path / _ROOT).is_file():
         raise InputError(f"{path} is no light cube: there is no zarr.json in it, give a folder that lightcube wrote")
-    return _cube(path, lambda missing: _read(path, LocalStore(path, read_only=True), partial(_size, path), missing))
 
+    def size(key: str) -> int:
+        member = check_file(path / key)
+        return member.stat().st_size if member.is_file() else 0
 
-def _size(folder: Path, key: str) -> int:
-    """Bytes of a file in a folder, none where there is none."""
-    member = check_file(folder / key)
-    return member.stat().st_size if member.is_file() else 0
-
-
-def guarded_folder(path: Path) -> Guarded:
-    """A folder as a store that is not trusted."""
-    return Guarded(LocalStore(path, read_only=True), partial(_size, path), partial(_metadata.damaged, path))
-
-
-async def group_of(store: Guarded, inside: str = "") -> zarr.AsyncGroup:
-    """The group in a store, or in a folder inside it."""
-    return await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
-
-
-async def new_group(folder: Path, attributes: dict[str, Any]) -> zarr.AsyncGroup:
-    """A new group in a folder, which does not exist yet."""
-    group = await zarr.AsyncGroup.from_store(LocalStore(folder), attributes=attributes, zarr_format=3)
-    check_text((folder / _ROOT).stat().st_size)
-    return group
+    return LocalStore(path, read_only=True), size
 
 
 def write_zarr_zip(file: Path, cube: Cube) -> None:
@@ -120,7 +161,7 @@ def read_zarr_zip(path: Path) -> Cube:
 def _cube(path: Path, read: Callable[[Missing], Coroutine[Any, Any, Parts]]) -> Cube:
     """The cube of what `read` finds; of parts that are not there a note says so."""
     missing: Missing = {}
-    cube = _metadata.from_json(path, *reading(path, lambda: read(missing)))
+    cube = _metadata.from_json(path, *_reading(path, lambda: read(missing)))
     for name, (absent, count) in missing.items():
         warnings.warn(
             f"{absent} of the {count} parts of array {name!r} in {path} are not there and were taken as empty, as the "
@@ -145,63 +186,60 @@ def _inside(path: Path, names: Iterable[str]) -> str:
     return outer[0].rstrip("/")
 
 
-async def _write(folder: Path, cube: Cube) -> None:
+async def _write(folder: Path, attributes: dict[str, Any], arrays: Sequence[Named]) -> None:
     """Write group, arrays and attributes."""
-    channels, nz, ny, nx = cube.extinction.shape
-    attributes = {"ome": _ome(cube), _ATTRIBUTE: _metadata.to_json(cube)}
-    group = await new_group(folder, attributes)
-    slab = max(1, min(nz, _CHUNK_BYTES // (4 * channels * ny * nx)))
-    arrays: list[tuple[str, NDArray[Any], tuple[int, ...], list[str]]] = [
-        (_IMAGE, cube.extinction, (channels, slab, ny, nx), ["c", "z", "y", "x"])
+    group = await zarr.AsyncGroup.from_store(LocalStore(folder), attributes=attributes, zarr_format=3)
+    check_text((folder / _ROOT).stat().st_size)
+    for name, values, axes in arrays:
+        array = await group.create_array(
+            name,
+            shape=values.shape,
+            dtype=values.dtype,
+            chunks=_chunks(name, values),
+            dimension_names=axes,
+            compressors=ZstdCodec(level=3, checksum=True),
+            fill_value=0,
+            config={"write_empty_chunks": True},  # a chunk that is missing is then known to be lost
+        )
+        await array.setitem(..., values)
+
+
+def _chunks(name: str, values: NDArray[Any]) -> tuple[int, ...]:
+    """The shape of an array's chunks: whole slices of a volume, whole pictures of all else."""
+    if name == _IMAGE:
+        channels, nz, ny, nx = values.shape
+        return channels, max(1, min(nz, _CHUNK_BYTES // (4 * channels * ny * nx))), ny, nx
+    return max(1, min(len(values), _CHUNK_BYTES // values[0].size)), *values.shape[1:]
+
+
+def _multiscales(name: str, grid: Grid) -> list[dict[str, Any]]:
+    """OME-Zarr's axes and voxel size of a volume."""
+    x_mm, y_mm, z_mm = grid.sides_mm.tolist()
+    space = [{"name": axis, "type": "space", "unit": "millimeter"} for axis in "zyx"]
+    return [
+        {
+            "name": name,
+            "axes": [{"name": "c", "type": "channel"}, *space],
+            "datasets": [
+                {
+                    "path": _IMAGE,
+                    "coordinateTransformations": [{"type": "scale", "scale": [1.0, z_mm, y_mm, x_mm]}],
+                }
+            ],
+        }
     ]
-    if cube.targets is not None:
-        view = max(1, min(len(cube.targets), _CHUNK_BYTES // cube.targets[0].size))
-        axes = ["view", "row", "column", "channel"]
-        arrays.append((_TARGETS, cube.targets, (view, *cube.targets.shape[1:]), axes))
-    for name, values, chunks, axes in arrays:
-        await put_array(group, name, values, chunks, axes)
-
-
-async def put_array(
-    group: zarr.AsyncGroup, name: str, values: NDArray[Any], chunks: tuple[int, ...], axes: list[str]
-) -> None:
-    """Write a new array of a group, its axes named."""
-    array = await group.create_array(
-        name,
-        shape=values.shape,
-        dtype=values.dtype,
-        chunks=chunks,
-        dimension_names=axes,
-        compressors=ZstdCodec(level=3, checksum=True),
-        fill_value=0,
-        config={"write_empty_chunks": True},  # a chunk that is missing is then known to be lost
-    )
-    await array.setitem(..., values)
 
 
 def _ome(cube: Cube) -> dict[str, Any]:
     """OME-Zarr 0.5 metadata of the image: axes, voxel size, and colours of the channels."""
-    x_mm, y_mm, z_mm = cube.grid.sides_mm.tolist()
     channels = len(cube.extinction)
     colours = _COLOURS if channels == len(_COLOURS) else [(str(index + 1), "FFFFFF") for index in range(channels)]
     most = float(cube.extinction.max()) or 1.0
     some = cube.extinction.ravel()[:: -(-cube.extinction.size // 1_000_000)]
     white = float(np.percentile(some[some > 0], _WHITE)) if np.any(some > 0) else most
-    space = [{"name": axis, "type": "space", "unit": "millimeter"} for axis in "zyx"]
     return {
         "version": "0.5",
-        "multiscales": [
-            {
-                "name": "extinction",
-                "axes": [{"name": "c", "type": "channel"}, *space],
-                "datasets": [
-                    {
-                        "path": _IMAGE,
-                        "coordinateTransformations": [{"type": "scale", "scale": [1.0, z_mm, y_mm, x_mm]}],
-                    }
-                ],
-            }
-        ],
+        "multiscales": _multiscales("extinction", cube.grid),
         "omero": {
             "channels": [
                 {
@@ -217,24 +255,32 @@ def _ome(cube: Cube) -> dict[str, Any]:
 
 
 async def _read(
-    path: Path, opened: LocalStore | ZipStore, size: Callable[[str], int], missing: Missing, inside: str = ""
+    path: Path,
+    opened: LocalStore | ZipStore,
+    size: Callable[[str], int],
+    missing: Missing,
+    inside: str = "",
+    *,
+    names: tuple[str, str] = (_IMAGE, _TARGETS),
+    axes: tuple[int, int] = (4, 4),
+    check: Callable[[Path, object], object] = _metadata.check_version,
 ) -> Parts:
-    """Metadata, extinction and targets of the group in a store, or in a folder inside it; and what is `missing`."""
+    """Metadata and the two arrays of the group in a store, or in a folder inside it; and what is `missing`."""
     store = Guarded(opened, size, partial(_metadata.damaged, path))
     try:
-        group = await group_of(store, inside)
+        group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
         document = group.attrs.get(_ATTRIBUTE)
-        _metadata.check_version(path, document)
-        extinction = await get_array(path, store, group, _IMAGE, missing)
-        if extinction is None:
-            raise _metadata.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await get_array(path, store, group, _TARGETS, missing)
+        check(path, document)
+        first = await _array(path, store, group, names[0], missing, axes[0])
+        if first is None:
+            raise _metadata.damaged(path, f"its array {names[0]!r} is missing")
+        return document, first, await _array(path, store, group, names[1], missing, axes[1])
     finally:
         store.close()
 
 
-async def get_array(
-    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing, axes: int = 4
+async def _array(
+    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing, axes: int
 ) -> NDArray[Any] | None:
     """All of an array of so many axes, or None where there is none; `InputError` where chunks are missing.
 
@@ -273,11 +319,11 @@ def _is_as_written(array: zarr.AsyncArray[Any]) -> bool:
     return any(isinstance(codec, ZstdCodec) and codec.checksum for codec in array.metadata.codecs)
 
 
-def reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:
+def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:
     """Run `read`; whatever Zarr and its codecs raise over damaged bytes becomes one sentence."""
     try:
         with system_errors(path, "reading"):
-            return run(read)
+            return _run(read)
     except InputError:
         raise
     except MemoryError as error:
@@ -287,7 +333,7 @@ def reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts
         raise _metadata.damaged(path, detail) from error
 
 
-def run(work: Callable[[], Coroutine[Any, Any, Value]]) -> Value:
+def _run(work: Callable[[], Coroutine[Any, Any, Value]]) -> Value:
     """Run a coroutine to its end in a thread of its own: the caller's may have an event loop already."""
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
         return pool.submit(lambda: asyncio.run(work())).result()

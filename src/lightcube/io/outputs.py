@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.io import cubes, documents, movies, printable, reliefs
+from lightcube.io import cubes, documents, movies, printable, reliefs, shapes
 from lightcube.io._files import Replaceable, Writer, check_free, suffix_entry, written_whole
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.relief import Relief
+from lightcube.solids.shape import Shape
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
 Given = TypeVar("Given", bound=str | Path)
 
 #: What can be written, by name.
-Kind = Literal["cube", "mesh", "relief", "pictures", "page", "drawing", "plot", "picture", "document"]
+Kind = Literal["cube", "mesh", "shape", "relief", "pictures", "page", "drawing", "plot", "picture", "document"]
 
 #: Whatever is of one of the kinds.
 Thing: TypeAlias = (
-    "Cube | Mesh | Relief | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any] | movies.Levels | Figure"
+    "Cube | Mesh | Shape | Relief | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any]"
+    "| movies.Levels | Figure"
 )
 
 
@@ -79,6 +81,9 @@ KINDS: Mapping[Kind, Row] = {
         reliefs.WRITERS,
         lambda thing: isinstance(thing, Relief),
         {reliefs.SUFFIX: reliefs.is_relief_folder},
+    ),
+    "shape": Row(
+        "a shape", shapes.WRITERS, lambda thing: isinstance(thing, Shape), {shapes.SUFFIX: shapes.is_shape_folder}
     ),
     "page": Row("a page", dict.fromkeys((".html", ".htm"), documents.write_text), lambda thing: isinstance(thing, str)),
     "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),
@@ -138,6 +143,7 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
           back before it gets its name, and is then as closed and of the same volume to a millionth.
         * A relief: ``.relief.zarr`` (a folder with all that is known of it), ``.png`` (its heights, 16 bits, white the
           highest that it may be), or the mesh of it as above.
+        * A shape: ``.shape.zarr`` (a folder, all of it), or its mesh, standing on z = 0, as meshes are.
         * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white,
           or 8-bit display levels, which are written as they are:
           ``.png`` for a single one, ``.mp4`` (H.264, visually lossless; at an even `scale` in 4:2:0, which every player
@@ -187,7 +193,7 @@ def _kind(thing: Thing, at: Place) -> Kind:
     if not kinds:
         raise InputError(
             f"save has no way to write {type(thing).__name__}: "
-            "give a Cube, a Mesh, a Relief, pictures, text, a figure or a mapping"
+            "give a Cube, a Mesh, a Shape, a Relief, pictures, text, a figure or a mapping"
         )
     if len(kinds) == 1:
         return kinds[0]

@@ -6,7 +6,6 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict
-from functools import partial
 from importlib.metadata import version
 from io import BytesIO
 from pathlib import Path
@@ -28,7 +27,7 @@ from lightcube.solids.relief_mesh import relief_mesh
 SUFFIX = ".relief.zarr"
 #: Of the files that this version writes.
 _VERSION = 1
-_HEIGHTS, _WANTED, _ATTRIBUTE = "heights", "wanted", "lightcube"
+_KIND, _ATTRIBUTE = "relief", "lightcube"
 _MOST_LEVEL = 65535
 
 
@@ -41,7 +40,7 @@ def is_relief_folder(at: Place) -> bool:
     """Whether a folder holds a relief, and may therefore be replaced by another one."""
     try:
         document = json.loads(read_bytes(child(at, "zarr.json")) or b"")
-        return bool(document["attributes"][_ATTRIBUTE]["kind"] == _metadata.RELIEF)
+        return bool(document["attributes"][_ATTRIBUTE]["kind"] == _KIND)
     except (OSError, ValueError, LookupError, TypeError):
         return False
 
@@ -69,30 +68,21 @@ def read_relief(path: str | Path) -> Relief:
 def _read(path: Path) -> Relief:
     from lightcube.io import _zarr  # here: Zarr takes a while to load
 
-    missing: _zarr.Missing = {}
+    return _from_json(path, *_zarr.read_relief(path, _check_kind))
 
-    async def read() -> tuple[object, NDArray[Any], NDArray[Any] | None]:
-        store = _zarr.guarded_folder(path)
-        try:
-            group = await _zarr.group_of(store)
-            get = partial(_zarr.get_array, path, store, group, missing=missing)
-            heights, wanted = await get(name=_HEIGHTS, axes=2), await get(name=_WANTED, axes=3)
-            if heights is None or wanted is None or missing:
-                raise damaged(path, "parts of its arrays are missing")
-            return group.attrs.get(_ATTRIBUTE), heights, wanted
-        finally:
-            store.close()
 
-    document, heights, wanted = _zarr.reading(path, read)
-    return _from_json(path, document, heights, wanted)
+def _check_kind(path: Path, document: object) -> Mapping[str, Any]:
+    """The document of a relief, of a version that this one reads, or `InputError`."""
+    if not isinstance(document, Mapping) or document.get("kind") != _KIND:
+        raise InputError(f"{path} is no relief: give a folder that lightcube relief wrote")
+    if isinstance(document.get("relief_version"), int) and document["relief_version"] > _VERSION:
+        raise InputError(f"{path} is of a newer lightcube than this one: update lightcube")
+    return document
 
 
 def _from_json(path: Path, document: object, heights: NDArray[Any], wanted: NDArray[Any] | None) -> Relief:
     """Build the relief again; `InputError` where its document cannot be right."""
-    if not isinstance(document, Mapping) or document.get("kind") != _metadata.RELIEF:
-        raise InputError(f"{path} is no relief: give a folder that lightcube relief wrote")
-    if isinstance(document.get("relief_version"), int) and document["relief_version"] > _VERSION:
-        raise InputError(f"{path} is of a newer lightcube than this one: update lightcube")
+    document = _check_kind(path, document)
     try:
         said = dict(document["recipe"])
         steepest = said.pop("steepest_px")
@@ -114,7 +104,7 @@ def _write(path: Path, relief: Relief) -> None:
 
     said = _metadata.plain(
         {
-            "kind": _metadata.RELIEF,
+            "kind": _KIND,
             "relief_version": _VERSION,
             "written_by": f"lightcube {version('lightcube')}",
             "heights_unit": f"{relief.recipe.px_mm} mm",
@@ -123,15 +113,7 @@ def _write(path: Path, relief: Relief) -> None:
         }
     )
 
-    async def write() -> None:
-        group = await _zarr.new_group(path, {_ATTRIBUTE: said})
-        for name, values, axes in (
-            (_HEIGHTS, relief.heights_px, ["row", "column"]),
-            (_WANTED, relief.wanted, ["picture", "row", "column"]),
-        ):
-            await _zarr.put_array(group, name, values, values.shape, axes)
-
-    _zarr.run(write)
+    _zarr.write_relief(path, said, relief.heights_px, relief.wanted)
 
 
 def _write_heights(path: Path, relief: Relief) -> None:
