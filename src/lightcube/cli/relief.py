@@ -86,7 +86,7 @@ def relief(
         float, typer.Option(help="How high the lamps stand, in degrees.", rich_help_panel="Lamp")
     ] = _DEFAULT.elevation_deg,
     tolerance_deg: Annotated[
-        float, typer.Option(help="How far off that they may stand and be as good.", rich_help_panel="Lamp")
+        float, typer.Option(help="How much too high or too low they may stand, in degrees.", rich_help_panel="Lamp")
     ] = _DEFAULT.tolerance_deg,
     method: Annotated[
         Method,
