@@ -1,9 +1,9 @@
-"""Three letters for three walls: draws docs/pictures/letters.png, the object and the shadows that it casts.
+"""Three letters for three walls: draws docs/pictures/letters.png, an object and its shadows, and why.png.
 
-    python examples/letters.py [WORD [FOLDER]]
+    python examples/letters.py [FOLDER]
 
-A few seconds. Letters are DejaVu Sans Bold, which comes with matplotlib (extra `plot`); the picture goes to
-docs/pictures, or FOLDER.
+A few seconds. Letters are DejaVu Sans Bold, which comes with matplotlib (extra `plot`); the pictures go to
+docs/pictures, or FOLDER. `why.png` maps what no object casts of a word that cannot be built.
 """
 
 import sys
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 import lightcube as lc
+from lightcube.drawing.blame import blame_maps
 from lightcube.solids.certificate import cast_mesh
 from lightcube.solids.walls import block
 
@@ -30,14 +31,27 @@ COLOUR = np.array([0.95, 0.55, 0.2])
 
 
 def main() -> None:
-    word = sys.argv[1] if len(sys.argv) > 1 else "GEB"
-    folder = Path(sys.argv[2]) if len(sys.argv) > 2 else Path(__file__).parents[1] / "docs" / "pictures"
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parents[1] / "docs" / "pictures"
+    given, grid = on_walls("GEB")
+    shape = lc.hull(given, grid)
+    print("GEB", shape, shape.mesh, lc.certify(shape.mesh, given), lc.reach(given, grid))
+    lc.save(picture(shape), folder / "letters.png", overwrite=True)
+    found = lc.reach(*on_walls("HUT"))
+    print("HUT", found, found.shares)
+    lc.save(beside(list(blame_maps(found))), folder / "why.png", overwrite=True)
+
+
+def on_walls(word: str) -> tuple[lc.Silhouettes, lc.Grid]:
+    """Three letters on the walls of the block that they fill."""
     cuts = lc.cut(lc.Pictures(tuple(map(letter, word)), tuple(word)))
     grid, _ = block(cuts, VOXELS, SIDE_MM)
-    trimmed = [one.trimmed() for one in cuts]
-    shape = lc.hull(lc.silhouettes(trimmed, lc.walls(grid).rig(), "stretch"), grid)
-    print(word, shape, shape.mesh, lc.certify(shape.mesh, shape.silhouettes), lc.reach(shape.silhouettes, grid))
-    lc.save(picture(shape), folder / "letters.png", overwrite=True)
+    return lc.silhouettes([one.trimmed() for one in cuts], lc.walls(grid).rig(), "stretch"), grid
+
+
+def beside(maps: list[NDArray[np.uint8]]) -> NDArray[np.uint8]:
+    """Pictures in a row, enlarged, with paper around each."""
+    framed = [np.pad(each, ((6, 6), (6, 6), (0, 0)), constant_values=255) for each in maps]
+    return np.concatenate(framed, axis=1).repeat(2, axis=0).repeat(2, axis=1)
 
 
 def letter(text: str) -> NDArray[np.float32]:
@@ -75,10 +89,12 @@ def body(mesh: lc.Mesh) -> tuple[Array, Array]:
     weights = np.array([(a, b, 3 - a - b) for a in range(4) for b in range(4 - a)]) / 3
     points = np.einsum("pk,fkc->fpc", weights, mesh.triangles).reshape(-1, 3)
     a, b, c = mesh.triangles.transpose(1, 0, 2)
-    normals = np.cross(b - a, c - a)
+    around = np.zeros_like(mesh.vertices_mm)
+    np.add.at(around, mesh.faces, np.cross(b - a, c - a)[:, None])  # small faces at a corner count for little
+    normals = np.einsum("pk,fkc->fpc", weights, around[mesh.faces]).reshape(-1, 3)
     lit = normals @ np.array([0.45, -0.5, 0.74]) / np.linalg.norm(normals, axis=1)
     bright = DARKEST + (1 - DARKEST) * np.clip(lit, 0, 1)
-    return points, np.repeat(bright, len(weights))[:, None] * COLOUR
+    return points, bright[:, None] * COLOUR
 
 
 def walls(shape: lc.Shape) -> list[tuple[Array, Array]]:

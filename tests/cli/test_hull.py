@@ -197,6 +197,7 @@ def test_strokes_that_are_too_thin_and_heights_that_others_leave_empty_are_told(
         (["--threshold", 2], "a threshold between shape and ground lies between 0 and 1, not 2"),
         (["--angles-deg", "1,2,3"], "--angles-deg is for a turntable"),
         (["--every", 2], "--most, --every, --from and --to are for one film"),
+        (["--n", 2000], "GB of memory"),
         (["--n", 0], "--n 0: a cube needs at least 1 voxel a side"),
     ],
 )

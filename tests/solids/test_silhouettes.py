@@ -106,6 +106,7 @@ def test_a_shape_that_touches_its_border_is_told() -> None:
 @pytest.mark.parametrize(
     ("grey", "options", "said"),
     [
+        (np.full((9, 9), np.nan), {}, "picture a holds NaN"),
         (np.full((9, 9), 0.5), {}, "picture a is of one grey, and shows no shape"),
         (1 - 0.9 * disc(9, 3), {"threshold": 0.001, "invert": False}, "picture a is all ground at a threshold of 0.00"),
         (0.2 + 0.5 * disc(9, 3), {"threshold": 0.99, "invert": False}, "picture a is all shape"),

@@ -25,11 +25,18 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
             "look at what will be cropped, a little higher up",
         ),
         ("lightcube check photos --n 64 --lamp-max 4", "the same of a smaller cube and a weaker lamp"),
+        (
+            "lightcube check front.png side.png top.png --opaque --walls --map why",
+            "why a word cannot be built",
+        ),
     ],
     "hull": [
         ("lightcube hull front.png side.png top.png --walls -o word.stl", "three letters for three walls"),
-        ("lightcube hull photos --elevation-deg 0 -o thing.3mf", "an object on a turntable, seen level all around"),
-        ("lightcube hull room.toml -o thing.shape.zarr", "any lamps and screens, kept with its silhouettes"),
+        (
+            "lightcube hull photos --elevation-deg 0 --span-deg 360 -o a.3mf",
+            "an object on a turntable, all around",
+        ),
+        ("lightcube hull room.toml -o a.shape.zarr", "any lamps and screens, kept with its silhouettes"),
     ],
     "score": [
         ("lightcube score cube.zarr", "how near each picture comes"),

@@ -43,6 +43,13 @@ def hull(
     walls: Annotated[bool, WALLS] = False,
     threshold: Annotated[float | None, THRESHOLD] = None,
     invert: Annotated[bool | None, INVERT] = None,
+    placement: Annotated[
+        hulls.Place,
+        typer.Option(
+            help="With --walls: pictures as given, or on other walls or mirrored, as most of them can be cast.",
+            rich_help_panel="Pictures",
+        ),
+    ] = "given",
     fit: Annotated[
         Fit | None,
         typer.Option(
@@ -71,7 +78,7 @@ def hull(
     options = Options(**said, elevation_deg=elevation_deg, angles_deg=angles)
     began = time.monotonic()
     with telling("hull", as_json=as_json) as tell:
-        wanted = hulls.read(pictures, options, hulls.Cutting(threshold, invert, walls, fit))
+        wanted = hulls.read(pictures, options, hulls.Cutting(threshold, invert, walls, fit, placement))
         doubts = hulls.doubts(wanted)
         if not as_json:
             for line in [*hulls.in_short(wanted), *(f"note: {each}" for each in doubts)]:

@@ -9,6 +9,7 @@ import math
 import warnings
 import zipfile
 from collections.abc import Callable, Coroutine, Iterable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import Any, TypeVar
@@ -20,7 +21,7 @@ from zarr.codecs import ZstdCodec
 from zarr.storage import LocalStore, StorePath, ZipStore
 
 from lightcube.errors import InputError
-from lightcube.io import _metadata, _shape_json
+from lightcube.io import _metadata, _relief_json, _shape_json
 from lightcube.io._archives import is_crowded
 from lightcube.io._bounds import check_file, check_text, memory
 from lightcube.io._files import system_errors
@@ -28,12 +29,29 @@ from lightcube.io._guarded import Guarded
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.solids.relief import Relief
 from lightcube.solids.shape import Shape
 
 Value = TypeVar("Value")
 #: By an array's name: how many of its chunks are not there, of how many.
 Missing = dict[str, tuple[int, int]]
 Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What a group holds: names and numbers of axes of its two arrays, and what its document must be.
+
+    `damaged` makes what is raised where it is not so.
+    """
+
+    second: str
+    check: Callable[[Path, object], object]
+    damaged: Callable[[Path, str], InputError]
+    first: str = "0"
+    axes: tuple[int, int] = (4, 4)
+
+
 #: An array with its name and those of its axes.
 Named = tuple[str, NDArray[Any], list[str]]
 
@@ -52,6 +70,9 @@ _HEIGHTS, _WANTED = "heights", "wanted"
 #: Where a display's white is, among the voxels that are not empty, in per cent: a twentieth of them or more are as dark
 #: as the material can be, ten times as dark as most, and a display that ends there shows a cube as black.
 _WHITE = 90
+_CUBE = _Kind(_TARGETS, _metadata.check_version, _metadata.damaged)
+_SHAPE = _Kind(_SILHOUETTES, _shape_json.check_version, _shape_json.damaged)
+_RELIEF = _Kind(_WANTED, _relief_json.check_version, _relief_json.damaged, _HEIGHTS, (2, 3))
 _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
 
 
@@ -80,32 +101,35 @@ def read_shape(path: Path) -> Shape:
 
     async def read() -> Parts:
         store, size = _folder(path)
-        return await _read(path, store, size, missing, names=(_IMAGE, _SILHOUETTES), check=_shape_json.check_version)
+        return await _read(path, store, size, missing, kind=_SHAPE)
 
-    document, field, given = _reading(path, read)
+    document, field, given = _reading(path, read, _SHAPE)
     if missing:
         raise _shape_json.damaged(path, f"parts of its array {next(iter(missing))!r} are missing")
     return _shape_json.from_json(path, document, field, given)
 
 
-def write_relief(folder: Path, document: dict[str, Any], heights: NDArray[Any], wanted: NDArray[Any]) -> None:
-    """Write a relief as a new Zarr group, format 3, into `folder`, which does not exist yet."""
-    arrays: list[Named] = [(_HEIGHTS, heights, ["row", "column"]), (_WANTED, wanted, ["picture", "row", "column"])]
-    _run(lambda: _write(folder, {_ATTRIBUTE: document}, arrays))
+def write_relief(folder: Path, relief: Relief) -> None:
+    """Write `relief` as a new Zarr group, format 3, into `folder`, which does not exist yet."""
+    arrays: list[Named] = [
+        (_HEIGHTS, relief.heights_px, ["row", "column"]),
+        (_WANTED, relief.wanted, ["picture", "row", "column"]),
+    ]
+    _run(lambda: _write(folder, {_ATTRIBUTE: _relief_json.to_json(relief)}, arrays))
 
 
-def read_relief(path: Path, check: Callable[[Path, object], object]) -> Parts:
-    """The document of a relief in a Zarr folder, its heights and its wanted light."""
+def read_relief(path: Path) -> Relief:
+    """Read a relief from a Zarr folder."""
     missing: Missing = {}
 
     async def read() -> Parts:
         store, size = _folder(path)
-        return await _read(path, store, size, missing, names=(_HEIGHTS, _WANTED), axes=(2, 3), check=check)
+        return await _read(path, store, size, missing, kind=_RELIEF)
 
-    document, heights, wanted = _reading(path, read)
+    document, heights, wanted = _reading(path, read, _RELIEF)
     if missing or wanted is None:
-        raise _metadata.damaged(path, "parts of its arrays are missing")
-    return document, heights, wanted
+        raise _relief_json.damaged(path, "parts of its arrays are missing")
+    return _relief_json.from_json(path, document, heights, wanted)
 
 
 def read_zarr(path: Path) -> Cube:
@@ -161,7 +185,7 @@ def read_zarr_zip(path: Path) -> Cube:
 def _cube(path: Path, read: Callable[[Missing], Coroutine[Any, Any, Parts]]) -> Cube:
     """The cube of what `read` finds; of parts that are not there a note says so."""
     missing: Missing = {}
-    cube = _metadata.from_json(path, *_reading(path, lambda: read(missing)))
+    cube = _metadata.from_json(path, *_reading(path, lambda: read(missing), _CUBE))
     for name, (absent, count) in missing.items():
         warnings.warn(
             f"{absent} of the {count} parts of array {name!r} in {path} are not there and were taken as empty, as the "
@@ -261,46 +285,48 @@ async def _read(
     missing: Missing,
     inside: str = "",
     *,
-    names: tuple[str, str] = (_IMAGE, _TARGETS),
-    axes: tuple[int, int] = (4, 4),
-    check: Callable[[Path, object], object] = _metadata.check_version,
+    kind: _Kind = _CUBE,
 ) -> Parts:
     """Metadata and the two arrays of the group in a store, or in a folder inside it; and what is `missing`."""
-    store = Guarded(opened, size, partial(_metadata.damaged, path))
+    store = Guarded(opened, size, partial(kind.damaged, path))
     try:
         group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
         document = group.attrs.get(_ATTRIBUTE)
-        check(path, document)
-        first = await _array(path, store, group, names[0], missing, axes[0])
+        kind.check(path, document)
+        first = await _array(path, store, group, kind.first, missing, kind)
         if first is None:
-            raise _metadata.damaged(path, f"its array {names[0]!r} is missing")
-        return document, first, await _array(path, store, group, names[1], missing, axes[1])
+            raise kind.damaged(path, f"its array {kind.first!r} is missing")
+        return document, first, await _array(path, store, group, kind.second, missing, kind)
     finally:
         store.close()
 
 
 async def _array(
-    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing, axes: int
+    path: Path, store: Guarded, group: zarr.AsyncGroup, name: str, missing: Missing, kind: _Kind
 ) -> NDArray[Any] | None:
-    """All of an array of so many axes, or None where there is none; `InputError` where chunks are missing.
+    """All of an array, or None where there is none; `InputError` where chunks are missing.
 
     Other programs leave out chunks that hold nothing but zeros: of theirs it is told in `missing`.
     """
     if not await group.contains(name):
         return None
     array = await group.getitem(name)
-    if not isinstance(array, zarr.AsyncArray) or array.ndim != axes or not all(array.shape):
-        raise _metadata.damaged(path, f"{name!r} is not an array with {axes} axes, none of them empty")
+    if (
+        not isinstance(array, zarr.AsyncArray)
+        or array.ndim != (axes := kind.axes[name != kind.first])
+        or not all(array.shape)
+    ):
+        raise kind.damaged(path, f"{name!r} is not an array with {axes} axes, none of them empty")
     chunk_bytes = math.prod(array.chunks) * array.dtype.itemsize
     if max(array.nbytes, chunk_bytes) > memory() // 2:
         raise InputError(f"{path} states more than half of this machine's memory: open it on a larger one")
     store.expect(array.metadata.codecs, chunk_bytes)
     counts = [-(-size // chunk) for size, chunk in zip(array.shape, array.chunks, strict=True)]
     if not _is_as_written(array) and math.prod(counts) > _MOST_CHUNKS:
-        raise _metadata.damaged(path, f"its array {name!r} has more than {_MOST_CHUNKS:,} chunks: make them larger")
+        raise kind.damaged(path, f"its array {name!r} has more than {_MOST_CHUNKS:,} chunks: make them larger")
     absent = await _absent(store, array, counts)
     if absent and _is_as_written(array):
-        raise _metadata.damaged(path, f"parts of its array {name!r} are missing")
+        raise kind.damaged(path, f"parts of its array {name!r} are missing")
     if absent:
         missing[name] = (absent, math.prod(counts))
     return locked(np.asarray(await array.getitem(...)))
@@ -319,7 +345,7 @@ def _is_as_written(array: zarr.AsyncArray[Any]) -> bool:
     return any(isinstance(codec, ZstdCodec) and codec.checksum for codec in array.metadata.codecs)
 
 
-def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Parts:
+def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]], kind: _Kind) -> Parts:
     """Run `read`; whatever Zarr and its codecs raise over damaged bytes becomes one sentence."""
     try:
         with system_errors(path, "reading"):
@@ -330,7 +356,7 @@ def _reading(path: Path, read: Callable[[], Coroutine[Any, Any, Parts]]) -> Part
         raise InputError(f"{path} does not fit into this machine's memory: open it on a larger one") from error
     except Exception as error:  # Zarr, zipfile and numcodecs raise whatever they trip over
         detail = " ".join(str(error).split())[:100] or type(error).__name__
-        raise _metadata.damaged(path, detail) from error
+        raise kind.damaged(path, detail) from error
 
 
 def _run(work: Callable[[], Coroutine[Any, Any, Value]]) -> Value:

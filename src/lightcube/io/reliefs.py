@@ -3,31 +3,22 @@
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Mapping
-from dataclasses import asdict
-from importlib.metadata import version
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.io import _metadata, printable
+from lightcube.io import printable
 from lightcube.io._files import Writer, system_errors
 from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
-from lightcube.optics.arrays import locked
+from lightcube.io._relief_json import KIND
 from lightcube.optics.checks import checked
-from lightcube.solids.relief import Relief, ReliefRecipe
+from lightcube.solids.relief import Relief
 from lightcube.solids.relief_mesh import relief_mesh
 
 #: What the name of a relief's file ends with.
 SUFFIX = ".relief.zarr"
-#: Of the files that this version writes.
-_VERSION = 1
-_KIND, _ATTRIBUTE = "relief", "lightcube"
 _MOST_LEVEL = 65535
 
 
@@ -40,7 +31,7 @@ def is_relief_folder(at: Place) -> bool:
     """Whether a folder holds a relief, and may therefore be replaced by another one."""
     try:
         document = json.loads(read_bytes(child(at, "zarr.json")) or b"")
-        return bool(document["attributes"][_ATTRIBUTE]["kind"] == _KIND)
+        return bool(document["attributes"]["lightcube"]["kind"] == KIND)
     except (OSError, ValueError, LookupError, TypeError):
         return False
 
@@ -54,6 +45,8 @@ def read_relief(path: str | Path) -> Relief:
     InputError
         Where there is no such folder, it is no relief, it is damaged, or a newer version wrote it.
     """
+    from lightcube.io import _zarr  # here: Zarr comes with it
+
     at = place(path)
     if not is_relief(path):
         raise InputError(f"{at} is no relief: give a folder that ends with {SUFFIX}")
@@ -62,58 +55,14 @@ def read_relief(path: str | Path) -> Relief:
             there = (local / "zarr.json").is_file()
         if not there:
             raise InputError(f"there is no relief {local}: give a folder that lightcube wrote")
-        return _read(local)
-
-
-def _read(path: Path) -> Relief:
-    from lightcube.io import _zarr  # here: Zarr takes a while to load
-
-    return _from_json(path, *_zarr.read_relief(path, _check_kind))
-
-
-def _check_kind(path: Path, document: object) -> Mapping[str, Any]:
-    """The document of a relief, of a version that this one reads, or `InputError`."""
-    if not isinstance(document, Mapping) or document.get("kind") != _KIND:
-        raise InputError(f"{path} is no relief: give a folder that lightcube relief wrote")
-    if isinstance(document.get("relief_version"), int) and document["relief_version"] > _VERSION:
-        raise InputError(f"{path} is of a newer lightcube than this one: update lightcube")
-    return document
-
-
-def _from_json(path: Path, document: object, heights: NDArray[Any], wanted: NDArray[Any] | None) -> Relief:
-    """Build the relief again; `InputError` where its document cannot be right."""
-    document = _check_kind(path, document)
-    try:
-        said = dict(document["recipe"])
-        steepest = said.pop("steepest_px")
-        recipe = ReliefRecipe(**said, steepest_px=math.inf if steepest is None else steepest)
-        known = {name: document[name] for name in ("is_colour", "cell", "provenance")}
-        return Relief(locked(heights), locked(np.asarray(wanted)), recipe, tuple(document["names"]), **known)
-    except (LookupError, TypeError, ValueError, AttributeError) as error:  # `InputError` is a `ValueError`
-        raise damaged(path, f"{type(error).__name__}: {' '.join(str(error).split())[:100]}") from error
-
-
-def damaged(path: Path, what: str) -> InputError:
-    """What to raise where a file is a relief's but not whole."""
-    return InputError(f"{path} is a damaged relief ({what}): get another copy or make it again")
+        return _zarr.read_relief(local)
 
 
 def _write(path: Path, relief: Relief) -> None:
-    """Write all of a relief as a new Zarr group, heights and wanted light in its arrays."""
-    from lightcube.io import _zarr
+    """Write all of a relief."""
+    from lightcube.io import _zarr  # here: Zarr comes with it
 
-    said = _metadata.plain(
-        {
-            "kind": _KIND,
-            "relief_version": _VERSION,
-            "written_by": f"lightcube {version('lightcube')}",
-            "heights_unit": f"{relief.recipe.px_mm} mm",
-            "recipe": asdict(relief.recipe),
-            **{name: getattr(relief, name) for name in ("names", "is_colour", "cell", "provenance")},
-        }
-    )
-
-    _zarr.write_relief(path, said, relief.heights_px, relief.wanted)
+    _zarr.write_relief(path, relief)
 
 
 def _write_heights(path: Path, relief: Relief) -> None:

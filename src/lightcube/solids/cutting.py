@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -75,12 +75,15 @@ class Cut:
         """``(row, column)``: the shape's pixels."""
         return self.coverage > 0.5
 
+    def mirrored(self) -> Cut:
+        """The same, left and right exchanged."""
+        return replace(self, coverage=self.coverage[:, ::-1].copy())
+
     def trimmed(self) -> Cut:
         """The same without the rows and columns around the shape that are empty."""
         inside = self.inside
         rows, columns = (np.flatnonzero(inside.any(axis=axis)) for axis in (1, 0))
-        box = self.coverage[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        return Cut(self.name, box, self.by, self.threshold, self.near, self.specks, self.border)
+        return replace(self, coverage=self.coverage[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].copy())
 
 
 @checked
@@ -130,6 +133,8 @@ def _cut(
     invert: bool | None,
 ) -> Cut:
     """One picture's shape."""
+    if not np.all(np.isfinite(image)):
+        raise InputError(f"picture {name} holds NaN or infinities: mend it")
     by_opacity = opacity is not None and float(np.mean(opacity < 0.5)) >= _TRANSPARENT and bool(np.any(opacity >= 0.5))
     if by_opacity and opacity is not None:
         grey, at = 1 - opacity, 0.5 if threshold is None else 1 - threshold

@@ -19,8 +19,8 @@ from lightcube.solids import projections
 from lightcube.solids.field import hull_field
 from lightcube.solids.silhouettes import Silhouettes
 
-#: How finely a gap between pieces is looked for, in voxels.
-_FINE_GAP = 1 / 16
+#: How finely a gap between pieces is looked for, in voxels, and how far.
+_FINE_GAP, _MOST_GAP = 1 / 16, 8
 #: A shape narrower than twice this, in voxels, is thin; so much wider it may come back, for its corners.
 _THIN, _SLACK = 1.0, 0.75
 
@@ -46,7 +46,7 @@ class Reach:
         Whether one of them casts all that the hull casts.
     gap
         By how many voxels all silhouettes must grow until one piece does, to 1/16; 0 where one does, None where 8 do
-        not suffice.
+        not suffice, or there is no piece at all.
     """
 
     given: Flags
@@ -59,8 +59,8 @@ class Reach:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        if self.gap is not None and not 0 <= self.gap < math.inf:
-            raise InputError(f"a gap between pieces is a number of voxels of at least 0, not {self.gap:g}")
+        if self.gap is not None and not 0 <= self.gap <= _MOST_GAP:
+            raise InputError(f"a gap between pieces is a number of voxels from 0 to 8, not {self.gap:g}")
         keep(self, given=np.bool_, depth=np.float32, culprit=np.intp, places=np.float32)
 
     def __repr__(self) -> str:
@@ -128,7 +128,7 @@ def reach(silhouettes: Silhouettes, grid: Grid) -> Reach:
     depth = np.where(culprit != kernels.NOTHING, np.maximum(depth, least), np.float32(0))
     field = hull_field(silhouettes, grid, is_skipping=False)
     numbers, count, common = _in_pieces(field < 0, silhouettes, through)
-    gap = 0.0 if common else _gap(field, numbers, silhouettes, through)
+    gap = 0.0 if common else _gap(field, numbers, silhouettes, through) if count else None
     return Reach(given, depth, culprit, places, count, common, gap)
 
 
@@ -169,6 +169,8 @@ def _gap(field: Images, met: Integers, silhouettes: Silhouettes, through: Reals)
 
     def suffices(grown: float) -> bool:
         labels, count = ndimage.label(field < grown)
+        if not count:
+            return False
         sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
         largest = (labels == 1 + int(np.argmax(sizes))).astype(np.int32)
         cast = np.empty(met.shape, np.uint64)

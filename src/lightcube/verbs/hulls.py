@@ -1,10 +1,11 @@
 """What `hull` does: from pictures or a stage to silhouettes, to the shape that casts them, to what its file casts."""
 
+import math
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePath
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -19,19 +20,24 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.solids.certificate import Certificate, certify
 from lightcube.solids.cutting import Cut, cut, plain_ground
 from lightcube.solids.mesh import Mesh
+from lightcube.solids.placement import best, placements
 from lightcube.solids.reach import thin_part
 from lightcube.solids.shape import Shape, hull
-from lightcube.solids.silhouettes import Silhouettes
+from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.standing import silhouettes
 from lightcube.solids.walls import WALLS, block, walls
 from lightcube.verbs import solving
 from lightcube.verbs.options import Options
 from lightcube.wording import counted
 
+#: Bytes that a voxel takes, and a small pixel of a silhouette: field and its surface; silhouettes and their distances.
+_VOXEL_BYTES, _SMALL_BYTES = 12, 4
 #: Parts of pictures that are worth a word: near the threshold, in strokes that are too thin, not cast.
 _MANY_NEAR, _MANY_THIN, _SOME = 0.02, 0.01, 0.0005
 
 
+#: Whether pictures stand on three walls as they are given, or as least of them is lost.
+Place = Literal["given", "best"]
 #: Whatever reading gives.
 Read = TypeVar("Read")
 
@@ -44,6 +50,7 @@ class Cutting:
     invert: bool | None = None
     is_walls: bool = False
     fit: Fit | None = None
+    placement: Place = "given"
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,13 @@ def read(sources: Sequence[str], options: Options, how: Cutting) -> Wanted:
     cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
     if how.is_walls and how.fit is not None:
         raise InputError("--fit is for a turntable, and pictures for --walls are stretched to a block: leave out --fit")
-    return _on_walls(cuts, options) if how.is_walls else _on_turntable(pictures, cuts, options, how.fit or "pad")
+    if how.placement != "given" and not how.is_walls:
+        raise InputError("--placement is for three walls: leave it out, or say --walls")
+    return (
+        _on_walls(cuts, options, how.placement)
+        if how.is_walls
+        else _on_turntable(pictures, cuts, options, how.fit or "pad")
+    )
 
 
 def _of_stage(source: str, options: Options, how: Cutting) -> Wanted:
@@ -113,7 +126,7 @@ def _of_stage(source: str, options: Options, how: Cutting) -> Wanted:
     solving.refuse_beside_stage(source, options)
     stage, pictures, ways = _on_white(lambda: io.read_stage(source, transfer=options.transfer))
     cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
-    return Wanted(silhouettes(cuts, stage.rig(), ways), stage.grid, cuts)
+    return _standing(cuts, stage.rig(), stage.grid, ways)
 
 
 def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, fit: Fit) -> Wanted:
@@ -122,10 +135,10 @@ def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, f
     rows, columns = cuts[0].coverage.shape
     wide, high = max(1, round(n * min(1.0, columns / rows))), max(1, round(n * min(1.0, rows / columns)))
     grid = Grid((high, wide, wide), options.size_mm / n)
-    return Wanted(silhouettes(cuts, options.turntable.rig(pictures, grid), fit), grid, cuts)
+    return _standing(cuts, options.turntable.rig(pictures, grid), grid, fit)
 
 
-def _on_walls(cuts: tuple[Cut, ...], options: Options) -> Wanted:
+def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Wanted:
     """Silhouettes on three walls, trimmed to their shapes, in the block that they fill."""
     said = (options.angles_deg, options.span_deg, options.elevation_deg)
     for option, value in zip(("--angles-deg", "--span-deg", "--elevation-deg"), said, strict=True):
@@ -136,9 +149,18 @@ def _on_walls(cuts: tuple[Cut, ...], options: Options) -> Wanted:
     names = [one.name.lower() for one in cuts]
     if sorted(names) == sorted(WALLS):
         cuts = tuple(cuts[names.index(name)] for name in WALLS)
+    if placement == "best":
+        cuts = best(placements(cuts)).of(cuts)
     grid, stretched = block(cuts, max(options.voxels), options.size_mm)
-    trimmed = [one.trimmed() for one in cuts]
-    return Wanted(silhouettes(trimmed, walls(grid).rig(), "stretch"), grid, cuts, stretched)
+    made = _standing([one.trimmed() for one in cuts], walls(grid).rig(), grid, "stretch")
+    return replace(made, cuts=cuts, stretched=stretched)
+
+
+def _standing(cuts: Sequence[Cut], rig: Rig, grid: Grid, ways: Fit | Sequence[Fit]) -> Wanted:
+    """Shapes put onto a rig; `InputError` where that, or the block, does not fit into the memory."""
+    small = len(rig) * math.prod(rig.picture_shape) * FINE**2
+    solving.check_memory(_VOXEL_BYTES * math.prod(grid.shape) + _SMALL_BYTES * small)
+    return Wanted(silhouettes(cuts, rig, ways), grid, tuple(cuts))
 
 
 def _pictures(sources: Sequence[str], options: Options) -> Pictures:
@@ -262,8 +284,9 @@ def results(shape: Shape, found: Certificate, pieces: int) -> list[str]:
     ]
     worst = int(np.argmax(found.missing))
     if found.missing[worst] > 0.005:
+        better = ", and which placement is better" if shape.rig.screens.names == WALLS else ""
         said.append(
             f"no object casts {found.missing[worst]:.1%} of {shape.names[worst]} while it keeps to the others: "
-            "lightcube check --opaque says where and why"
+            f"lightcube check --opaque says where and why{better}"
         )
     return said
