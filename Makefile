@@ -9,7 +9,7 @@
 # Use another Python with: make demo PYTHON=python3.12
 
 PYTHON ?= python3
-COMPUTING := backward forward kernels laws optics planning projection scene scoring solvers
+COMPUTING := backward forward kernels laws optics planning projection scene scoring solids solvers
 EXTRAS ?= dev,heif,plot,notebook,remote,cluster
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq

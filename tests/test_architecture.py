@@ -18,7 +18,7 @@ STOREYS = [
     ["errors", "events", "kernels", "loading", "wording"],
     ["optics"],
     ["pictures", "projection", "solvers"],
-    ["scene", "backward", "forward"],
+    ["scene", "backward", "forward", "solids"],
     ["scoring", "io", "cores"],
     ["planning", "jobs", "drawing", "bench"],
     ["viewer", "report"],

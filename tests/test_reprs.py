@@ -19,6 +19,12 @@ def of_everything() -> dict[str, object]:
     alike = lc.Pictures((np.ones((2, 3, 3), np.float32), np.ones((2, 3, 3), np.float32)), ("a", "b"))
     values = [pictures, alike, plan, plan.targets, plan.targets.rig, plan.prediction, solution, solution.cube, stage]
     values += [lc.Grid((5, 7, 6)), lc.Recipe(), lc.Material(), lc.METHODS, lc.Projector(plan.grid, plan.targets.rig)]
+    values += [lc.Mesh(np.eye(4, 3), np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]))]
+    square = np.pad(np.zeros((4, 4, 3), np.float32), ((2, 2), (2, 2), (0, 0)), constant_values=1)
+    drawn = lc.Pictures((square,) * 3, ("a", "b", "c"))
+    given = lc.silhouettes(lc.cut(drawn), lc.walls(lc.Grid((5, 7, 6))).rig())
+    shape = lc.hull(given, lc.Grid((5, 7, 6)))
+    values += [*lc.cut(drawn), given, shape, lc.reach(given, shape.grid), lc.certify(shape.mesh, given)]
     return {f"{type(value).__name__}-{index}": value for index, value in enumerate(values)}
 
 

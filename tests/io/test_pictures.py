@@ -19,6 +19,7 @@ from lightcube.errors import InputError
 from lightcube.io import DoubtfulFolder, TransparentPictures, _bounds, pictures, read_pictures, save
 from lightcube.optics.transfer import Transfer, decode, from_levels, to_uint8
 from lightcube.optics.views import DoubtfulAngles, spread_angles
+from lightcube.pictures.pictures import Pictures
 
 Array = NDArray[np.uint8] | NDArray[np.uint16]
 
@@ -576,3 +577,31 @@ def test_a_picture_of_too_many_pixels_is_kept_smaller(
     if times == 1:
         np.testing.assert_array_equal(small, whole)
     np.testing.assert_allclose(small, wanted, rtol=1e-5)
+
+
+def test_how_opaque_pictures_were_comes_along(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of those that were not all opaque, also where pictures are made smaller."""
+    levels = noise(3, channels=4)
+    levels[1, ..., 3] = 255
+    for number, each in enumerate(levels):
+        Image.fromarray(each).save(tmp_path / f"{number}.png")
+    with pytest.warns(TransparentPictures, match=r"^2 of 3"):
+        read = read_pictures(tmp_path)
+    assert read.opacities[1] is None
+    for number in (0, 2):
+        opacity = read.opacities[number]
+        assert opacity is not None
+        np.testing.assert_allclose(opacity, np.asarray(levels[number, ..., 3] / 255, np.float32), atol=1e-6)
+    monkeypatch.setattr(pictures, "MOST_KEPT", 5 * 7 // 4)
+    with pytest.warns(TransparentPictures):
+        smaller = read_pictures(tmp_path).opacities[0]
+    assert smaller is not None
+    assert smaller.shape == (2, 3)
+    assert smaller[0, 0] == pytest.approx(levels[0, :3, :3, 3].mean() / 255, abs=1e-6)
+
+
+def test_opacities_are_one_for_each_picture_and_of_its_size() -> None:
+    image = np.ones((4, 5, 3), np.float32)
+    for wrong in ((None, None), (np.ones((5, 4), np.float32),)):
+        with pytest.raises(InputError, match="opacities of 1 picture must be one each, of its size, or None"):
+            Pictures((image,), ("a",), opacities=wrong)

@@ -22,13 +22,19 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io import Output, read_pictures, save
+from lightcube.io import Output, read_pictures, read_relief, read_shape, save
 from lightcube.io.outputs import KINDS, Kind
+from lightcube.io.printable import read_written
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import from_levels, to_uint8
+from lightcube.solids.mesh import Mesh
+from lightcube.solids.relief import Relief, ReliefRecipe
+from lightcube.solids.relief_mesh import relief_mesh
+from lightcube.solids.shape import Shape
+from lightcube.solids.silhouettes import FINE, Silhouettes
 
 #: How much a kind that keeps less than all may be off: the mean over a picture, in levels.
 LOSSY = {".mp4": 3.0, ".gif": 6.0, ".jpg": 3.0, ".jpeg": 3.0, ".webp": 3.0}
@@ -56,6 +62,74 @@ def a_cube(number: int, suffix: str) -> Cube:
 
 def is_the_cube(cube: Cube, path: Path, suffix: str) -> None:
     np.testing.assert_array_equal(load(path).extinction, cube.extinction)
+
+
+def a_mesh(number: int, suffix: str) -> Mesh:
+    """A lumpy ball."""
+    around, up = 9 + number, 7
+    turn, rise = np.arange(around) / around * 2 * np.pi, (np.arange(up) + 1) / (up + 1) * np.pi
+    radius = np.random.default_rng(number).uniform(9, 11, (up, around))
+    ring = np.stack([np.outer(np.sin(rise), np.cos(turn)), np.outer(np.sin(rise), np.sin(turn))], axis=2)
+    net = np.concatenate([radius[..., None] * ring, radius[..., None] * np.cos(rise)[:, None, None]], axis=2)
+    vertices = np.concatenate([net.reshape(-1, 3), [(0, 0, 10), (0, 0, -10)]])
+    faces = [(len(vertices) - 2, j, (j + 1) % around) for j in range(around)]
+    low = (up - 1) * around
+    faces += [(len(vertices) - 1, low + (j + 1) % around, low + j) for j in range(around)]
+    for i in range(up - 1):
+        for j in range(around):
+            a, b = i * around + j, i * around + (j + 1) % around
+            faces += [(a, a + around, b), (b, a + around, b + around)]
+    return Mesh(vertices, np.array(faces))
+
+
+def is_the_mesh(mesh: Mesh, path: Path, suffix: str) -> None:
+    read = read_written(path)
+    np.testing.assert_array_equal(read.triangles, mesh.vertices_mm.astype(np.float32)[mesh.faces])
+    assert read.is_watertight
+
+
+def a_relief(number: int, suffix: str) -> Relief:
+    random, shape = np.random.default_rng(number), (40 + number, 33)
+    recipe = ReliefRecipe(side=12, pitch_mm=0.3 + number, steepest_px=4.0 if number else np.inf, black=0.4)
+    return Relief(random.uniform(0, 7, shape), random.random((2 + number, *shape)), recipe, provenance={"of": number})
+
+
+def is_the_relief(relief: Relief, path: Path, suffix: str) -> None:
+    if suffix == ".png":
+        with Image.open(path) as image:
+            levels = np.asarray(image) / 65535
+            assert image.mode.startswith("I;16")
+            assert image.info["Description"].startswith(f"heights of a relief: white is {relief.recipe.top_mm:g} mm")
+        np.testing.assert_allclose(levels * relief.recipe.top_mm, relief.heights_mm, atol=relief.recipe.top_mm / 65535)
+    elif suffix == ".relief.zarr":
+        read = read_relief(path)
+        for name in ("heights_px", "wanted"):
+            np.testing.assert_array_equal(getattr(read, name), getattr(relief, name))
+        for name in ("recipe", "names", "is_colour", "cell", "provenance"):
+            assert getattr(read, name) == getattr(relief, name)
+    else:
+        is_the_mesh(relief_mesh(relief), path, suffix)
+
+
+def a_shape(number: int, suffix: str) -> Shape:
+    """A body of noise."""
+    grid = Grid(((9, 11, 13), (13, 9, 11))[number], 0.3, 1.5)
+    rig = turntable(grid, [10.0, 41.7], elevation_deg=20, picture_shape=(3, 5))
+    random = np.random.default_rng(number)
+    field = np.rint(64 * random.normal(size=grid.shape)) / 64 + 1 / 256
+    given = Silhouettes(random.random((2, 3 * FINE, 5 * FINE)) < 0.5, rig, ("a", "ünï"))
+    return Shape(field.astype(np.float32), grid, given, {"size_mm": 2.5, "names": ["a"]})
+
+
+def is_the_shape(shape: Shape, path: Path, suffix: str) -> None:
+    if suffix != ".shape.zarr":
+        is_the_mesh(shape.mesh.standing(), path, suffix)
+        return
+    read = read_shape(path)
+    np.testing.assert_array_equal(read.field, shape.field)
+    np.testing.assert_array_equal(read.silhouettes.inside, shape.silhouettes.inside)
+    np.testing.assert_array_equal(read.rig.views.lamps, shape.rig.views.lamps)
+    assert (read.grid, read.names, read.provenance) == (shape.grid, shape.names, shape.provenance)
 
 
 def some_pictures(number: int, suffix: str) -> NDArray[np.float32]:
@@ -117,6 +191,9 @@ def is_the_document(document: dict[str, Any], path: Path, suffix: str) -> None:
 
 EXAMPLES: Mapping[Kind, Example] = {
     "cube": Example(a_cube, is_the_cube),
+    "mesh": Example(a_mesh, is_the_mesh),
+    "relief": Example(a_relief, is_the_relief),
+    "shape": Example(a_shape, is_the_shape),
     "pictures": Example(some_pictures, are_the_pictures),
     "page": Example(a_text, is_the_text),
     "drawing": Example(a_text, is_the_text),

@@ -25,11 +25,28 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
             "look at what will be cropped, a little higher up",
         ),
         ("lightcube check photos --n 64 --lamp-max 4", "the same of a smaller cube and a weaker lamp"),
+        (
+            "lightcube check front.png side.png top.png --opaque --walls --map why",
+            "why a word cannot be built",
+        ),
+    ],
+    "hull": [
+        ("lightcube hull front.png side.png top.png --walls -o word.stl", "three letters for three walls"),
+        (
+            "lightcube hull photos --elevation-deg 0 --span-deg 360 -o a.3mf",
+            "an object on a turntable, all around",
+        ),
+        ("lightcube hull room.toml -o a.shape.zarr", "any lamps and screens, kept with its silhouettes"),
     ],
     "score": [
         ("lightcube score cube.zarr", "how near each picture comes"),
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
         ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
+    ],
+    "relief": [
+        ("lightcube relief a.jpg b.jpg c.jpg d.jpg -o plate.stl --sheet sheet.png", "four photographs in one plate"),
+        ("lightcube relief photo.jpg -o plate.3mf --colour", "one photograph in colour, by three coloured lamps"),
+        ("lightcube relief a.png b.png -o plate.stl --layer-mm 0.2", "heights that the printer makes exactly"),
     ],
     "draw": [
         ("lightcube draw cube.zarr -o room.png", "the room, at the cube's first stop"),

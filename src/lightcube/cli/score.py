@@ -7,18 +7,20 @@ import typer
 
 from lightcube import io
 from lightcube.cli import printing
-from lightcube.cli.console import json_document, telling
+from lightcube.cli.console import json_document, out, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
+from lightcube.drawing.relief_sheet import relief_sheet
 from lightcube.errors import InputError
 from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
-from lightcube.verbs import scoring
+from lightcube.scoring.reliefs import score_relief
+from lightcube.verbs import reliefs, scoring
 from lightcube.verbs.refitting import wanted_of
 
 
 @threaded
 def score(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
+    cube: Annotated[str, typer.Argument(help="A cube, or a relief.")],
     pictures: Annotated[
         str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
@@ -41,6 +43,9 @@ def score(
     for file in (sheet_file, plot_file):
         if file is not None:
             file.check()
+    if io.is_relief(cube):
+        _score_relief(cube, sheet_file, off=robust, refused=pictures or plot or between_pictures, as_json=as_json)
+        return
     loaded = load(cube)
     wanted = wanted_of(loaded, pictures)
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
@@ -55,3 +60,20 @@ def score(
         json_document(found.scores)
     else:
         printing.scored(found.scores)
+
+
+def _score_relief(path: str, sheet: io.Output | None, *, off: bool, refused: str | bool | None, as_json: bool) -> None:
+    """Compare what a relief's lamps show with the pictures that it keeps."""
+    if refused:
+        raise InputError(
+            "a relief keeps its pictures, and nothing is between them: leave out all but --sheet, --robust"
+        )
+    relief = io.read_relief(path)
+    scores = score_relief(relief, off=off)
+    if sheet is not None:
+        sheet.write(relief_sheet(relief, scores, io.bare_name(path).removesuffix(".relief")))
+    if as_json:
+        json_document(scores)
+        return
+    for line in reliefs.scored(relief, scores):
+        out.print(line)

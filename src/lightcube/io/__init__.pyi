@@ -13,8 +13,10 @@ from lightcube.io.pictures import (
     is_film,
     read_pictures,
 )
+from lightcube.io.reliefs import is_relief, read_relief
 from lightcube.io.remembered import Remembered
 from lightcube.io.scenes import read_scene, scene_names
+from lightcube.io.shapes import is_shape, read_shape, written_mesh
 from lightcube.io.stages import is_stage, read_stage, read_stage_targets, stage_pictures
 
 __all__ = [
@@ -29,14 +31,19 @@ __all__ = [
     "bare_name",
     "free_memory",
     "is_film",
+    "is_relief",
+    "is_shape",
     "is_stage",
     "read_cube",
     "read_pictures",
+    "read_relief",
     "read_scene",
+    "read_shape",
     "read_stage",
     "read_stage_targets",
     "save",
     "scene_names",
     "stage_pictures",
     "write_together",
+    "written_mesh",
 ]

@@ -1,4 +1,4 @@
-"""Faces of Wavefront's OBJ files."""
+"""Faces of Wavefront's OBJ files, and meshes as such."""
 
 from collections.abc import Iterator
 
@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.io._stl import corner_of
+from lightcube.solids.mesh import Mesh
 
 #: More corners than any face needs: cutting one takes time with their square.
 _MOST_CORNERS = 10_000
@@ -38,6 +39,14 @@ def read_obj(data: bytes) -> tuple[list[NDArray[np.float64]], str]:
     made = np.array(corners, dtype=np.float64).reshape(-1, 3)
     found = [made[np.array(alike, dtype=np.intp)] for count, alike in faces.items() if count >= 3]
     return found, f"{curved} curves or curved surfaces" if curved else ""
+
+
+def write_obj(mesh: Mesh) -> bytes:
+    """A mesh as the bytes of an OBJ file, coordinates as float32."""
+    lines = ["# lightcube, millimetres, z is up"]
+    lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in mesh.vertices_mm.astype(np.float32).tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (mesh.faces + 1).tolist()]
+    return "\n".join([*lines, ""]).encode()
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, list[bytes]]]:

@@ -1,7 +1,9 @@
-"""Faces of STL files, binary and text."""
+"""Faces of STL files, binary and text, and meshes as binary ones."""
 
 import numpy as np
 from numpy.typing import NDArray
+
+from lightcube.solids.mesh import Mesh
 
 _COUNT, _START = 80, 84
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("colour", "<u2")])
@@ -58,6 +60,17 @@ def _text(text: bytes) -> list[NDArray[np.float64]]:
     if inside:
         raise ValueError("it is cut short: its last solid does not end")
     return [np.array(alike, dtype=np.float64) for corners, alike in faces.items() if corners >= 3]
+
+
+def write_stl(mesh: Mesh) -> bytes:
+    """A mesh as the bytes of a binary STL file, coordinates as float32."""
+    faces = np.zeros(len(mesh), _TRIANGLE)
+    faces["corners"] = mesh.triangles
+    a, b, c = mesh.triangles.transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    faces["normal"] = np.divide(normals, lengths, where=lengths > 0, out=np.zeros_like(normals))
+    return b"lightcube, millimetres".ljust(_COUNT) + len(faces).to_bytes(4, "little") + faces.tobytes()
 
 
 def corner_of(words: list[bytes], line: int) -> list[float]:

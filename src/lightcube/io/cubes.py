@@ -76,7 +76,7 @@ def is_cube_folder(path: Place) -> bool:
     """Whether a folder holds a light cube, and may therefore be replaced by another one."""
     try:
         document = json.loads(read_bytes(child(path, "zarr.json")) or b"")
-        return "lightcube" in document["attributes"]
+        return "kind" not in document["attributes"]["lightcube"]
     except (OSError, ValueError, KeyError, TypeError):
         return False
 

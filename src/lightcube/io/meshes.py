@@ -1,4 +1,4 @@
-"""Reading triangle meshes, by suffix."""
+"""Reading triangle meshes for scenes, by suffix; `lightcube.io.printable` writes meshes."""
 
 import warnings
 from collections.abc import Callable

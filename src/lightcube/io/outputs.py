@@ -12,11 +12,14 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.io import cubes, documents, movies
+from lightcube.io import cubes, documents, movies, printable, reliefs, shapes
 from lightcube.io._files import Replaceable, Writer, check_free, suffix_entry, written_whole
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.solids.mesh import Mesh
+from lightcube.solids.relief import Relief
+from lightcube.solids.shape import Shape
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,10 +27,13 @@ if TYPE_CHECKING:
 Given = TypeVar("Given", bound=str | Path)
 
 #: What can be written, by name.
-Kind = Literal["cube", "pictures", "page", "drawing", "plot", "picture", "document"]
+Kind = Literal["cube", "mesh", "shape", "relief", "pictures", "page", "drawing", "plot", "picture", "document"]
 
 #: Whatever is of one of the kinds.
-Thing: TypeAlias = "Cube | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any] | movies.Levels | Figure"
+Thing: TypeAlias = (
+    "Cube | Mesh | Shape | Relief | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any]"
+    "| movies.Levels | Figure"
+)
 
 
 @dataclass(frozen=True)
@@ -69,6 +75,16 @@ def _is_picture(thing: Any) -> bool:
 #: The table; of the kinds that take a thing, `save` chooses the first one that knows the suffix.
 KINDS: Mapping[Kind, Row] = {
     "cube": Row("a cube", cubes.WRITERS, lambda thing: isinstance(thing, Cube), {".zarr": cubes.is_cube_folder}),
+    "mesh": Row("a mesh", printable.WRITERS, lambda thing: isinstance(thing, Mesh)),
+    "relief": Row(
+        "a relief",
+        reliefs.WRITERS,
+        lambda thing: isinstance(thing, Relief),
+        {reliefs.SUFFIX: reliefs.is_relief_folder},
+    ),
+    "shape": Row(
+        "a shape", shapes.WRITERS, lambda thing: isinstance(thing, Shape), {shapes.SUFFIX: shapes.is_shape_folder}
+    ),
     "page": Row("a page", dict.fromkeys((".html", ".htm"), documents.write_text), lambda thing: isinstance(thing, str)),
     "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),
     "plot": Row("a plot", documents.PLOTS, lambda thing: hasattr(thing, "savefig")),
@@ -123,6 +139,11 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
     thing
         * A cube: ``.zarr`` (a folder, OME-Zarr 0.5: napari and others open it as it is), ``.zarr.zip`` (the same in
           one file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
+        * A mesh, in mm: ``.stl`` (binary), ``.3mf``, ``.obj`` or ``.ply`` (binary), coordinates in float32. It is read
+          back before it gets its name, and is then as closed and of the same volume to a millionth.
+        * A relief: ``.relief.zarr`` (a folder with all that is known of it), ``.png`` (its heights, 16 bits, white the
+          highest that it may be), or the mesh of it as above.
+        * A shape: ``.shape.zarr`` (a folder, all of it), or its mesh, standing on z = 0, as meshes are.
         * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white,
           or 8-bit display levels, which are written as they are:
           ``.png`` for a single one, ``.mp4`` (H.264, visually lossless; at an even `scale` in 4:2:0, which every player
@@ -171,7 +192,8 @@ def _kind(thing: Thing, at: Place) -> Kind:
     kinds: list[Kind] = [kind for kind, row in KINDS.items() if row.takes(thing)]
     if not kinds:
         raise InputError(
-            f"save has no way to write {type(thing).__name__}: give a Cube, pictures, text, a figure or a mapping"
+            f"save has no way to write {type(thing).__name__}: "
+            "give a Cube, a Mesh, a Shape, a Relief, pictures, text, a figure or a mapping"
         )
     if len(kinds) == 1:
         return kinds[0]

@@ -161,22 +161,22 @@ class _Taken:
     def __init__(self, transfer: Transfer) -> None:
         self.transfer = transfer
         self.images: list[NDArray[np.float32]] = []
-        self._opaque: list[bool] = []
+        self.opacities: list[NDArray[np.float32] | None] = []
         self._spaces: list[Space | None] = []
         self.read = Read((), 0)
 
     def __call__(self, levels: Levels, space: Space | None = None) -> None:
         """Take one picture. Where display values are light (`transfer` linear), `space` is of no meaning."""
         space = space if self.transfer == "srgb" else None
-        image, opaque = _linear_light(levels, space.light if space else partial(decode, transfer=self.transfer))
+        image, opacity = _linear_light(levels, space.light if space else partial(decode, transfer=self.transfer))
         self.images.append(locked(image))
-        self._opaque.append(opaque)
+        self.opacities.append(None if opacity is None else locked(opacity))
         self._spaces.append(space)
 
     def keep(self, numbers: Sequence[int]) -> None:
         """Forget all pictures but these."""
         self.images[:] = [self.images[number] for number in numbers]
-        self._opaque[:] = [self._opaque[number] for number in numbers]
+        self.opacities[:] = [self.opacities[number] for number in numbers]
         self._spaces[:] = [self._spaces[number] for number in numbers]
 
     def notes(self, path: str | Path, count: int) -> Iterator[UserWarning]:
@@ -187,7 +187,8 @@ class _Taken:
             yield ThinnedFilm(
                 f"{count} of {self.read.of} pictures of {path} were taken, evenly spread: --most takes more"
             )
-        transparent, spaces = self._opaque.count(False), [space for space in self._spaces if space]
+        transparent = sum(opacity is not None for opacity in self.opacities)
+        spaces = [space for space in self._spaces if space]
         if transparent:
             yield TransparentPictures(f"{transparent} of {whole} are partly transparent: they were put on white")
         if spaces:
@@ -228,7 +229,9 @@ def _read(path: Path, transfer: Transfer, least: int, excerpt: Excerpt) -> tuple
         held = "one picture" if images else "no picture"
         needed = "a cube needs at least two: add more" if least > 1 else "one at least is needed: give another"
         raise InputError(f"{path} holds {held}, and {needed}")
-    return Pictures(tuple(images), names, views.angles_deg, views.elevation_deg, transfer), take
+    return Pictures(
+        tuple(images), names, views.angles_deg, views.elevation_deg, transfer, opacities=tuple(take.opacities)
+    ), take
 
 
 def _read_animation(path: Path, budget: Budget, take: _Taken, excerpt: Excerpt) -> Read:
@@ -248,8 +251,10 @@ _SUFFIXES: dict[str, Callable[[Path, Budget, _Taken, Excerpt], Read]] = {
 
 def _linear_light(
     levels: Levels, light_of: Callable[[NDArray[np.float32]], NDArray[np.floating]]
-) -> tuple[NDArray[np.float32], bool]:
-    """Levels ``(row, column, 3 or 4)`` as linear light on white, made smaller if need be, and whether they were opaque.
+) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+    """Levels ``(row, column, 3 or 4)`` as linear light on white, made smaller if need be, and their opacity.
+
+    None where they are opaque.
 
     Some rows at a time: what a large picture takes in between is little.
     """
@@ -257,17 +262,18 @@ def _linear_light(
     rows, columns = levels.shape[:2]
     times = math.ceil(math.sqrt(rows * columns / MOST_KEPT))
     light = np.empty((-(-rows // times), -(-columns // times), 3), np.float32)
-    opaque = True
+    opacities = np.empty(light.shape[:2], np.float32) if levels.shape[2] == 4 else None
     step = max(1, ROWS // times) * times
     for first in range(0, rows, step):
         part = levels[first : first + step]
         shown = light_of(part[..., :3].astype(np.float32) / full).astype(np.float32, copy=False)
-        if levels.shape[2] == 4:
+        rows_made = slice(first // times, (first + step) // times)
+        if opacities is not None:
             opacity = part[..., 3:].astype(np.float32) / full
             shown = opacity * shown + (1 - opacity)
-            opaque = opaque and bool(np.all(opacity == 1))
-        light[first // times : (first + step) // times] = _averaged(shown, times)
-    return light, opaque
+            opacities[rows_made] = _averaged(opacity, times)[..., 0]
+        light[rows_made] = _averaged(shown, times)
+    return light, None if opacities is None or np.all(opacities == 1) else opacities
 
 
 def _averaged(light: NDArray[np.float32], times: int) -> NDArray[np.float32]:

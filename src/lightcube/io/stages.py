@@ -196,6 +196,7 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
     doubt_angles(stage.stops_deg, f"{file.name}: turntable: stops_deg", stacklevel=3)
     shots: list[Shot] = []
     images: list[NDArray[np.float32]] = []
+    opacities: list[NDArray[np.float32] | None] = []
     fits: list[Fit] = []
     for number, (table, first) in enumerate(zip(said.picture, stage.shots, strict=True), start=1):
         with _about(f"{file.name}: picture {number}"):
@@ -203,9 +204,10 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
             stops = table.stops_of(len(pictures), len(stage.stops_deg))
         shots += [replace(first, name=name, stop=stop - 1) for name, stop in zip(pictures.names, stops, strict=True)]
         images += pictures.images
+        opacities += pictures.opacities
         fits += [table.fit] * len(pictures)
     shots = _told_apart(shots)
-    named = Pictures(tuple(images), tuple(shot.name for shot in shots), transfer=transfer)
+    named = Pictures(tuple(images), tuple(shot.name for shot in shots), transfer=transfer, opacities=tuple(opacities))
     return replace(stage, shots=tuple(shots)), named, tuple(fits)
 
 

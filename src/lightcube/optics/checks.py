@@ -30,6 +30,8 @@ _SOURCES = {
     "Pictures": "read some with lightcube.read_pictures",
     "Rig": "make one with lightcube.turntable, or take that of a stage, stage.rig()",
     "Scene": "read one with lightcube.read_scene",
+    "Shape": "carve one with lightcube.hull, or read one with lightcube.read_shape",
+    "Silhouettes": "make some with lightcube.silhouettes",
     "Stage": "read one with lightcube.read_stage",
     "Targets": "fit pictures to a rig with lightcube.fit",
     "Views": "take those of a rig, rig.views",

@@ -63,7 +63,7 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
     fitted = np.ones((len(pictures), *rig.picture_shape, 3), np.float32)
     weights = np.zeros(fitted.shape[:3], np.float32)
     for p, (image, (rows, columns), way) in enumerate(zip(pictures.images, rig.stops.window, fits, strict=True)):
-        _fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way), pictures.focus)
+        fill(fitted[p, :rows, :columns], weights[p, :rows, :columns], image, check_fit(way), pictures.focus)
     return Targets(locked(fitted), rig, locked(weights), pictures.names, pictures.transfer)
 
 
@@ -127,6 +127,11 @@ def source_box(
     return left, top, min(left + wide, columns), min(top + high, rows)
 
 
+def cropped(image: Picture, shape: tuple[int, int], focus: tuple[float, float] = (0.5, 0.5)) -> Picture:
+    """A picture at `shape` (rows, columns), what is too wide or too high cut off around `focus`, as `fit` does it."""
+    return _resample(image, shape, source_box(image.shape[:2], shape, "crop", focus))
+
+
 def _inside(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[slice, slice]:
     """Rows and columns of the screen that the picture fills, in its middle."""
     if mode != "pad":
@@ -140,8 +145,8 @@ def _inside(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[
     return spans[0], spans[1]
 
 
-def _fill(area: Picture, weight: Picture, image: Picture, mode: Fit, focus: tuple[float, float]) -> None:
-    """Put `image` into `area`, and 1 into `weight` where it lies."""
+def fill(area: Picture, weight: Picture, image: Picture, mode: Fit, focus: tuple[float, float]) -> None:
+    """Put `image` into `area`, both ``(row, column, channel)``, and 1 into `weight` where it lies."""
     size, shape = image.shape[:2], (area.shape[0], area.shape[1])
     inside = _inside(size, shape, mode)
     area[inside] = _resample(image, area[inside].shape[:2], source_box(size, shape, mode, focus))

@@ -34,6 +34,9 @@ class Pictures:
     focus
         What stays in the middle, as far as it can, of pictures that are cropped: parts of their width and height, from
         their upper left.
+    opacities
+        How opaque each was before it was put on white, ``(row, column)`` from 0 to 1, None of those that are all
+        opaque; () where nothing is known of it.
     """
 
     images: tuple[Images, ...]
@@ -42,6 +45,7 @@ class Pictures:
     elevation_deg: float | None = None
     transfer: Transfer = "srgb"
     focus: tuple[float, float] = (0.5, 0.5)
+    opacities: tuple[Images | None, ...] = ()
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -67,6 +71,20 @@ class Pictures:
             raise InputError(f"the focus {x:g},{y:g} is outside the picture: give two numbers from 0 to 1")
         if self.elevation_deg is not None:
             check_elevation(self.elevation_deg)
+        self._check_opacities()
+
+    def _check_opacities(self) -> None:
+        """Raise `InputError` where there is not one opacity for each picture, of its size."""
+        kept = tuple(None if each is None else owned(each, np.float32) for each in self.opacities)
+        sizes = [None if each is None else each.shape for each in kept]
+        if kept and (
+            len(kept) != len(self.images)
+            or any(size not in (None, image.shape[:2]) for size, image in zip(sizes, self.images, strict=True))
+        ):
+            raise InputError(
+                f"opacities of {counted(len(self.images), 'picture')} must be one each, of its size, or None"
+            )
+        object.__setattr__(self, "opacities", kept)
 
     def __len__(self) -> int:
         return len(self.images)

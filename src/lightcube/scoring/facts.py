@@ -1,26 +1,22 @@
-"""What is worth knowing of a cube, beside how good it is."""
+"""What is worth knowing of a cube, beside how good it is, and of a shape."""
 
 from typing import Any
 
 import numpy as np
 
 from lightcube.optics.cube import Cube
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Rig
+from lightcube.solids.shape import Shape
 
 
 def facts(cube: Cube) -> dict[str, Any]:
     """What is worth knowing of a cube, by name, for people and JSON."""
-    nz, ny, nx = cube.grid.shape
-    rows, columns = cube.rig.picture_shape
     return {
         "status": cube.status,
-        "voxels": f"{nz} x {ny} x {nx} (z, y, x)",
-        "size_mm": " x ".join(f"{length:g}" for length in cube.grid.size_mm),
-        "voxel_mm": cube.grid.voxel_mm,
-        **({} if cube.grid.tall == 1 else {"slice_mm": cube.grid.slice_mm}),
+        **_block(cube.grid),
         "views": len(cube.rig.views),
-        "pictures": len(cube.names),
-        "picture": f"{columns} x {rows} pixels",
-        **_where(cube),
+        **_where(cube.rig),
         "lamp_power": [float(cube.powers.min()), float(cube.powers.max())],
         "lamp_ev": [float(np.log2(cube.powers.min())), float(np.log2(cube.powers.max()))],
         "extinction_mean": float(cube.extinction.mean()),
@@ -33,11 +29,41 @@ def facts(cube: Cube) -> dict[str, Any]:
     }
 
 
-def _where(cube: Cube) -> dict[str, Any]:
-    """Where a cube's lamps and screens stand, by name."""
-    rig = cube.rig
+def shape_facts(shape: Shape) -> dict[str, Any]:
+    """What is worth knowing of a shape, by name, for people and JSON."""
+    mesh = shape.mesh
     return {
-        "angles_deg": [float(angle_deg) for angle_deg in cube.angles_deg],
+        "kind": "shape",
+        **_block(shape.grid),
+        **_where(shape.rig),
+        "filled": float(shape.inside.mean()),
+        "mesh_size_mm": " x ".join(f"{length:.6g}" for length in mesh.size_mm) + " (x, y, z)",
+        "volume_mm3": mesh.volume_mm3,
+        "faces": len(mesh),
+        "bad_edges": mesh.bad_edges,
+        "names": list(shape.names),
+        **{f"made_with_{name}": value for name, value in shape.provenance.items()},
+    }
+
+
+def _block(grid: Grid) -> dict[str, Any]:
+    """A block of voxels, by name."""
+    nz, ny, nx = grid.shape
+    return {
+        "voxels": f"{nz} x {ny} x {nx} (z, y, x)",
+        "size_mm": " x ".join(f"{length:g}" for length in grid.size_mm),
+        "voxel_mm": grid.voxel_mm,
+        **({} if grid.tall == 1 else {"slice_mm": grid.slice_mm}),
+    }
+
+
+def _where(rig: Rig) -> dict[str, Any]:
+    """A rig's pictures, and where its lamps and screens stand, by name."""
+    rows, columns = rig.picture_shape
+    return {
+        "pictures": len(rig),
+        "picture": f"{columns} x {rows} pixels",
+        "angles_deg": [float(angle_deg) for angle_deg in rig.stops.angle_deg],
         "elevation_deg": sorted(
             {float(elevation_deg) for elevation_deg in rig.views.elevations_deg[rig.views.lamps[:, 3] == 0]}
         ),

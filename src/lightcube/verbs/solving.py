@@ -78,15 +78,21 @@ def read(source: str, options: Options, *, told: bool = True) -> Planning:
 
 def _read_stage(source: str, options: Options) -> Callable[..., Plan]:
     """Read a stage file, which says all there is."""
-    part(source, options)
-    recipe, nothing = options.recipe, Options()
+    refuse_beside_stage(source, options)
+    recipe = options.recipe
     smooth = options.grain is None and not recipe.beams.is_thin
+    stage, pictures, ways = io.read_stage(source, transfer=options.transfer)
+    return partial(plan_stage, stage, pictures, ways, recipe, smooth=smooth)
+
+
+def refuse_beside_stage(source: str, options: Options) -> None:
+    """Raise `InputError` where something is said that a stage file says itself."""
+    part(source, options)
+    nothing = Options()
     for name in _SAID_BY_STAGE:
         if getattr(options, name) != getattr(nothing, name):
             option = name.replace("_", "-")
             raise InputError(f"--{option} is not for a stage, and {source} is one that says all there is: leave it out")
-    stage, pictures, ways = io.read_stage(source, transfer=options.transfer)
-    return partial(plan_stage, stage, pictures, ways, recipe, smooth=smooth)
 
 
 def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:

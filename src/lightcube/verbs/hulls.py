@@ -1,0 +1,292 @@
+"""What `hull` does: from pictures or a stage to silhouettes, to the shape that casts them, to what its file casts."""
+
+import math
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import PurePath
+from typing import Any, Literal, TypeVar
+
+import numpy as np
+
+from lightcube import io
+from lightcube.errors import InputError
+from lightcube.optics.arrays import Counts, locked
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Rig
+from lightcube.optics.transfer import Transfer
+from lightcube.pictures.fitting import Fit
+from lightcube.pictures.pictures import Pictures
+from lightcube.solids.certificate import Certificate, certify
+from lightcube.solids.cutting import Cut, cut, plain_ground
+from lightcube.solids.mesh import Mesh
+from lightcube.solids.placement import best, placements
+from lightcube.solids.reach import thin_part
+from lightcube.solids.shape import Shape, hull
+from lightcube.solids.silhouettes import FINE, Silhouettes
+from lightcube.solids.standing import silhouettes
+from lightcube.solids.walls import WALLS, block, walls
+from lightcube.verbs import solving
+from lightcube.verbs.options import Options
+from lightcube.wording import counted
+
+#: Bytes that a voxel takes, and a small pixel of a silhouette: field and its surface; silhouettes and their distances.
+_VOXEL_BYTES, _SMALL_BYTES = 12, 4
+#: Parts of pictures that are worth a word: near the threshold, in strokes that are too thin, not cast.
+_MANY_NEAR, _MANY_THIN, _SOME = 0.02, 0.01, 0.0005
+
+
+#: Whether pictures stand on three walls as they are given, or as least of them is lost.
+Place = Literal["given", "best"]
+#: Whatever reading gives.
+Read = TypeVar("Read")
+
+
+@dataclass(frozen=True)
+class Cutting:
+    """How shapes are cut out of pictures, as `lightcube.cut` takes it, and if they stand on walls or are fitted."""
+
+    threshold: float | None = None
+    invert: bool | None = None
+    is_walls: bool = False
+    fit: Fit | None = None
+    placement: Place = "given"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a shape is to cast.
+
+    Parameters
+    ----------
+    silhouettes, grid
+        On their rig, and the block.
+    cuts
+        What they were made of, one each.
+    stretched
+        By which part pictures on three walls were stretched, at most.
+    """
+
+    silhouettes: Silhouettes
+    grid: Grid
+    cuts: tuple[Cut, ...]
+    stretched: float = 0.0
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What was read, for JSON."""
+        return {
+            "pictures": [
+                {
+                    "name": name,
+                    "by": one.by,
+                    "threshold": one.threshold,
+                    "near": one.near,
+                    "specks": one.specks,
+                    "border": one.border,
+                    "thin": thin,
+                }
+                for name, one, thin in zip(self.silhouettes.names, self.cuts, self.thin, strict=True)
+            ],
+            "voxels": list(self.grid.shape),
+            "size_mm": list(self.grid.size_mm),
+            "stretched": self.stretched,
+        }
+
+    @property
+    def thin(self) -> list[float]:
+        """Which part of each silhouette is thinner than two voxels."""
+        return thin_part(self.silhouettes, self.grid).tolist()
+
+
+def read(sources: Sequence[str], options: Options, how: Cutting) -> Wanted:
+    """Read pictures, cut them out, and put them where they are cast; `InputError` for all that cannot be."""
+    stages = [source for source in sources if io.is_stage(source)]
+    given = {"other pictures": len(sources) > 1, "--walls": how.is_walls, "--fit": how.fit is not None}
+    if stages and any(given.values()):
+        other = next(name for name, is_given in given.items() if is_given)
+        raise InputError(f"{stages[0]} is a stage, which says all there is: leave out {other}")
+    if stages:
+        return _of_stage(stages[0], options, how)
+    pictures = _pictures(sources, options)
+    cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
+    if how.is_walls and how.fit is not None:
+        raise InputError("--fit is for a turntable, and pictures for --walls are stretched to a block: leave out --fit")
+    if how.placement != "given" and not how.is_walls:
+        raise InputError("--placement is for three walls: leave it out, or say --walls")
+    return (
+        _on_walls(cuts, options, how.placement)
+        if how.is_walls
+        else _on_turntable(pictures, cuts, options, how.fit or "pad")
+    )
+
+
+def _of_stage(source: str, options: Options, how: Cutting) -> Wanted:
+    """The silhouettes of a stage file."""
+    solving.refuse_beside_stage(source, options)
+    stage, pictures, ways = _on_white(lambda: io.read_stage(source, transfer=options.transfer))
+    cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
+    return _standing(cuts, stage.rig(), stage.grid, ways)
+
+
+def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, fit: Fit) -> Wanted:
+    """Silhouettes on a turntable, in a block of the first picture's proportions."""
+    n = max(options.voxels)
+    rows, columns = cuts[0].coverage.shape
+    wide, high = max(1, round(n * min(1.0, columns / rows))), max(1, round(n * min(1.0, rows / columns)))
+    grid = Grid((high, wide, wide), options.size_mm / n)
+    return _standing(cuts, options.turntable.rig(pictures, grid), grid, fit)
+
+
+def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Wanted:
+    """Silhouettes on three walls, trimmed to their shapes, in the block that they fill."""
+    said = (options.angles_deg, options.span_deg, options.elevation_deg)
+    for option, value in zip(("--angles-deg", "--span-deg", "--elevation-deg"), said, strict=True):
+        if value is not None:
+            raise InputError(
+                f"{option} is for a turntable, and --walls are front, side and top: leave out one of the two"
+            )
+    names = [one.name.lower() for one in cuts]
+    if sorted(names) == sorted(WALLS):
+        cuts = tuple(cuts[names.index(name)] for name in WALLS)
+    if placement == "best":
+        cuts = best(placements(cuts)).of(cuts)
+    grid, stretched = block(cuts, max(options.voxels), options.size_mm)
+    made = _standing([one.trimmed() for one in cuts], walls(grid).rig(), grid, "stretch")
+    return replace(made, cuts=cuts, stretched=stretched)
+
+
+def _standing(cuts: Sequence[Cut], rig: Rig, grid: Grid, ways: Fit | Sequence[Fit]) -> Wanted:
+    """Shapes put onto a rig; `InputError` where that, or the block, does not fit into the memory."""
+    small = len(rig) * math.prod(rig.picture_shape) * FINE**2
+    solving.check_memory(_VOXEL_BYTES * math.prod(grid.shape) + _SMALL_BYTES * small)
+    return Wanted(silhouettes(cuts, rig, ways), grid, tuple(cuts))
+
+
+def _pictures(sources: Sequence[str], options: Options) -> Pictures:
+    """All pictures of several places, one behind the other."""
+    if len(sources) == 1:
+        return _read_one(sources[0], options.transfer, least=2, **solving.part(sources[0], options))
+    if options.is_of_a_film:
+        raise InputError("--most, --every, --from and --to are for one film or animation: give one alone")
+    each = [_read_one(source, options.transfer, least=1) for source in sources]
+    alone = [PurePath(source).stem for source in sources]
+    names = [read.names if len(read) > 1 else (one,) for one, read in zip(alone, each, strict=True)]
+    return replace(
+        each[0],
+        images=tuple(image for read in each for image in read.images),
+        opacities=tuple(opacity for read in each for opacity in read.opacities),
+        names=tuple(name for some in names for name in some),
+        angles_deg=None,
+        elevation_deg=None,
+    )
+
+
+def _read_one(source: str, transfer: Transfer, least: int, **part: Any) -> Pictures:
+    """Pictures of one place."""
+    return _on_white(lambda: io.read_pictures(source, transfer=transfer, least=least, **part))
+
+
+def _on_white(read: Callable[[], Read]) -> Read:
+    """Read pictures without a word on transparent ones: their opacity is kept, and is what they are cut by."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", io.TransparentPictures)
+        return read()
+
+
+def build(wanted: Wanted) -> Shape:
+    """The hull of silhouettes, which remembers how they were cut out."""
+    made = hull(wanted.silhouettes, wanted.grid)
+    told = {name: fact for name, fact in wanted.facts.items() if name in ("pictures", "stretched")}
+    return replace(made, provenance={"command": "hull", **told})
+
+
+def certificate(output: str, shape: Shape) -> Certificate:
+    """What the mesh in a file that was written really casts; it stands, or is where the shape is."""
+    mesh = io.written_mesh(output)
+    low = shape.mesh.vertices_mm[:, 2].min() - mesh.vertices_mm[:, 2].min()
+    return certify(Mesh(locked(mesh.vertices_mm + np.array([0.0, 0.0, low])), mesh.faces), shape.silhouettes)
+
+
+def doubts(wanted: Wanted) -> list[str]:
+    """What may be wrong with the pictures, a sentence each."""
+    said = []
+    for name, one, thin in zip(wanted.silhouettes.names, wanted.cuts, wanted.thin, strict=True):
+        if not plain_ground(one):
+            other = "leave out --invert" if one.by == "light" else "--invert takes the other"
+            said.append(f"{name}: its shape covers {one.border:.0%} of its border, so it may be the ground: {other}")
+        elif one.border:
+            said.append(f"{name}: its shape touches the border of its picture, and may be cut off there")
+        if one.near > _MANY_NEAR:
+            said.append(
+                f"{name}: {one.near:.0%} of its pixels lie near the threshold of {one.threshold:.2f}: edges are soft"
+            )
+        if one.specks:
+            said.append(f"{name}: {counted(one.specks, 'speck')} removed")
+        if thin > _MANY_THIN:
+            said.append(f"{name}: {thin:.0%} of its shape is thinner than two voxels, and may be lost: take more (--n)")
+    return [*said, *_emptied(wanted)]
+
+
+def _emptied(wanted: Wanted) -> list[str]:
+    """Pictures that wipe out rows of others: those in which a height is empty at which others have something."""
+    given, heights = wanted.silhouettes, _heights(wanted.silhouettes.rig)
+    if heights is None or len(heights) < 2:
+        return []
+    held = np.asarray(given.pixels()[heights].any(axis=2))
+    said = []
+    for number, own in zip(heights, held, strict=True):
+        wiped = float(np.mean(held.any(axis=0) & ~own) / max(np.mean(held.any(axis=0)), 1e-9))
+        if wiped > _MANY_THIN:
+            said.append(
+                f"{given.names[number]}: it is empty over {wiped:.0%} of the height that others fill, "
+                "and nothing can stand there: make shapes as high as each other"
+            )
+    return said
+
+
+def _heights(rig: Rig) -> Counts | None:
+    """The pictures whose rows are heights, under level light on upright screens; None where their rows differ."""
+    views = rig.views
+    level = (views.lamps[:, 3] == 0) & (np.abs(views.lamps[:, 2]) < 1e-9)
+    upright = np.all(np.abs(views.row_steps_mm[:, :2]) < 1e-9, axis=1)
+    (chosen,) = np.nonzero(level & upright)
+    places = np.column_stack([views.row_steps_mm[chosen, 2], views.origins_mm[chosen, 2]])
+    return chosen if len(chosen) and np.allclose(places, places[0]) else None
+
+
+def in_short(wanted: Wanted) -> list[str]:
+    """How the pictures were read and where they stand, for people."""
+    said = []
+    for by, words in (("dark", "dark on light"), ("light", "light on dark"), ("opacity", "cut by their transparency")):
+        at = [one.threshold for one in wanted.cuts if one.by == by]
+        if at:
+            bounds = f"{min(at):.2f}" if max(at) - min(at) < 0.005 else f"{min(at):.2f} to {max(at):.2f}"
+            said.append(f"{counted(len(at), 'shape')} {words}, threshold {bounds}")
+    nz, ny, nx = wanted.grid.shape
+    size = " x ".join(f"{length:.4g}" for length in wanted.grid.size_mm)
+    said.append(f"block of {nz} x {ny} x {nx} voxels, {size} mm (z, y, x)")
+    if wanted.stretched > _SOME:
+        said.append(f"pictures are stretched by {wanted.stretched:.0%} so that they share this block")
+    return said
+
+
+def results(shape: Shape, found: Certificate, pieces: int) -> list[str]:
+    """What a hull is and what its file casts, for people."""
+    mesh = shape.mesh
+    x, y, z = mesh.size_mm
+    closed = "watertight" if mesh.is_watertight else f"{counted(mesh.bad_edges, 'bad edge')}"
+    size = f"{x:.4g} x {y:.4g} x {z:.4g} mm, {mesh.volume_mm3 / 1000:.3g} cm³"
+    overlap = f"{found.overlap.mean():.2%}, the worst by {found.overlap.min():.2%}"
+    said = [
+        f"{size}, {counted(len(mesh), 'face')}, {closed}, {counted(pieces, 'piece')}",
+        f"shadows of the file overlap what was given by {overlap}",
+    ]
+    worst = int(np.argmax(found.missing))
+    if found.missing[worst] > 0.005:
+        better = ", and which placement is better" if shape.rig.screens.names == WALLS else ""
+        said.append(
+            f"no object casts {found.missing[worst]:.1%} of {shape.names[worst]} while it keeps to the others: "
+            f"lightcube check --opaque says where and why{better}"
+        )
+    return said
