@@ -48,7 +48,7 @@ def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.
     room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
     if INTERPRETED and room not in ("optics", "forward", "viewer") and file not in ("test_docstrings", "test_older"):
         forget_points()
-        for name, few in (("JUDGE", 5), ("_JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
+        for name, few in (("JUDGE", 5), ("JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
             monkeypatch.setattr(light, name, few)
         monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2, 0.0))
         for quality, effort in QUALITIES.items():

@@ -25,6 +25,7 @@ PREDICTION = lc.Prediction(np.ones(2), 20)
 SCENE = lc.read_scene("gems")
 LAMP = lc.Lamp("sun", direction=(1, 0, -0.5))
 SCREEN = lc.Screen("wall", (9, 0, 0), (5, 5), 1)
+RELIEF = lc.Relief(np.ones((8, 9)), np.ones((1, 8, 9)), lc.ReliefRecipe())
 SHOT = lc.Shot("a", "wall", ("sun",))
 VECTORS = {name: np.ones((2, 3)) for name in ("origins_mm", "column_steps_mm", "row_steps_mm")}
 
@@ -58,6 +59,8 @@ GIVEN: dict[str, dict[str, Any]] = {
     "Projector": {"grid": GRID, "rig": RIG},
     "Reach": {each.name: getattr(REACH, each.name) for each in fields(REACH)},
     "Recipe": {},
+    "Relief": {"heights_px": np.ones((2, 3)), "wanted": np.ones((1, 2, 3)), "recipe": RELIEF.recipe},
+    "ReliefRecipe": {},
     "Result": {"x": np.ones((4, 2)), "lamp_powers": np.ones((1, 1)), "residuals": np.ones(2)},
     "Rig": {name: getattr(RIG, name) for name in inspect.signature(lc.Rig).parameters},
     "Scene": {"description": SCENE.description},
@@ -94,15 +97,20 @@ GIVEN: dict[str, dict[str, Any]] = {
     "predict": {"targets": TARGETS, "grid": GRID},
     "publish": {"partial": "no.zarr.partial"},
     "read_pictures": {"path": "no.gif"},
+    "read_relief": {"path": "no.relief.zarr"},
     "read_scene": {"path_or_name": "gems"},
     "reach": {"silhouettes": SILHOUETTES, "grid": GRID},
     "read_shape": {"path": "no.shape.zarr"},
     "read_stage": {"path": "no.toml"},
     "read_stage_targets": {"path": "no.toml"},
+    "relief": {"pictures": PICTURES, "recipe": lc.ReliefRecipe(side=8, sweeps=1)},
+    "relief_mesh": {"relief": RELIEF},
+    "relief_shadow": {"relief": RELIEF, "azimuth_deg": 0.0},
     "save": {"thing": CUBE, "path": "/no/such/folder/a.zarr"},
     "scene_rig": {"scene": SCENE},
     "scene_targets": {"scene": SCENE, "rig": RIG, "grid": GRID},
     "score": {"cube": CUBE, "targets": TARGETS},
+    "score_relief": {"relief": RELIEF},
     "show": {"cube": CUBE},
     "silhouettes": {"cuts": CUTS, "rig": SILHOUETTES.rig},
     "solve": {"targets": TARGETS, "grid": GRID, "recipe": RECIPE},
@@ -144,6 +152,9 @@ SENSIBLE = {
     ("Cube", "provenance", "a table"),
     ("Shape", "provenance", "a table"),
     ("solve", "provenance", "a table"),
+    ("Relief", "provenance", "a table"),
+    ("Relief", "names", "words"),
+    ("relief", "tell", "a class"),
     *((name, "callback", "a class") for name in ("page", "solve", "scene_targets")),
     ("dot_test", "dtype", "a class"),
     ("save", "path", "a path"),
@@ -177,7 +188,16 @@ def test_every_public_function_is_tried() -> None:
 @pytest.mark.parametrize("name", GIVEN)
 def test_what_is_right_is_taken(name: str) -> None:
     """Else the law below says nothing: what is refused is refused for the one thing that is wrong."""
-    if name in ("load", "publish", "read_pictures", "read_shape", "read_stage", "read_stage_targets", "save"):
+    if name in (
+        "load",
+        "publish",
+        "read_pictures",
+        "read_relief",
+        "read_shape",
+        "read_stage",
+        "read_stage_targets",
+        "save",
+    ):
         return
     getattr(lc, name)(**GIVEN[name])
 
@@ -199,7 +219,7 @@ NO_NUMBERS = {"nan": np.nan, "numpy's nan": np.float32(np.nan), "inf": np.inf, "
 #: What may be infinite, or so large that it is as good: limits that do not hold, results that were not reached.
 LIMITLESS = {
     *("max_extinction", "hold_deg", "enough_db", "lower_bound", "reach_mm", "full_at_mm", "falloff_mm"),
-    *("width", "memory", "hours", "cores"),
+    *("width", "memory", "hours", "cores", "steepest_px"),
 }
 
 

@@ -8,7 +8,7 @@ from lightcube.cores import threads
 from lightcube.drawing.films import film
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
-from lightcube.io import read_pictures, read_scene, read_shape, read_stage, read_stage_targets, save
+from lightcube.io import read_pictures, read_relief, read_scene, read_shape, read_stage, read_stage_targets, save
 from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
@@ -30,10 +30,15 @@ from lightcube.projection.projector import Projector, dot_test
 from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.scoring.metrics import score
+from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.certificate import certify
 from lightcube.solids.cutting import cut
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.reach import Reach, reach
+from lightcube.solids.relief import Relief, ReliefRecipe
+from lightcube.solids.relief_light import relief_shadow
+from lightcube.solids.relief_making import relief
+from lightcube.solids.relief_mesh import relief_mesh
 from lightcube.solids.shape import Shape, as_cube, hull
 from lightcube.solids.silhouettes import Silhouettes
 from lightcube.solids.standing import silhouettes
@@ -61,6 +66,8 @@ __all__ = [
     "Projector",
     "Reach",
     "Recipe",
+    "Relief",
+    "ReliefRecipe",
     "Result",
     "Rig",
     "Scene",
@@ -92,14 +99,19 @@ __all__ = [
     "publish",
     "reach",
     "read_pictures",
+    "read_relief",
     "read_scene",
     "read_shape",
     "read_stage",
     "read_stage_targets",
+    "relief",
+    "relief_mesh",
+    "relief_shadow",
     "save",
     "scene_rig",
     "scene_targets",
     "score",
+    "score_relief",
     "show",
     "silhouettes",
     "solve",

@@ -31,6 +31,7 @@ FEW = 3
 #: So many moments for each signal.
 MOMENTS = 100 if ALL else 1
 SOLVE = ("--n", "8", "--picture-width", "0.7", "--iterations", "4", "--hold-deg", "0")
+SMALL_RELIEF = ("--columns", "8", "--sweeps", "2")
 #: What each command writes, and its words; `given` holds the pictures and a cube of them.
 COMMANDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "trace folder": (("t",), ("trace", "juggler", "-o", "t", "--count", "2", "--size", "8x8")),
@@ -45,6 +46,10 @@ COMMANDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         f"play {suffix}": ((f"p{suffix}",), ("play", "given/c.zarr", "-o", f"p{suffix}", "--count", "2"))
         for suffix in ("", ".mp4", ".webm", ".gif", ".webp", ".apng", ".npy")
     },
+    "relief": (
+        ("p.stl", "p.relief.zarr", "s.png"),
+        ("relief", "given/photos", "-o", "p.stl", "-o", "p.relief.zarr", "--sheet", "s.png", *SMALL_RELIEF),
+    ),
     "score": (("s.png", "s.svg"), ("score", "given/c.zarr", "--sheet", "s.png", "--plot", "s.svg")),
     "view": (("v.html",), ("view", "given/c.zarr", "-o", "v.html")),
     "report": (("r.html",), ("report", "given/c.zarr", "-o", "r.html")),

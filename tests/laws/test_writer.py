@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io import Output, read_pictures, read_shape, save
+from lightcube.io import Output, read_pictures, read_relief, read_shape, save
 from lightcube.io.outputs import KINDS, Kind
 from lightcube.io.printable import read_written
 from lightcube.jobs.reading import load
@@ -31,6 +31,8 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import from_levels, to_uint8
 from lightcube.solids.mesh import Mesh
+from lightcube.solids.relief import Relief, ReliefRecipe
+from lightcube.solids.relief_mesh import relief_mesh
 from lightcube.solids.shape import Shape
 from lightcube.solids.silhouettes import FINE, Silhouettes
 
@@ -84,6 +86,29 @@ def is_the_mesh(mesh: Mesh, path: Path, suffix: str) -> None:
     read = read_written(path)
     np.testing.assert_array_equal(read.triangles, mesh.vertices_mm.astype(np.float32)[mesh.faces])
     assert read.is_watertight
+
+
+def a_relief(number: int, suffix: str) -> Relief:
+    random, shape = np.random.default_rng(number), (40 + number, 33)
+    recipe = ReliefRecipe(side=12, pitch_mm=0.3 + number, steepest_px=4.0 if number else np.inf, black=0.4)
+    return Relief(random.uniform(0, 7, shape), random.random((2 + number, *shape)), recipe, provenance={"of": number})
+
+
+def is_the_relief(relief: Relief, path: Path, suffix: str) -> None:
+    if suffix == ".png":
+        with Image.open(path) as image:
+            levels = np.asarray(image) / 65535
+            assert image.mode.startswith("I;16")
+            assert image.info["Description"].startswith(f"heights of a relief: white is {relief.recipe.top_mm:g} mm")
+        np.testing.assert_allclose(levels * relief.recipe.top_mm, relief.heights_mm, atol=relief.recipe.top_mm / 65535)
+    elif suffix == ".relief.zarr":
+        read = read_relief(path)
+        for name in ("heights_px", "wanted"):
+            np.testing.assert_array_equal(getattr(read, name), getattr(relief, name))
+        for name in ("recipe", "names", "is_colour", "cell", "provenance"):
+            assert getattr(read, name) == getattr(relief, name)
+    else:
+        is_the_mesh(relief_mesh(relief), path, suffix)
 
 
 def a_shape(number: int, suffix: str) -> Shape:
@@ -167,6 +192,7 @@ def is_the_document(document: dict[str, Any], path: Path, suffix: str) -> None:
 EXAMPLES: Mapping[Kind, Example] = {
     "cube": Example(a_cube, is_the_cube),
     "mesh": Example(a_mesh, is_the_mesh),
+    "relief": Example(a_relief, is_the_relief),
     "shape": Example(a_shape, is_the_shape),
     "pictures": Example(some_pictures, are_the_pictures),
     "page": Example(a_text, is_the_text),

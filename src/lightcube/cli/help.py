@@ -47,6 +47,11 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
         ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
     ],
+    "relief": [
+        ("lightcube relief a.jpg b.jpg c.jpg d.jpg -o plate.stl --sheet sheet.png", "four photographs in one plate"),
+        ("lightcube relief photo.jpg -o plate.3mf --colour", "one photograph in colour, by three coloured lamps"),
+        ("lightcube relief a.png b.png -o plate.stl --layer-mm 0.2", "heights that the printer makes exactly"),
+    ],
     "draw": [
         ("lightcube draw cube.zarr -o room.png", "the room, at the cube's first stop"),
         ("lightcube draw room.toml -o room.svg", "a stage from above and from the side"),

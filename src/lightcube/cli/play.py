@@ -16,13 +16,13 @@ from lightcube.drawing.shows import Frame
 from lightcube.errors import InputError
 from lightcube.jobs.reading import load
 from lightcube.optics.light import Beams, check_zoom
-from lightcube.verbs import words
+from lightcube.verbs import reliefs, words
 from lightcube.wording import counted
 
 
 @threaded
 def play(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
+    cube: Annotated[str, typer.Argument(help="A cube, or a relief: its lamp goes round.")],
     output: Annotated[str, OUT],
     even: Annotated[
         bool, typer.Option("--even", help="Turn evenly under a steady lamp: what flickers, flickers.")
@@ -91,6 +91,12 @@ def play(
     in_room = view == "room"
     if in_room and (target or picture_only or screens or zoom > 1):
         raise InputError("--view room shows all there is: leave out --screens, --target, --picture-only and --zoom")
+    if io.is_relief(cube):
+        cubes_own = (shape, start_deg, end_deg, count, captions, in_room, zoom > 1, target, picture_only, screens)
+        if any(each not in (None, False) for each in cubes_own) or light != "area":
+            raise InputError("a relief takes --stops, --even, --angles-deg, --fps and --scale: leave out all else")
+        _play_relief(cube, movie, angles_deg, fps, scale, stops=stops, even=even, as_json=as_json)
+        return
     loaded = load(cube)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
@@ -124,6 +130,36 @@ def play(
             names=film.show.names,
         )
     _told(output, film, as_json=as_json)
+
+
+def _play_relief(
+    path: str,
+    movie: io.Output,
+    angles_deg: str | None,
+    fps: float | None,
+    scale: int | None,
+    *,
+    stops: bool,
+    even: bool,
+    as_json: bool,
+) -> None:
+    """Show what a relief's lamp shows on its way round, or at its pictures."""
+    relief, output = io.read_relief(path), str(movie.path)
+    if stops and angles_deg is not None:
+        raise InputError("--stops and --angles-deg are two ways to say the same: use one")
+    turned = reliefs.course(relief, even=even or not arguments.is_movie(output))
+    if angles_deg is not None:
+        turned = np.array(arguments.numbers(angles_deg, "--angles-deg"))
+    elif stops:
+        turned = reliefs.stops_deg(relief)
+    with progress("playing", as_json=as_json) as advance:
+        movie.write(
+            _counted(reliefs.under_lamp(relief, turned), len(turned), advance),
+            count=len(turned),
+            fps=films.FPS if fps is None else fps,
+            scale=arguments.movie_scale(output, len(relief.wanted[0])) if scale is None else scale,
+        )
+    done(as_json, f"{counted(len(turned), 'picture')} in {output}", out=output, count=len(turned))
 
 
 def _told(output: str, film: films.Film, *, as_json: bool) -> None:

@@ -9,17 +9,19 @@ from lightcube import io
 from lightcube.cli import printing
 from lightcube.cli.console import json_document, out, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
+from lightcube.drawing.relief_sheet import relief_sheet
 from lightcube.errors import InputError
 from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
+from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.reach import count_pieces
-from lightcube.verbs import hulls, scoring
+from lightcube.verbs import hulls, reliefs, scoring
 from lightcube.verbs.refitting import wanted_of
 
 
 @threaded
 def score(
-    cube: Annotated[str, typer.Argument(help="A cube, or a shape.")],
+    cube: Annotated[str, typer.Argument(help="A cube, a shape or a relief.")],
     pictures: Annotated[
         str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
     ] = None,
@@ -47,6 +49,9 @@ def score(
         said = [name for name, value in {"pictures": pictures, **given}.items() if value]
         _score_shape(cube, said, as_json=as_json)
         return
+    if io.is_relief(cube):
+        _score_relief(cube, sheet_file, off=robust, refused=pictures or plot or between_pictures, as_json=as_json)
+        return
     loaded = load(cube)
     wanted = wanted_of(loaded, pictures)
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
@@ -73,4 +78,21 @@ def _score_shape(path: str, given: list[str], *, as_json: bool) -> None:
         json_document({"pieces": pieces, "bad_edges": shape.mesh.bad_edges, **found.facts})
         return
     for line in hulls.results(shape, found, pieces):
+        out.print(line)
+
+
+def _score_relief(path: str, sheet: io.Output | None, *, off: bool, refused: str | bool | None, as_json: bool) -> None:
+    """Compare what a relief's lamps show with the pictures that it keeps."""
+    if refused:
+        raise InputError(
+            "a relief keeps its pictures, and nothing is between them: leave out all but --sheet, --robust"
+        )
+    relief = io.read_relief(path)
+    scores = score_relief(relief, off=off)
+    if sheet is not None:
+        sheet.write(relief_sheet(relief, scores, io.bare_name(path).removesuffix(".relief")))
+    if as_json:
+        json_document(scores)
+        return
+    for line in reliefs.scored(relief, scores):
         out.print(line)

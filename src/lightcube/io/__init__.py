@@ -20,6 +20,8 @@ __getattr__, __dir__, __all__ = when_used(
         "is_film": "pictures",
         "read_pictures": "pictures",
         "Remembered": "remembered",
+        "is_relief": "reliefs",
+        "read_relief": "reliefs",
         "read_scene": "scenes",
         "scene_names": "scenes",
         "is_stage": "stages",

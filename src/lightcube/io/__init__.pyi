@@ -13,6 +13,7 @@ from lightcube.io.pictures import (
     is_film,
     read_pictures,
 )
+from lightcube.io.reliefs import is_relief, read_relief
 from lightcube.io.remembered import Remembered
 from lightcube.io.scenes import read_scene, scene_names
 from lightcube.io.shapes import is_shape, read_shape, written_mesh
@@ -30,10 +31,12 @@ __all__ = [
     "bare_name",
     "free_memory",
     "is_film",
+    "is_relief",
     "is_shape",
     "is_stage",
     "read_cube",
     "read_pictures",
+    "read_relief",
     "read_scene",
     "read_shape",
     "read_stage",

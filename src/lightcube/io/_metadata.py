@@ -22,7 +22,10 @@ from lightcube.optics.transfer import Transfer
 FORMAT_VERSION = 5
 
 #: What to do with files of this package that are no cubes.
-_NO_CUBES = {"shape": "lightcube info tells of it, lightcube.read_shape reads it"}
+_NO_CUBES = {
+    "shape": "lightcube info tells of it, lightcube.read_shape reads it",
+    "relief": "lightcube play, score and info take it, lightcube.read_relief reads it",
+}
 
 _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Strict = ConfigDict(extra="forbid", strict=True)
@@ -143,10 +146,10 @@ def _newest(
 
 def check_version(path: Path, document: object) -> Mapping[str, Any]:
     """Return `document`, or raise `InputError` unless it is a light cube's, in a format that this version reads."""
+    if isinstance(document, Mapping) and (kind := document.get("kind", "cube")) != "cube":
+        raise InputError(f"{path} is a {kind}, no cube: {_NO_CUBES.get(str(kind), 'give a cube')}")
     if not isinstance(document, Mapping) or "format_version" not in document:
         raise InputError(f"{path} is no light cube: it has no lightcube metadata, give a file that lightcube wrote")
-    if (kind := document.get("kind", "cube")) != "cube":
-        raise InputError(f"{path} is a {kind}, no cube: {_NO_CUBES.get(str(kind), 'give a cube')}")
     found = document["format_version"]
     if isinstance(found, int) and found > FORMAT_VERSION:
         raise InputError(

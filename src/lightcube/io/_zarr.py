@@ -1,4 +1,4 @@
-"""A cube or a shape as a Zarr group: an OME-Zarr 0.5 image with one more attribute.
+"""A cube, a shape or a relief as a Zarr group: an OME-Zarr 0.5 image with one more attribute.
 
 Zarr's own coroutines run in an event loop that ends with each call, so that no thread is left behind.
 """
@@ -21,7 +21,7 @@ from zarr.codecs import ZstdCodec
 from zarr.storage import LocalStore, StorePath, ZipStore
 
 from lightcube.errors import InputError
-from lightcube.io import _metadata, _shape_json
+from lightcube.io import _metadata, _relief_json, _shape_json
 from lightcube.io._archives import is_crowded
 from lightcube.io._bounds import check_file, check_text, memory
 from lightcube.io._files import system_errors
@@ -29,6 +29,7 @@ from lightcube.io._guarded import Guarded
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.solids.relief import Relief
 from lightcube.solids.shape import Shape
 
 Value = TypeVar("Value")
@@ -39,11 +40,16 @@ Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
 
 @dataclass(frozen=True)
 class _Kind:
-    """What a group holds: the name of its second array, what its document must be, and what to say where it is not."""
+    """What a group holds: names and numbers of axes of its two arrays, and what its document must be.
+
+    `damaged` makes what is raised where it is not so.
+    """
 
     second: str
     check: Callable[[Path, object], object]
     damaged: Callable[[Path, str], InputError]
+    first: str = "0"
+    axes: tuple[int, int] = (4, 4)
 
 
 #: An array with its name and those of its axes.
@@ -60,11 +66,13 @@ _CHUNK_BYTES = 8 << 20
 _MOST_CHUNKS = 100_000
 _ROOT = "zarr.json"
 _IMAGE, _TARGETS, _SILHOUETTES, _ATTRIBUTE = "0", "targets", "silhouettes", "lightcube"
+_HEIGHTS, _WANTED = "heights", "wanted"
 #: Where a display's white is, among the voxels that are not empty, in per cent: a twentieth of them or more are as dark
 #: as the material can be, ten times as dark as most, and a display that ends there shows a cube as black.
 _WHITE = 90
 _CUBE = _Kind(_TARGETS, _metadata.check_version, _metadata.damaged)
 _SHAPE = _Kind(_SILHOUETTES, _shape_json.check_version, _shape_json.damaged)
+_RELIEF = _Kind(_WANTED, _relief_json.check_version, _relief_json.damaged, _HEIGHTS, (2, 3))
 _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
 
 
@@ -99,6 +107,29 @@ def read_shape(path: Path) -> Shape:
     if missing:
         raise _shape_json.damaged(path, f"parts of its array {next(iter(missing))!r} are missing")
     return _shape_json.from_json(path, document, field, given)
+
+
+def write_relief(folder: Path, relief: Relief) -> None:
+    """Write `relief` as a new Zarr group, format 3, into `folder`, which does not exist yet."""
+    arrays: list[Named] = [
+        (_HEIGHTS, relief.heights_px, ["row", "column"]),
+        (_WANTED, relief.wanted, ["picture", "row", "column"]),
+    ]
+    _run(lambda: _write(folder, {_ATTRIBUTE: _relief_json.to_json(relief)}, arrays))
+
+
+def read_relief(path: Path) -> Relief:
+    """Read a relief from a Zarr folder."""
+    missing: Missing = {}
+
+    async def read() -> Parts:
+        store, size = _folder(path)
+        return await _read(path, store, size, missing, kind=_RELIEF)
+
+    document, heights, wanted = _reading(path, read, _RELIEF)
+    if missing or wanted is None:
+        raise _relief_json.damaged(path, "parts of its arrays are missing")
+    return _relief_json.from_json(path, document, heights, wanted)
 
 
 def read_zarr(path: Path) -> Cube:
@@ -262,10 +293,10 @@ async def _read(
         group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
         document = group.attrs.get(_ATTRIBUTE)
         kind.check(path, document)
-        extinction = await _array(path, store, group, _IMAGE, missing, kind)
-        if extinction is None:
-            raise kind.damaged(path, f"its array {_IMAGE!r} is missing")
-        return document, extinction, await _array(path, store, group, kind.second, missing, kind)
+        first = await _array(path, store, group, kind.first, missing, kind)
+        if first is None:
+            raise kind.damaged(path, f"its array {kind.first!r} is missing")
+        return document, first, await _array(path, store, group, kind.second, missing, kind)
     finally:
         store.close()
 
@@ -280,8 +311,12 @@ async def _array(
     if not await group.contains(name):
         return None
     array = await group.getitem(name)
-    if not isinstance(array, zarr.AsyncArray) or array.ndim != 4 or not all(array.shape):
-        raise kind.damaged(path, f"{name!r} is not an array with 4 axes, none of them empty")
+    if (
+        not isinstance(array, zarr.AsyncArray)
+        or array.ndim != (axes := kind.axes[name != kind.first])
+        or not all(array.shape)
+    ):
+        raise kind.damaged(path, f"{name!r} is not an array with {axes} axes, none of them empty")
     chunk_bytes = math.prod(array.chunks) * array.dtype.itemsize
     if max(array.nbytes, chunk_bytes) > memory() // 2:
         raise InputError(f"{path} states more than half of this machine's memory: open it on a larger one")

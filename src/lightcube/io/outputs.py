@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.io import cubes, documents, movies, printable, shapes
+from lightcube.io import cubes, documents, movies, printable, reliefs, shapes
 from lightcube.io._files import Replaceable, Writer, check_free, suffix_entry, written_whole
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.solids.mesh import Mesh
+from lightcube.solids.relief import Relief
 from lightcube.solids.shape import Shape
 
 if TYPE_CHECKING:
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
 Given = TypeVar("Given", bound=str | Path)
 
 #: What can be written, by name.
-Kind = Literal["cube", "mesh", "shape", "pictures", "page", "drawing", "plot", "picture", "document"]
+Kind = Literal["cube", "mesh", "shape", "relief", "pictures", "page", "drawing", "plot", "picture", "document"]
 
 #: Whatever is of one of the kinds.
 Thing: TypeAlias = (
-    "Cube | Mesh | Shape | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any] | movies.Levels | Figure"
+    "Cube | Mesh | Shape | Relief | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any]"
+    "| movies.Levels | Figure"
 )
 
 
@@ -74,6 +76,12 @@ def _is_picture(thing: Any) -> bool:
 KINDS: Mapping[Kind, Row] = {
     "cube": Row("a cube", cubes.WRITERS, lambda thing: isinstance(thing, Cube), {".zarr": cubes.is_cube_folder}),
     "mesh": Row("a mesh", printable.WRITERS, lambda thing: isinstance(thing, Mesh)),
+    "relief": Row(
+        "a relief",
+        reliefs.WRITERS,
+        lambda thing: isinstance(thing, Relief),
+        {reliefs.SUFFIX: reliefs.is_relief_folder},
+    ),
     "shape": Row(
         "a shape", shapes.WRITERS, lambda thing: isinstance(thing, Shape), {shapes.SUFFIX: shapes.is_shape_folder}
     ),
@@ -133,6 +141,8 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
           one file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
         * A mesh, in mm: ``.stl`` (binary), ``.3mf``, ``.obj`` or ``.ply`` (binary), coordinates in float32. It is read
           back before it gets its name, and is then as closed and of the same volume to a millionth.
+        * A relief: ``.relief.zarr`` (a folder with all that is known of it), ``.png`` (its heights, 16 bits, white the
+          highest that it may be), or the mesh of it as above.
         * A shape: ``.shape.zarr`` (a folder, all of it), or its mesh, standing on z = 0, as meshes are.
         * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white,
           or 8-bit display levels, which are written as they are:
@@ -183,7 +193,7 @@ def _kind(thing: Thing, at: Place) -> Kind:
     if not kinds:
         raise InputError(
             f"save has no way to write {type(thing).__name__}: "
-            "give a Cube, a Mesh, a Shape, pictures, text, a figure or a mapping"
+            "give a Cube, a Mesh, a Shape, a Relief, pictures, text, a figure or a mapping"
         )
     if len(kinds) == 1:
         return kinds[0]

@@ -34,7 +34,7 @@ from lightcube.optics.rig import Rig
 Beams = Literal["area", "thin"]
 #: Points of a pixel that what is cast is judged at: a Fibonacci lattice; side by side; and of a lamp's disc.
 JUDGE, JUDGE_ROW, JUDGE_DISC = 55, 16, 16
-_JUDGE_STEP = 34
+JUDGE_STEP = 34
 #: Points of a pixel around a picture, and side by side: as many as cubes are solved for. Display values of 64-cubes are
 #: off by 0.007 and 0.004 (root of the mean square; `benchmarks/light.py play`), pictures at the judge's by 0.002.
 AROUND, AROUND_ROW = 13, 7
@@ -201,7 +201,7 @@ def judge_points(rig: Rig, grid: Grid) -> Reals:
 
 def _judge(row: bool) -> Reals:
     """The judge's points: in a row, or of a square."""
-    return side_by_side(JUDGE_ROW) if row else _rank_1(JUDGE, _JUDGE_STEP, 0)
+    return side_by_side(JUDGE_ROW) if row else _rank_1(JUDGE, JUDGE_STEP, 0)
 
 
 def is_in_slices(rig: Rig, grid: Grid) -> bool:
@@ -229,7 +229,7 @@ def lattice(count: int) -> Reals:
     steps = [step for step in range(1, count) if math.gcd(step, count) == 1] or [1]
     pairs = [(step, start) for step in steps for start in range(count)]
     pairs = pairs[:: -(-len(pairs) * count**2 // _LOOKED_AT)]
-    judge = {tuple(point) for point in np.round(_rank_1(JUDGE, _JUDGE_STEP, 0), 9)}
+    judge = {tuple(point) for point in np.round(_rank_1(JUDGE, JUDGE_STEP, 0), 9)}
     best = math.inf, np.zeros((count, 2))
     for step, start in pairs:
         points = _rank_1(count, step, start)

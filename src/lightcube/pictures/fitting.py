@@ -127,6 +127,11 @@ def source_box(
     return left, top, min(left + wide, columns), min(top + high, rows)
 
 
+def cropped(image: Picture, shape: tuple[int, int], focus: tuple[float, float] = (0.5, 0.5)) -> Picture:
+    """A picture at `shape` (rows, columns), what is too wide or too high cut off around `focus`, as `fit` does it."""
+    return _resample(image, shape, source_box(image.shape[:2], shape, "crop", focus))
+
+
 def _inside(size: tuple[int, ...], target: tuple[int, int], mode: Fit) -> tuple[slice, slice]:
     """Rows and columns of the screen that the picture fills, in its middle."""
     if mode != "pad":
