@@ -44,6 +44,13 @@ def around(grid: Grid, count: int) -> Rig:
     return turntable(grid, np.arange(count) * 77.0 + 13, elevation_deg=25)
 
 
+def windows(grid: Grid, count: int) -> Rig:
+    """The same with pictures that are smaller than the block's shadow."""
+    rows, columns = around(grid, 1).picture_shape
+    small = rows % 2 + 2 * (rows // 5), columns % 2 + 2 * (columns // 5)
+    return turntable(grid, np.arange(count) * 77.0 + 13, elevation_deg=25, picture_shape=small)
+
+
 def near_lamps(grid: Grid, count: int) -> Rig:
     """Point lamps around a block, each before an upright screen of its own, none of them square to it."""
     size = max(grid.size_mm)

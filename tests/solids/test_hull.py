@@ -23,7 +23,7 @@ from lightcube.solids.shape import Shape, as_cube, hull
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.surface import surface
 from lightcube.solids.walls import walls
-from tests.helpers.solid import Flags, around, blobs, near_lamps, of_pixels, plain_field, products, seen
+from tests.helpers.solid import Flags, around, blobs, near_lamps, of_pixels, plain_field, products, seen, windows
 
 JIT_OFF = bool(getattr(config, "DISABLE_JIT", 0))
 SHAPE = (7, 5, 6) if JIT_OFF else (16, 13, 15)
@@ -31,7 +31,7 @@ compiled_only = pytest.mark.skipif(JIT_OFF, reason="takes minutes interpreted")
 
 
 @pytest.mark.parametrize("count", [2, 3, 5, 8])
-@pytest.mark.parametrize("rig_of", [around, near_lamps])
+@pytest.mark.parametrize("rig_of", [around, near_lamps, windows])
 def test_the_field_is_the_greatest_distance_over_views(rig_of: Callable[[Grid, int], Rig], count: int) -> None:
     grid = Grid(SHAPE, 0.7, 1.3)
     given = blobs(rig_of(grid, count), count, full=0.7)
@@ -180,6 +180,23 @@ def test_a_box_casts_a_rectangle() -> None:
     wanted[0, 3 * FINE : 6 * FINE, 5 * FINE : 8 * FINE] = True  # y goes to the left
     wanted[1, 1 * FINE : 7 * FINE, 4 * FINE : 10 * FINE] = True
     np.testing.assert_array_equal(cast_mesh(box, rig), wanted)
+
+
+def test_a_wedge_casts_a_triangle() -> None:
+    """Level along x, of a point lamp, whichever way its faces run: pixels on this side of three lines."""
+    corners = np.array([(0.0, -3.1, -2.3), (0.0, 3.4, -1.2), (0.0, 0.3, 3.7), (0.7, 0.2, 0.1)])
+    wedge = Mesh(corners, np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]))
+    grid = Grid((8, 8, 8))
+    screen = Screen("wall", (20, 0, 0), (10, 10), 1)
+    rig = Stage(grid, (Lamp("far", direction=(1, 0, 0)),), (screen,), (Shot("a", "wall", ("far",)),)).rig()
+    places = (np.arange(10 * FINE) + 0.5) / FINE - 5
+    y, z = -places[None, :], -places[:, None]  # seen from the lamp y goes to the left
+    a, b, c = corners[:3, 1:]
+    sides = [(q[0] - p[0]) * (z - p[1]) - (q[1] - p[1]) * (y - p[0]) > 0 for p, q in ((a, b), (b, c), (c, a))]
+    wanted = np.logical_and.reduce(np.broadcast_arrays(*sides))
+    assert 0.1 < wanted.mean() < 0.3
+    for mesh in (wedge, Mesh(wedge.vertices_mm, wedge.faces[:, ::-1])):
+        np.testing.assert_array_equal(cast_mesh(mesh, rig)[0], wanted)
 
 
 def test_a_certificate_counts_what_is_missing_and_what_is_beyond() -> None:
