@@ -28,7 +28,10 @@ def play(
         bool, typer.Option("--even", help="Turn evenly under a steady lamp: what flickers, flickers.")
     ] = False,
     view: Annotated[
-        films.View, typer.Option(help="The pictures on the wall, or the room: lamps, glass, walls and beams.")
+        films.View,
+        typer.Option(
+            help="The pictures on the wall; the room; or the way to the lamp's eye: noise becomes the picture."
+        ),
     ] = "wall",
     shape: Annotated[
         Format | None,
@@ -88,9 +91,12 @@ def play(
     if shape is not None and scale is not None:
         raise InputError("--format and --scale both say how large the picture is: leave one of them out")
     look, style = shows.Look(picture_only, check_zoom(zoom), light), _style(output, shape, captions, fps, view)
-    in_room = view == "room"
+    in_room = view != "wall"
     if in_room and (target or picture_only or screens or zoom > 1):
-        raise InputError("--view room shows all there is: leave out --screens, --target, --picture-only and --zoom")
+        raise InputError(f"--view {view} shows the room: leave out --screens, --target, --picture-only and --zoom")
+    turns = even or [start_deg, end_deg, count] != [None] * 3
+    if view == "eye" and turns:
+        raise InputError("--view eye stays at an angle: leave out --even, --from-deg, --to-deg and --count")
     loaded = load(cube)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
@@ -99,7 +105,7 @@ def play(
     if stops or angles_deg is not None:
         shown = np.unique(turned) if stops and (screens or in_room) else turned
         if in_room:
-            film = films.in_room(loaded, style, shown)
+            film = (films.in_room if view == "room" else films.to_the_lamp)(loaded, style, shown)
         elif screens or (many and not stops):
             film = films.styled(loaded, shows.of_screens(loaded, shown, look), style, shown)
         elif stops:
@@ -107,7 +113,7 @@ def play(
         else:
             film = films.styled(loaded, shows.of_turn(loaded, shown, look, target=target), style, shown)
     else:
-        steady = even or not arguments.is_movie(output) or [start_deg, end_deg, count] != [None] * 3
+        steady = turns or not arguments.is_movie(output)
         film = films.filmed(loaded, look, style, turned, even=steady, target=target, screens=screens)
     for sentence in words.unsampled(loaded.rig, light):
         if not as_json:
