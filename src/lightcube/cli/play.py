@@ -1,6 +1,5 @@
 """The command `lightcube play`."""
 
-from collections.abc import Callable, Iterable, Iterator
 from typing import Annotated
 
 import numpy as np
@@ -8,11 +7,10 @@ import typer
 
 from lightcube import io
 from lightcube.cli import arguments
-from lightcube.cli.console import done, err, progress
+from lightcube.cli.console import counting, done, err, progress
 from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
 from lightcube.drawing import films, shows
 from lightcube.drawing.poster import Format
-from lightcube.drawing.shows import Frame
 from lightcube.errors import InputError
 from lightcube.jobs.reading import load
 from lightcube.optics.light import Beams, check_zoom
@@ -90,7 +88,9 @@ def play(
     movie.check()
     if shape is not None and scale is not None:
         raise InputError("--format and --scale both say how large the picture is: leave one of them out")
-    look, style = shows.Look(picture_only, check_zoom(zoom), light), _style(output, shape, captions, fps, view)
+    look = shows.Look(picture_only, check_zoom(zoom), light)
+    size, fps = arguments.movie_frames(output, shape, fps)
+    style = films.Style(size, captions, fps, view)
     in_room = view != "wall"
     if in_room and (target or picture_only or screens or zoom > 1):
         raise InputError(f"--view {view} shows the room: leave out --screens, --target, --picture-only and --zoom")
@@ -120,7 +120,7 @@ def play(
             err.print(sentence)
     with progress("playing", as_json=as_json) as advance:
         movie.write(
-            _counted(film, len(film), advance),
+            counting(film, len(film), advance),
             count=len(film),
             transfer=loaded.transfer,
             fps=film.fps,
@@ -148,21 +148,8 @@ def _told(output: str, film: films.Film, *, as_json: bool) -> None:
         err.print(f"note: {film.warning}")
 
 
-def _style(output: str, shape: Format | None, captions: bool, fps: float | None, view: films.View) -> films.Style:
-    """How a movie looks; a GIF is a third as wide and as fast, so that it stays small."""
-    small = shape is not None and output.lower().endswith(".gif")
-    size = None if shape is None else films.size_of(shape, small=small)
-    return films.Style(size, captions, (films.FPS / 3 if small else films.FPS) if fps is None else fps, view)
-
-
 def _scale(output: str, film: films.Film, style: films.Style, asked: int | None) -> int:
     """How large a pixel is drawn."""
     if style.size is not None:
         return 1
     return arguments.movie_scale(output, film.show.rows) if asked is None else asked
-
-
-def _counted(frames: Iterable[Frame], count: int, advance: Callable[..., None]) -> Iterator[Frame]:
-    for number, frame in enumerate(frames, 1):
-        yield frame
-        advance(number, count)

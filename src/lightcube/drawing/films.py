@@ -31,7 +31,7 @@ _LESS = 3
 #: Stops whose pictures flow into each other differ in so much of the wall at most.
 _ALIKE = 0.15
 #: Rows and columns of a room's frames where nothing is said, and seconds that the table turns between two stops.
-_ROOM, _TURN_S = (540, 960), 0.7
+ROOM, _TURN_S = (540, 960), 0.7
 
 #: The pictures on the wall, the room in which it stands, or the way of an eye through it to where the lamp is.
 View = Literal["wall", "room", "eye"]
@@ -194,7 +194,7 @@ def filmed(
     stops = np.unique(cube.angles_deg)
     if style.view == "room":
         course = Course.of(len(stops), style.fps, 1.0, _TURN_S)
-        show = shows.resting_room(cube, course, style.size or _ROOM)
+        show = shows.resting_room(cube, course, style.size or ROOM)
         return Film(show, style.fps, cube.transfer, _rests(len(stops), course))
     show = shows.of_screens(cube, stops, look) if beside else shows.of_stops(cube, look, target=target)
     lit = styled(cube, show, style, stops if beside else cube.angles_deg)
@@ -212,12 +212,12 @@ def styled(cube: Cube, show: Show, style: Style, angles_deg: Angles) -> Film:
 
 def in_room(cube: Cube, style: Style, angles_deg: Angles) -> Film:
     """The film whose frames are the room at some angles."""
-    return Film(shows.of_room(cube, angles_deg, style.size or _ROOM), style.fps, cube.transfer)
+    return Film(shows.of_room(cube, angles_deg, style.size or ROOM), style.fps, cube.transfer)
 
 
 def to_the_lamp(cube: Cube, style: Style, angles_deg: Angles) -> Film:
     """The film of an eye that goes to where the lamp is, at each of some angles."""
-    show = shows.of_eye(cube, angles_deg, style.size or _ROOM, style.fps)
+    show = shows.of_eye(cube, angles_deg, style.size or ROOM, style.fps)
     times = "" if len(angles_deg) == 1 else f", {len(angles_deg)} times"
     said = (
         f"{show.count / style.fps:.0f} s: the eye goes to where the lamp is{times}, and noise becomes the picture; "

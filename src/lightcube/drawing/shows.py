@@ -29,7 +29,8 @@ from lightcube.optics.views import Views
 from lightcube.pictures.fitting import targets_of
 
 Picture = NDArray[np.float32]
-Frame = Picture | NDArray[np.uint8]
+Levels = NDArray[np.uint8]
+Frame = Picture | Levels
 
 #: Pairs of neighbouring frames of a turn that tell whether it flickers.
 _PAIRS = 6
@@ -132,7 +133,7 @@ def resting_room(cube: Cube, course: Course, size: tuple[int, int]) -> Show:
     stops = np.unique(cube.angles_deg)
     room = Tableau(cube, size)
 
-    def frames() -> Iterator[NDArray[np.uint8]]:
+    def frames() -> Iterator[Levels]:
         for here, there in zip(stops, [*stops[1:], stops[0] + 360], strict=True):
             unlit, lit = room.seen(here, lit=False), room.seen(here)
             parts = {p: decode(np.array(p, np.float32), cube.transfer) for p in course.lamp}

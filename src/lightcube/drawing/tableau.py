@@ -69,13 +69,16 @@ class Tableau:
     ----------
     size
         Rows and columns of the picture.
+    like
+        Another cube's, from whose place this one is seen: None = from where it is seen best.
     """
 
-    def __init__(self, cube: Cube, size: tuple[int, int]) -> None:
+    def __init__(self, cube: Cube, size: tuple[int, int], like: Tableau | None = None) -> None:
         self._cube, self._size, self._room = cube, size, Room(cube)
         screens = standing(cube, float(cube.angles_deg[0])).screens
         self._own, self._walls = _divided(size, len(screens))
-        self._camera = camera_for(cube, (self._own.rows, self._own.columns))
+        own = self._own.rows, self._own.columns
+        self._camera: Camera = camera_for(cube, own) if like is None else like._camera
         self._below = self._own.columns == size[1]
         across = [Canvas(self._camera).seen(screen.corners.mean(axis=0))[0, 0] for screen in screens]
         self._order = np.argsort(across if self._below else np.negative(across))  # so that few threads cross
