@@ -36,6 +36,8 @@ Frame = Picture | Levels
 _PAIRS = 6
 #: Seconds that the eye waits, that it takes to the lamp, that the picture there gets calm, and that it stays.
 _WAIT_S, _WAY_S, _CALM_S, _STAY_S = 0.5, 2.8, 0.5, 1.4
+#: Frames that what changes takes at least, and the way to the lamp: else too much jumps from one to the next.
+_FEWEST, _WAY = 6, 84
 #: So much of its way glass is seen as one likes to see it.
 _BARE = 0.35
 
@@ -155,7 +157,8 @@ def of_eye(cube: Cube, angles_deg: NDArray[np.float64], size: tuple[int, int], f
     """
     room, start = Room(cube), orbit_of(camera_for(cube, size))
     course = Course.of(len(angles_deg), fps)
-    wait, way, calm = (max(1, round(seconds * fps)) for seconds in (_WAIT_S, _WAY_S, _CALM_S))
+    wait, calm = (max(_FEWEST, round(seconds * fps)) for seconds in (_WAIT_S, _CALM_S))
+    way = max(_WAY, round(_WAY_S * fps))
     fade = [decode(np.array(part / course.fade, np.float32), cube.transfer) for part in range(course.fade)]
     stay = round(_STAY_S * fps)
 
