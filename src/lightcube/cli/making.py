@@ -64,6 +64,6 @@ class Movie:
                 count=len(film),
                 transfer=film.transfer,
                 fps=film.fps,
-                shared=self._shape is not None,
+                shared=True,
             )
         return [f"{counted(len(film), 'picture')} in {self._path}: {film.said}"]

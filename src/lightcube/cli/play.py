@@ -125,7 +125,7 @@ def play(
             transfer=loaded.transfer,
             fps=film.fps,
             scale=_scale(output, film, style, scale),
-            shared=shape is not None,
+            shared=shape is not None or in_room,
             views=film.show.views,
             names=film.show.names,
         )

@@ -4,6 +4,7 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from PIL import Image
 
 from lightcube.drawing import tones
 from lightcube.drawing.camera import FINE, Canvas, Floats, Reals, Region
@@ -14,6 +15,8 @@ from lightcube.optics.views import unit
 
 #: With more lamps on a screen than this, lines to its corners would hide the room.
 _MOST_HINTED = 6
+#: Parts along a pixel's side that a picture is enlarged to before it is drawn, and a side of it then, at most.
+_FINER, _LARGEST = 8, 1024
 #: Degrees between a table's marks; every so many-th is longer.
 _MARKS, _LONG = 5.0, 6
 
@@ -144,10 +147,15 @@ def _enlarged(picture: Floats, rows: Floats, columns: Floats) -> Floats:
         return np.broadcast_to(picture[0], (len(rows), 3))
     from scipy.ndimage import map_coordinates  # here: it takes longer to load than a small cube to play
 
-    places = np.stack([rows, columns]) - np.float32(0.5)
-    channels = [encode(picture[..., min(channel, picture.shape[2] - 1)], "srgb") for channel in range(3)]
-    shown = np.stack([map_coordinates(each, places, order=3, mode="nearest") for each in channels], axis=-1)
-    return np.asarray(decode(np.maximum(shown, 0), "srgb"), np.float32)
+    finer = max(1, min(_FINER, _LARGEST // max(picture.shape[:2])))
+    size = finer * picture.shape[1], finer * picture.shape[0]
+    places = finer * np.stack([rows, columns]) - np.float32(0.5)
+    shown = []
+    for channel in range(3):
+        levels = Image.fromarray(encode(np.ascontiguousarray(picture[..., min(channel, picture.shape[2] - 1)]), "srgb"))
+        smooth = np.asarray(levels.resize(size, Image.Resampling.BICUBIC))
+        shown.append(map_coordinates(smooth, places, order=1, mode="nearest"))
+    return np.asarray(decode(np.maximum(np.stack(shown, axis=-1), 0), "srgb"), np.float32)
 
 
 #: Where a table is in the picture, its inverse depth, and light to lay over it with its strength.
