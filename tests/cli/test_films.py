@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from lightcube import load
 from lightcube.io import save
@@ -84,3 +85,48 @@ def test_only_films_are_taken_in_part(run, pictures: Path, tmp_path: Path) -> No
         done = run("check", source, "--n", 6, "--most", 3)
         assert (done.code, len(done.lines)) == (2, 1), done.err
         assert f"are for films and animations, not for {source}: leave them out" in done.err
+
+
+def test_a_making_of_is_written_with_the_cube_and_changes_no_bit(run, pictures: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    plain, watched, movie = tmp_path / "a.npz", tmp_path / "b.npz", tmp_path / "b.gif"
+    assert run("solve", pictures, "-o", plain, *SMALL).code == 0
+    done = run("solve", pictures, "-o", watched, *SMALL, "--making-of", movie, "--format", "square")
+    assert done.code == 0, done.err
+    assert "from clear to finished" in done.out
+    np.testing.assert_array_equal(load(plain).extinction, load(watched).extinction)
+    with Image.open(movie) as image:
+        assert (image.size, getattr(image, "n_frames", 1) > 3) == ((360, 360), True)
+    before = movie.read_bytes()
+    refused = run("solve", pictures, "-o", tmp_path / "c.npz", *SMALL, "--making-of", movie)
+    assert (refused.code, movie.read_bytes()) == (2, before)
+    assert not list(tmp_path.glob("c.*"))
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--making-of", "a.npy"), "is no movie"),
+        (("--making-of", "a"), "is no movie"),
+        (("--format", "wide"), "--making-of"),
+        (("--making-of", "a.mp4", "--unit", "1/3"), "leave out --unit"),
+        (("--making-of", "a.mp4", "--scheduler", "local"), "leave out --unit and --scheduler"),
+        (("--making-of", "a.mp4", "--memory", "1MB"), ""),
+    ],
+)
+def test_no_making_of_is_one_sentence(  # type: ignore[no-untyped-def]
+    run, pictures: Path, tmp_path: Path, options: tuple[str, ...], said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = run("solve", pictures, "-o", "c.npz", *SMALL, *options)
+    assert (done.code, len(done.lines)) == (2, 1), done.err
+    assert said in done.err
+    assert not [path for path in tmp_path.iterdir() if path != pictures]
+
+
+@pytest.mark.parametrize("options", [("--even",), ("--count", 3), ("--to-deg", 90), ("--captions", "--format", "wide")])
+def test_the_lamps_eye_stays_at_an_angle(run, pictures: Path, tmp_path: Path, options: tuple[object, ...]) -> None:  # type: ignore[no-untyped-def]
+    out = tmp_path / "a.npz"
+    assert run("solve", pictures, "-o", out, *SMALL).code == 0
+    done = run("play", out, "--view", "eye", "-o", tmp_path / "a.gif", *options)
+    assert (done.code, len(done.lines)) == (2, 1), done.err
+    assert not list(tmp_path.glob("a.gif*"))

@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 
 import lightcube as lc
 from lightcube.drawing import films, shows
+from lightcube.drawing.orbit import lamps_orbit
 from lightcube.drawing.poster import SIZES, poster
+from lightcube.drawing.room import Room
+from lightcube.drawing.tableau import Tableau
 from lightcube.errors import InputError
 from lightcube.forward.dimming import Course, dimmed
 from lightcube.forward.flicker import Flicker
@@ -143,6 +146,37 @@ def test_where_nothing_turns_the_one_stop_fades_in_and_out() -> None:
     frames = frames_of(film)
     assert (frames[0].any(), frames[-1].any(), len(film)) == (False, False, 18 + 30 + 18 + 8)
     assert "on the one stop" in film.said
+
+
+def test_an_eye_goes_from_the_dark_room_to_the_lamp_where_the_picture_rests() -> None:
+    cube, style = noisy([20.0, 140.0]), films.Style((54, 96), fps=10, view="eye")
+    film = films.filmed(cube, shows.Look(), style, cube.angles_deg, even=False)
+    frames = frames_of(film)
+    assert len(frames) == len(film)
+    assert not np.any(frames[0])
+    assert not np.any(frames[-1])
+    assert not film.flicker.is_much
+    assert flashes(frames, 10) <= 3
+    rest = frames[-20]
+    assert sum(np.array_equal(frame, rest) for frame in frames) >= 14
+    room = Room(cube)
+    camera = lamps_orbit(*room.eyes_lamp(20.0), (54, 96)).camera((54, 96))
+    np.testing.assert_array_equal(rest, to_uint8(room.from_lamp(camera, 20.0)))
+    assert len(films.to_the_lamp(cube, style, cube.angles_deg)) == 2 * len(film)
+
+
+def test_a_tableau_has_the_room_and_the_wall_as_it_is() -> None:
+    cube, size = noisy([20.0, 140.0]), (90, 160)
+    shown = lc.play(cube, [20.0], picture_only=True)[0]
+    tableau = Tableau(cube, size)
+    lit, unlit = tableau.seen(20.0), tableau.seen(20.0, lit=False)
+    wide = round(0.36 * 160)  # the wall's part; the picture, of 4 x 6 pixels, fills 0.84 of it
+    pixel = 0.84 * wide / 6
+    for row, column in np.ndindex(4, 6):
+        y, x = 45 + (row - 1.5) * pixel, 160 - wide / 2 + (column - 2.5) * pixel
+        np.testing.assert_allclose(lit[int(y), int(x)], np.clip(shown[row, column], 0, 1), atol=0.12)
+    assert np.ptp(unlit[40:50, -40:-20], axis=(0, 1)).max() < 0.01
+    assert Tableau(cube, (160, 90)).seen(20.0).shape == (160, 90, 3)
 
 
 def test_flicker_counts_what_jumps_by_a_fifth() -> None:

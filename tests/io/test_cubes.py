@@ -733,3 +733,11 @@ class TestPartial:
         with pytest.raises(InputError, match="is none"):
             begun(out)
         assert files_in(partial_path(out)) == ["job.json", "targets.npz", "thesis.tex"]
+
+
+def test_pictures_given_as_a_cube_are_named_with_their_folder(tmp_path: Path) -> None:
+    (tmp_path / "my photos").mkdir()
+    path = save(np.zeros((2, 4, 6, 3), np.uint8), tmp_path / "my photos" / "a.mp4", fps=10, scale=2)
+    with pytest.raises(InputError) as told:
+        load(path)
+    assert str(told.value).endswith(f"as in lightcube solve '{path}' -o cube.zarr")

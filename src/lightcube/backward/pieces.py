@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,13 @@ from numpy.typing import NDArray
 
 from lightcube.backward.job import Job, level_name
 from lightcube.backward.kept import EARLIER, HISTORY, LOOKS, POWERS, VOXELS, result_of, shape_of, state_of
-from lightcube.backward.problem import Problem, pose, volume_from_unknowns
+from lightcube.backward.problem import Problem, pose, powers_of_pictures, volume_from_unknowns
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.reckoning import Reckoning, is_look, is_look_ahead
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape, coarser
 from lightcube.optics.arrays import Reals
+from lightcube.optics.cube import Cube
 from lightcube.pictures.resampling import enlarged
 from lightcube.solvers.contract import Progress, Result
 
@@ -48,6 +50,9 @@ class Step:
     shown: Callable[[], NDArray[np.float32]] | None
     #: Rows and colours of the pictures that the unit is seen in.
     window: tuple[slice, slice]
+    #: The cube as it is now, of the size that is being solved: a function that returns a copy. None where it is solved
+    #: in several units, since only a part is known.
+    cube: Callable[[], Cube] | None
 
 
 #: Called after each iteration; True stops the job.
@@ -285,10 +290,25 @@ class _Watch:
         passes = len(self._earlier) + progress.iteration
         done = self._reckoning.done(progress.iteration, progress.iterations)
         window = self._problem.rows, self._problem.part.colours
+        cube = partial(self._cube, progress) if self._job.units == 1 else None
         if self._level:
-            return Step(0, self._most, done, progress.residual, None, window)
+            return Step(0, self._most, done, progress.residual, None, window, cube)
 
         def shown() -> NDArray[np.float32]:
             return self._problem.shown(progress.x, progress.lamp_powers)
 
-        return Step(passes, self._most or progress.iterations, done, progress.residual, shown, window)
+        return Step(passes, self._most or progress.iterations, done, progress.residual, shown, window, cube)
+
+    def _cube(self, progress: Progress) -> Cube:
+        """The cube that the solver has reached."""
+        job, problem = self._job, self._problem
+        return Cube(
+            extinction=problem.extinction(progress.x).astype(np.float32),
+            grid=problem.matrix.grid,
+            rig=problem.targets.rig,
+            lamp_powers=powers_of_pictures(problem.targets, progress.lamp_powers, job.recipe).copy(),
+            names=problem.targets.names,
+            transfer=problem.targets.transfer,
+            status="interrupted",
+            hold_deg=job.recipe.hold_deg,
+        )

@@ -15,7 +15,7 @@ from lightcube.kernels.layout import (
     columns_from_volume,
     volume_from_columns,
 )
-from lightcube.optics.arrays import Counts, Images
+from lightcube.optics.arrays import Counts, Images, Reals
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture
 from lightcube.optics.light import judged
@@ -124,6 +124,12 @@ class Problem:
         view, column, lifted, channel = np.unravel_index(flat, shape)
         pixels = [self.stop[view], rows.stop - 1 - lifted, column, colours.start + channel]
         return np.unique(np.stack(pixels, axis=1).astype(np.int64), axis=0)
+
+
+def powers_of_pictures(targets: Targets, powers: Floats, recipe: Recipe) -> Reals:
+    """The powers of each picture's lamps, as a cube keeps them, from those that are solved for."""
+    own = powers[targets.rig.pairs[:, 1]] if recipe.powers == "shared" else powers
+    return np.array(own, np.float64)
 
 
 def volume_from_unknowns(x: Floats, shape: tuple[int, int, int], channels: int) -> Floats:

@@ -12,6 +12,7 @@ import numpy as np
 from lightcube.backward.job import Job, level_name
 from lightcube.backward.kept import POWERS, VOXELS
 from lightcube.backward.pieces import known, start_of
+from lightcube.backward.problem import powers_of_pictures
 from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape
 from lightcube.backward.wishes import held
@@ -95,7 +96,7 @@ def merged(job: Job, store: Store) -> Solution:
         extinction=locked(extinction),
         grid=job.grid,
         rig=job.targets.rig,
-        lamp_powers=_of_pictures(job, powers),
+        lamp_powers=powers_of_pictures(job.targets, powers, job.recipe),
         targets=locked(as_levels(job.targets)),
         names=job.targets.names,
         transfer=job.targets.transfer,
@@ -106,13 +107,6 @@ def merged(job: Job, store: Store) -> Solution:
     undetermined = sum(int(each.get("undetermined", 0)) for each in facts)
     bound = sum(bounds) if complete and len(bounds) == len(facts) else None
     return Solution(cube, residuals, rejected, undetermined, stop_reason, bound)
-
-
-def _of_pictures(job: Job, powers: Reals) -> Reals:
-    """The powers of each picture's lamps, as a cube keeps them, from those that the job solves for."""
-    if job.recipe.powers != "shared":
-        return powers
-    return powers[job.targets.rig.pairs[:, 1]]
 
 
 def _place(job: Job, store: Store, name: str, part: Part, extinction: Images, powers: Reals) -> Arrays:

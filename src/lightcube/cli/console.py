@@ -8,11 +8,11 @@ import signal
 import sys
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from functools import cache
 from types import FrameType
-from typing import Any
+from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.text import Text
@@ -20,6 +20,8 @@ from rich.text import Text
 from lightcube import events
 from lightcube.errors import shown, without_secrets
 from lightcube.events import Said, Tell
+
+Thing = TypeVar("Thing")
 
 
 class Plain(Console):
@@ -199,6 +201,13 @@ def _in_llvm(frame: FrameType | None) -> bool:
 
 class Stopped(Exception):  # noqa: N818 - nothing is wrong
     """Ctrl-C, where something is kept: says what."""
+
+
+def counting(things: Iterable[Thing], count: int, advance: Callable[..., None]) -> Iterator[Thing]:
+    """Yield things, and tell how many of so many are done."""
+    for number, thing in enumerate(things, 1):
+        yield thing
+        advance(number, count)
 
 
 @contextmanager

@@ -14,9 +14,9 @@ from lightcube.backward import solving
 from lightcube.cli.console import compiling, out, progress
 from lightcube.cli.options import threaded
 from lightcube.drawing.films import film
-from lightcube.drawing.room import camera_for, room_picture
 from lightcube.drawing.sheet import contact_sheet
 from lightcube.drawing.small import small_cube
+from lightcube.drawing.tableau import tableau
 from lightcube.forward import casting
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns, volume_from_columns
 from lightcube.optics.absorption import extinction, transmittance
@@ -63,7 +63,7 @@ def run(folder: Path) -> None:
         rows[wonder.name] = {"seconds": seconds, **cube.scores}
         good = words.judged(cube.names, [view["psnr"] for view in cube.scores["pictures"]], "are")
         out.print(f"{wonder.title}, after {words.duration(seconds)}. {good}")
-        seen = to_uint8(room_picture(cube, float(cube.angles_deg[0]), camera_for(cube, _SEEN)), cube.transfer)
+        seen = to_uint8(tableau(cube, float(cube.angles_deg[0]), _SEEN), cube.transfer)
         cards.append(Card(wonder.title, wonder.said, seen, f"{wonder.name}.html"))
     io.save(rows, folder / "metrics.json", overwrite=True)
     told = "Light falls through a block of coloured glass; at each stop of the turntable its shadow is another picture."

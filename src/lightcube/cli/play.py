@@ -1,6 +1,5 @@
 """The command `lightcube play`."""
 
-from collections.abc import Callable, Iterable, Iterator
 from typing import Annotated
 
 import numpy as np
@@ -8,11 +7,10 @@ import typer
 
 from lightcube import io
 from lightcube.cli import arguments
-from lightcube.cli.console import done, err, progress
+from lightcube.cli.console import counting, done, err, progress
 from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
 from lightcube.drawing import films, shows
 from lightcube.drawing.poster import Format
-from lightcube.drawing.shows import Frame
 from lightcube.errors import InputError
 from lightcube.jobs.reading import load
 from lightcube.optics.light import Beams, check_zoom
@@ -28,7 +26,10 @@ def play(
         bool, typer.Option("--even", help="Turn evenly under a steady lamp: what flickers, flickers.")
     ] = False,
     view: Annotated[
-        films.View, typer.Option(help="The pictures on the wall, or the room: lamps, glass, walls and beams.")
+        films.View,
+        typer.Option(
+            help="The pictures on the wall; the room; or the way to the lamp's eye: noise becomes the picture."
+        ),
     ] = "wall",
     shape: Annotated[
         Format | None,
@@ -87,16 +88,21 @@ def play(
     movie.check()
     if shape is not None and scale is not None:
         raise InputError("--format and --scale both say how large the picture is: leave one of them out")
-    look, style = shows.Look(picture_only, check_zoom(zoom), light), _style(output, shape, captions, fps, view)
-    in_room = view == "room"
+    look = shows.Look(picture_only, check_zoom(zoom), light)
+    size, fps = arguments.movie_frames(output, shape, fps)
+    style = films.Style(size, captions, fps, view)
+    in_room = view != "wall"
     if in_room and (target or picture_only or screens or zoom > 1):
-        raise InputError("--view room shows all there is: leave out --screens, --target, --picture-only and --zoom")
+        raise InputError(f"--view {view} shows the room: leave out --screens, --target, --picture-only and --zoom")
     if io.is_relief(cube):
         cubes_own = (shape, start_deg, end_deg, count, captions, in_room, zoom > 1, target, picture_only, screens)
         if any(each not in (None, False) for each in cubes_own) or light != "area":
             raise InputError("a relief takes --stops, --even, --angles-deg, --fps and --scale: leave out all else")
         _play_relief(cube, movie, angles_deg, fps, scale, stops=stops, even=even, as_json=as_json)
         return
+    turns = even or [start_deg, end_deg, count] != [None] * 3
+    if view == "eye" and turns:
+        raise InputError("--view eye stays at an angle: leave out --even, --from-deg, --to-deg and --count")
     loaded = load(cube)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
@@ -105,7 +111,7 @@ def play(
     if stops or angles_deg is not None:
         shown = np.unique(turned) if stops and (screens or in_room) else turned
         if in_room:
-            film = films.in_room(loaded, style, shown)
+            film = (films.in_room if view == "room" else films.to_the_lamp)(loaded, style, shown)
         elif screens or (many and not stops):
             film = films.styled(loaded, shows.of_screens(loaded, shown, look), style, shown)
         elif stops:
@@ -113,19 +119,19 @@ def play(
         else:
             film = films.styled(loaded, shows.of_turn(loaded, shown, look, target=target), style, shown)
     else:
-        steady = even or not arguments.is_movie(output) or [start_deg, end_deg, count] != [None] * 3
+        steady = turns or not arguments.is_movie(output)
         film = films.filmed(loaded, look, style, turned, even=steady, target=target, screens=screens)
     for sentence in words.unsampled(loaded.rig, light):
         if not as_json:
             err.print(sentence)
     with progress("playing", as_json=as_json) as advance:
         movie.write(
-            _counted(film, len(film), advance),
+            counting(film, len(film), advance),
             count=len(film),
             transfer=loaded.transfer,
             fps=film.fps,
             scale=_scale(output, film, style, scale),
-            shared=shape is not None,
+            shared=shape is not None or in_room,
             views=film.show.views,
             names=film.show.names,
         )
@@ -178,21 +184,8 @@ def _told(output: str, film: films.Film, *, as_json: bool) -> None:
         err.print(f"note: {film.warning}")
 
 
-def _style(output: str, shape: Format | None, captions: bool, fps: float | None, view: films.View) -> films.Style:
-    """How a movie looks; a GIF is a third as wide and as fast, so that it stays small."""
-    small = shape is not None and output.lower().endswith(".gif")
-    size = None if shape is None else films.size_of(shape, small=small)
-    return films.Style(size, captions, (films.FPS / 3 if small else films.FPS) if fps is None else fps, view)
-
-
 def _scale(output: str, film: films.Film, style: films.Style, asked: int | None) -> int:
     """How large a pixel is drawn."""
     if style.size is not None:
         return 1
     return arguments.movie_scale(output, film.show.rows) if asked is None else asked
-
-
-def _counted(frames: Iterable[Frame], count: int, advance: Callable[..., None]) -> Iterator[Frame]:
-    for number, frame in enumerate(frames, 1):
-        yield frame
-        advance(number, count)

@@ -11,7 +11,9 @@ from lightcube.backward.needs import job_memory
 from lightcube.cli import arguments, printing
 from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening, out, telling
 from lightcube.cli.fields import one_by_one
+from lightcube.cli.making import Movie
 from lightcube.cli.options import JSON, OUT, OVERWRITE, PICTURES, VERBOSE, threaded
+from lightcube.drawing.poster import Format
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, publishing, running
 from lightcube.jobs.partial import check_partial, open_partial
@@ -58,6 +60,19 @@ def solve(
             rich_help_panel="Quality",
         ),
     ] = None,
+    making_of: Annotated[
+        str | None,
+        typer.Option(
+            help="Also make a movie of pictures and cube, from clear to finished: .mp4, .webm, .gif, ...",
+            rich_help_panel="Output",
+        ),
+    ] = None,
+    movie_format: Annotated[
+        Format | None,
+        typer.Option(
+            "--format", help="Of --making-of: 1080 x 1080, 1080 x 1920 or 1920 x 1080 pixels.", rich_help_panel="Output"
+        ),
+    ] = None,
     overwrite: Annotated[bool, OVERWRITE] = False,
     verbose: Annotated[bool, VERBOSE] = False,
     as_json: Annotated[bool, JSON] = False,
@@ -68,6 +83,8 @@ def solve(
     if unit is not None and (memory is not None or scheduler is not None):
         other = "--memory" if scheduler is None else "--scheduler"
         raise InputError(f"--unit and {other} both say how many units there are: leave one of them out")
+    movie = Movie(making_of, movie_format, overwrite=overwrite)
+    movie.check(elsewhere=unit is not None or scheduler is not None)
     which, units = (None, None) if unit is None else arguments.unit(unit)
     budget = None if memory is None else arguments.memory(memory)
     workers = 1 if scheduler is None else cluster.count_workers(scheduler)
@@ -76,6 +93,7 @@ def solve(
     del start
     if units is None:
         job = solving.divided(job, output, workers, budget)
+    movie.check_job(job)
     if dry_run:
         with err.status("timing a smaller cube"), compiling(as_json=as_json):
             needs = solving.needs(job)
@@ -90,9 +108,12 @@ def solve(
     began = time.monotonic()
     store = open_partial(output, job, overwrite=overwrite)
     pieces = job.pieces if which is None else job.pieces_of(which - 1)
+    movie.begin(job)
     with listening("solving", as_json=as_json) as tell:
         finished = (
-            running.run(job, pieces, store, tell) if scheduler is None else cluster.run(job, scheduler, store, tell)
+            running.run(job, pieces, store, tell, movie.making)
+            if scheduler is None
+            else cluster.run(job, scheduler, store, tell)
         )
     if not finished:
         raise Stopped(
@@ -102,11 +123,14 @@ def solve(
     if which is None:
         with compiling(as_json=as_json):
             solution = publishing.finish(job, store, output, overwrite=overwrite).solution
+        made = movie.write(solution.cube, as_json=as_json)
         seconds = time.monotonic() - began
         if as_json:
             json_line("result", out=output, seconds=seconds, **printing.facts(solution))
         else:
             printing.solved(solution, f"{output} is ready after {words.duration(seconds)}", verbose=verbose)
+            for line in made:
+                out.print(line)
             out.print(f"turn it by hand: lightcube view {shlex.quote(output)}")
     else:
         done(as_json, f"unit {which} of {units} is in {store.folder}", out=str(store.folder), unit=which, units=units)

@@ -87,6 +87,8 @@ class Canvas:
         ``(row, column)``: inverse depth (1/mm) of the solid thing that is seen there; 0 = none.
     glass
         ``(row, column)``: inverse depth at which the ray enters the cube; 0 = it does not.
+    beyond
+        ``(row, column)``: inverse depth at which it leaves the cube.
     """
 
     camera: Camera
@@ -96,6 +98,7 @@ class Canvas:
     light: Floats
     near: Floats
     glass: Floats
+    beyond: Floats
 
     def __init__(self, camera: Camera) -> None:
         rows, columns = (FINE * count for count in camera.size)
@@ -104,11 +107,12 @@ class Canvas:
         self.light = np.zeros((rows, columns, 3), np.float32)
         self.near = np.zeros((rows, columns), np.float32)
         self.glass = np.zeros((rows, columns), np.float32)
+        self.beyond = np.zeros((rows, columns), np.float32)
 
     def copy(self) -> "Canvas":
         """Another one with the same on it."""
         other = Canvas(self.camera)
-        for name in ("light", "near", "glass"):
+        for name in ("light", "near", "glass", "beyond"):
             getattr(other, name)[...] = getattr(self, name)
         return other
 
@@ -149,6 +153,15 @@ class Canvas:
         along = ahead + up * (height / 2 - rows[:, None]) / self.focal + right * (columns - width / 2) / self.focal
         return along.astype(np.float32)
 
+    def ways(self, region: Region, every: int = 1) -> Reals:
+        """``(row, column, 3)``: rays through the middles of a region's pixels, or of squares of `every` x `every`."""
+        right, up, ahead = self.axes
+        height, width = self.near.shape
+        side = every * FINE
+        rows, columns = (np.arange(each.start, each.stop, side) + side / 2 for each in region)
+        aside = right * ((columns - width / 2) / self.focal)[:, None]
+        return np.asarray(ahead + aside + up * ((height / 2 - rows) / self.focal)[:, None, None])
+
     def plane(self, middle: ArrayLike, right: Reals, down: Reals, region: Region) -> tuple[Floats, Floats, Floats]:
         """Inverse depth of a plane (not above 0 where the ray never meets it), and how many steps off its middle.
 
@@ -178,13 +191,16 @@ class Canvas:
         self.light[region] += part * (np.asarray(light, np.float32) - self.light[region])
 
     def line(
-        self, start: ArrayLike, end: ArrayLike, light: ArrayLike, part: float, width: float, front: bool | None
+        self, points: ArrayLike, light: ArrayLike, parts: tuple[float, float], width: float, front: bool | None
     ) -> None:
-        """Draw a straight line, `width` pixels wide, as `blend` lays it over."""
-        points = self._ahead(np.array([start, end], np.float64))
-        if points is None:
+        """Draw a straight line between two points, `width` pixels wide, as `blend` lays it over.
+
+        `parts` is how strong it is at either end.
+        """
+        kept = self._ahead(np.array(points, np.float64))
+        if kept is None:
             return
-        ends = self.seen(points)
+        ends = np.column_stack([self.seen(kept), parts])
         steep = int(abs(ends[1, 1] - ends[0, 1]) > abs(ends[1, 0] - ends[0, 0]))
         ends = ends[np.argsort(ends[:, steep])]
         first, last = ends[:, steep]
@@ -199,12 +215,14 @@ class Canvas:
         beside = np.floor(middle).astype(int) + np.arange(-reach, reach + 1)
         slant = (last - first) / np.hypot(*(ends[1, :2] - ends[0, :2]))
         cover = np.clip(half + 0.5 - np.abs(beside + 0.5 - middle) * slant, 0, 1)
-        kept = (cover > 0) & (beside >= 0) & (beside < self.near.shape[steep])
-        place = np.broadcast_to(steps[:, None], kept.shape)[kept], beside[kept]
+        inside = (cover > 0) & (beside >= 0) & (beside < self.near.shape[steep])
+        place = np.broadcast_to(steps[:, None], inside.shape)[inside], beside[inside]
         rows, columns = place if steep else place[::-1]
-        near = np.broadcast_to(ends[0, 2] + along * (ends[1, 2] - ends[0, 2]), kept.shape)[kept].astype(np.float32)
+        depths = np.broadcast_to(ends[0, 2] + along * (ends[1, 2] - ends[0, 2]), inside.shape)
+        near = depths[inside].astype(np.float32)
         there = self.shown(self.near[rows, columns], self.glass[rows, columns], near, front)
-        laid = np.where(there, part * cover[kept], 0).astype(np.float32)[:, None]
+        strength = cover * (ends[0, 3] + along * (ends[1, 3] - ends[0, 3]))
+        laid = np.where(there, strength[inside], 0).astype(np.float32)[:, None]
         self.light[rows, columns] += laid * (np.asarray(light, np.float32) - self.light[rows, columns])
 
     def _ahead(self, points: Reals) -> Reals | None:

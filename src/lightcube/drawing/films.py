@@ -31,10 +31,10 @@ _LESS = 3
 #: Stops whose pictures flow into each other differ in so much of the wall at most.
 _ALIKE = 0.15
 #: Rows and columns of a room's frames where nothing is said, and seconds that the table turns between two stops.
-_ROOM, _TURN_S = (540, 960), 0.7
+ROOM, _TURN_S = (540, 960), 0.7
 
-#: The pictures on the wall, or the room in which it stands.
-View = Literal["wall", "room"]
+#: The pictures on the wall, the room in which it stands, or the way of an eye through it to where the lamp is.
+View = Literal["wall", "room", "eye"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,8 @@ def film(
     Parameters
     ----------
     view
-        ``"room"``: the room in perspective, with lamps, glass, walls, and the light on its way between them.
+        ``"room"``: the room in perspective, with lamps, glass, walls, and the light on its way between them, and the
+        pictures beside it. ``"eye"``: the eye goes to where the lamp is, and noise becomes the first stop's picture.
     format
         ``"square"``, ``"portrait"`` or ``"wide"``: the picture large in the dark, 1080 x 1080, 1080 x 1920 or
         1920 x 1080 pixels; None = the whole screen, a pixel each.
@@ -147,7 +148,7 @@ class Style:
     fps
         Frames a second.
     view
-        The wall, or the room.
+        The wall, the room, or an eye on its way to the lamp.
     """
 
     size: tuple[int, int] | None = None
@@ -158,7 +159,7 @@ class Style:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.fps) and 1e-3 <= self.fps <= 1000):
             raise InputError(f"frames per second must be a number from 0.001 to 1000, not {self.fps}")
-        if self.captions and self.view == "room":
+        if self.captions and self.view != "wall":
             raise InputError("captions stand below pictures on the wall: leave them out, or show the wall")
         if self.captions and self.size is None:
             raise InputError("captions stand in the dark around a picture: give a format too, square, portrait or wide")
@@ -178,6 +179,8 @@ def filmed(
     target, screens
         As `lightcube.drawing.shows` has them: the wanted picture beside each, all screens side by side.
     """
+    if style.view == "eye":
+        return to_the_lamp(cube, style, cube.angles_deg[:1])
     beside = screens or len(cube.rig.screens.names) > 1
     may_flow = len(turned) > 1 and not even and shows.unlike(cube, look) <= _ALIKE
     share = shows.flickers(cube, turned, look) if may_flow else 1.0
@@ -191,7 +194,7 @@ def filmed(
     stops = np.unique(cube.angles_deg)
     if style.view == "room":
         course = Course.of(len(stops), style.fps, 1.0, _TURN_S)
-        show = shows.resting_room(cube, course, style.size or _ROOM)
+        show = shows.resting_room(cube, course, style.size or ROOM)
         return Film(show, style.fps, cube.transfer, _rests(len(stops), course))
     show = shows.of_screens(cube, stops, look) if beside else shows.of_stops(cube, look, target=target)
     lit = styled(cube, show, style, stops if beside else cube.angles_deg)
@@ -209,7 +212,18 @@ def styled(cube: Cube, show: Show, style: Style, angles_deg: Angles) -> Film:
 
 def in_room(cube: Cube, style: Style, angles_deg: Angles) -> Film:
     """The film whose frames are the room at some angles."""
-    return Film(shows.of_room(cube, angles_deg, style.size or _ROOM), style.fps, cube.transfer)
+    return Film(shows.of_room(cube, angles_deg, style.size or ROOM), style.fps, cube.transfer)
+
+
+def to_the_lamp(cube: Cube, style: Style, angles_deg: Angles) -> Film:
+    """The film of an eye that goes to where the lamp is, at each of some angles."""
+    show = shows.of_eye(cube, angles_deg, style.size or ROOM, style.fps)
+    times = "" if len(angles_deg) == 1 else f", {len(angles_deg)} times"
+    said = (
+        f"{show.count / style.fps:.0f} s: the eye goes to where the lamp is{times}, and noise becomes the picture; "
+        "there it is as the wall has it"
+    )
+    return Film(show, style.fps, cube.transfer, said)
 
 
 def _flows(share: float) -> str:

@@ -56,7 +56,8 @@ def _enlarged(
 ) -> Picture:
     """The part of a picture around its window, enlarged to a frame, dark where there is nothing: display values."""
     top, left, rows, columns = (int(number) for number in window)
-    kept = picture.astype(np.float32) * iris(picture.shape[:2], (top, left, rows, columns))
+    down, across = (np.arange(count) + 0.5 for count in picture.shape[:2])
+    kept = picture.astype(np.float32) * iris(down[:, None] - top, across - left, (rows, columns))[..., None]
     margin = math.ceil(max(size) / scale)
     padded = np.pad(kept, ((margin, margin), (margin, margin), (0, 0)))
     middle = np.array([left + columns / 2, top + rows / 2]) + margin
@@ -69,14 +70,12 @@ def _enlarged(
     return np.maximum(np.stack(colours, axis=2), np.float32(0))
 
 
-def iris(shape: tuple[int, int], window: tuple[int, int, int, int]) -> Picture:
-    """``(row, column, 1)``: what an iris lets through, in display values; all within the window."""
-    top, left, rows, columns = window
-    half = math.hypot(rows, columns) / 2
-    down, across = np.arange(shape[0]) + 0.5 - top - rows / 2, np.arange(shape[1]) + 0.5 - left - columns / 2
-    away = np.hypot(down[:, None], across) / half
+def iris(down: NDArray[Any], across: NDArray[Any], window: tuple[int, int]) -> Picture:
+    """What an iris lets through at some rows and columns of a picture, in display values; all within its window."""
+    rows, columns = window
+    away = np.hypot(down - rows / 2, across - columns / 2) / (math.hypot(rows, columns) / 2)
     part = np.clip((_SHUT - away) / (_SHUT - _OPEN), 0, 1)
-    return (part * part * (3 - 2 * part)).astype(np.float32)[..., None]
+    return np.asarray(part * part * (3 - 2 * part), np.float32)
 
 
 def lettering(text: str, size: tuple[int, int], below: float) -> Picture:

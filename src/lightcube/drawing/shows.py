@@ -11,9 +11,12 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.drawing.eyes import camera_for
+from lightcube.drawing.orbit import between, lamps_orbit, orbit_of, soft
 from lightcube.drawing.poster import poster
-from lightcube.drawing.room import camera_for, room_player
+from lightcube.drawing.room import Room
 from lightcube.drawing.sheet import beside_each_other, beside_targets
+from lightcube.drawing.tableau import Tableau
 from lightcube.forward import casting
 from lightcube.forward.dimming import Course, dimmed
 from lightcube.forward.flicker import Flicker
@@ -26,10 +29,17 @@ from lightcube.optics.views import Views
 from lightcube.pictures.fitting import targets_of
 
 Picture = NDArray[np.float32]
-Frame = Picture | NDArray[np.uint8]
+Levels = NDArray[np.uint8]
+Frame = Picture | Levels
 
 #: Pairs of neighbouring frames of a turn that tell whether it flickers.
 _PAIRS = 6
+#: Seconds that the eye waits, that it takes to the lamp, that the picture there gets calm, and that it stays.
+_WAIT_S, _WAY_S, _CALM_S, _STAY_S = 0.5, 2.8, 0.5, 1.4
+#: Frames that what changes takes at least, and the way to the lamp: else too much jumps from one to the next.
+_FEWEST, _WAY = 6, 84
+#: So much of its way glass is seen as one likes to see it.
+_BARE = 0.35
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,8 +123,8 @@ def of_screens(cube: Cube, angles_deg: NDArray[np.float64], look: Look) -> Show:
 
 def of_room(cube: Cube, angles_deg: NDArray[np.float64], size: tuple[int, int]) -> Show:
     """The room in perspective at some angles, in frames of so many rows and columns."""
-    show = room_player(cube, camera_for(cube, size))
-    return Show((show(float(angle_deg)) for angle_deg in angles_deg), len(angles_deg), size[0])
+    room = Tableau(cube, size)
+    return Show((room.seen(float(angle_deg)) for angle_deg in angles_deg), len(angles_deg), size[0])
 
 
 def resting_room(cube: Cube, course: Course, size: tuple[int, int]) -> Show:
@@ -123,21 +133,54 @@ def resting_room(cube: Cube, course: Course, size: tuple[int, int]) -> Show:
     8-bit display levels.
     """
     stops = np.unique(cube.angles_deg)
-    show = room_player(cube, camera_for(cube, size))
+    room = Tableau(cube, size)
 
-    def frames() -> Iterator[NDArray[np.uint8]]:
+    def frames() -> Iterator[Levels]:
         for here, there in zip(stops, [*stops[1:], stops[0] + 360], strict=True):
-            unlit, lit = show(here, lit=False), show(here)
+            unlit, lit = room.seen(here, lit=False), room.seen(here)
             parts = {p: decode(np.array(p, np.float32), cube.transfer) for p in course.lamp}
             levels = {p: to_uint8(unlit + part * (lit - unlit), cube.transfer) for p, part in parts.items()}
             for part in course.lamp[: len(course.lamp) - course.dark]:
                 yield levels[part]
             for number in range(1, course.dark + 1):
                 gone = (1 - np.cos(np.pi * number / course.dark)) / 2
-                moved = show(here + gone * (there - here), lit=False) if len(stops) > 1 else unlit
+                moved = room.seen(here + gone * (there - here), lit=False) if len(stops) > 1 else unlit
                 yield to_uint8(moved, cube.transfer)
 
     return Show(frames(), len(stops) * len(course.lamp), size[0])
+
+
+def of_eye(cube: Cube, angles_deg: NDArray[np.float64], size: tuple[int, int], fps: float) -> Show:
+    """The eye goes to where the lamp is, and noise becomes the picture, at each of some angles; from dark to dark.
+
+    There it is what the wall shows, the mean of each pixel. 8-bit display levels.
+    """
+    room, start = Room(cube), orbit_of(camera_for(cube, size))
+    course = Course.of(len(angles_deg), fps)
+    wait, calm = (max(_FEWEST, round(seconds * fps)) for seconds in (_WAIT_S, _CALM_S))
+    way = max(_WAY, round(_WAY_S * fps))
+    fade = [decode(np.array(part / course.fade, np.float32), cube.transfer) for part in range(course.fade)]
+    stay = round(_STAY_S * fps)
+
+    def lights() -> Iterator[Picture]:
+        for angle_deg in angles_deg.tolist():
+            goal = lamps_orbit(*room.eyes_lamp(angle_deg), size)
+            seen = room.seen(start.camera(size), angle_deg)
+            yield from (part * seen for part in fade)
+            yield from [seen] * wait
+            for number in range(1, way + 1):
+                gone = number / way
+                bare = soft(np.clip((gone - _BARE) / (1 - _BARE), 0, 1))
+                seen = room.seen(between(start, goal, soft(gone)).camera(size), angle_deg, bare=bare)
+                yield seen
+            rests = room.from_lamp(goal.camera(size), angle_deg)
+            yield from (seen + number / calm * (rests - seen) for number in range(1, calm + 1))
+            yield from [rests] * stay
+            yield from (part * rests for part in reversed(fade))
+            yield from [0 * rests] * course.dark
+
+    count = len(angles_deg) * (2 * course.fade + wait + way + calm + stay + course.dark)
+    return Show((to_uint8(light, cube.transfer) for light in lights()), count, size[0])
 
 
 def flickers(cube: Cube, angles_deg: NDArray[np.float64], look: Look) -> float:

@@ -1,6 +1,7 @@
 """Writers and readers of cubes, by suffix."""
 
 import json
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 
@@ -50,7 +51,8 @@ def _refuse_pictures(at: Place) -> None:
     with system_errors(at, "reading"):
         pictures = is_pictures(at)
     if pictures:
-        raise InputError(f"{at} is pictures, no cube: make one of them first, as in lightcube solve {name_of(at)}")
+        asked = f"lightcube solve {shlex.quote(str(at))} -o cube.zarr"
+        raise InputError(f"{at} is pictures, no cube: make one of them first, as in {asked}")
     if name_of(at).lower().endswith(".toml"):
         raise InputError(
             f"{at} is a stage's or a scene's file, no cube: make one first, by lightcube solve, of a scene after trace"

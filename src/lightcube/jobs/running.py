@@ -3,7 +3,7 @@
 import time
 
 from lightcube.backward.job import Job
-from lightcube.backward.pieces import Step, solve_pieces
+from lightcube.backward.pieces import Step, Watching, solve_pieces
 from lightcube.events import Progress, Said, Tell
 from lightcube.jobs.partial import DiskStore
 from lightcube.scoring import metrics
@@ -13,8 +13,11 @@ from lightcube.wording import counted
 _LOOK_S, _PATIENCE = 1.0, 10.0
 
 
-def run(job: Job, pieces: list[str], store: DiskStore, tell: Tell) -> bool:
-    """Solve what is not finished of some pieces of a job; False where `tell` stopped it."""
+def run(job: Job, pieces: list[str], store: DiskStore, tell: Tell, watch: Watching | None = None) -> bool:
+    """Solve what is not finished of some pieces of a job; False where `tell` stopped it.
+
+    `watch` sees each step too.
+    """
     resumed, done = not store.is_empty(), store.names()
     began, first, next_look = time.monotonic(), -1.0, 0.0
 
@@ -24,6 +27,8 @@ def run(job: Job, pieces: list[str], store: DiskStore, tell: Tell) -> bool:
             first = step.done
             if resumed:
                 tell(_resumed(step, len(done.intersection(job.unit_names)), job.units))
+        if watch is not None:
+            watch(step)
         figures = {}
         looking = time.monotonic()
         if step.shown is not None and looking > next_look:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.drawing.room import camera_for, room_picture
 from lightcube.drawing.sheet import difference, pair
+from lightcube.drawing.tableau import tableau
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.stage import Stage
@@ -110,7 +110,7 @@ def measure(
     said = sentences(targets) if facts is None else advice(facts)
     if stage is not None:
         said = [*doubtful(stage), *said]
-    room = to_uint8(room_picture(cube, float(cube.angles_deg[0]), camera_for(cube, ROOM)))
+    room = to_uint8(tableau(cube, float(cube.angles_deg[0]), ROOM))
     return Findings(cube, targets, stage, scores, room, pictures, between, left, facts, said, _apart(cube, targets))
 
 

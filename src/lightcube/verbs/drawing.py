@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube import io
-from lightcube.drawing.room import camera_for, room_picture
 from lightcube.drawing.stage import drawing
+from lightcube.drawing.tableau import tableau
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import to_uint8
 from lightcube.optics.views import check_angles
@@ -25,4 +25,4 @@ def of_cube(cube: Cube, angle_deg: float | None = None) -> NDArray[np.uint8]:
         Of the turntable, degrees; the first stop where nothing is said.
     """
     (turned,) = cube.angles_deg[:1] if angle_deg is None else check_angles([angle_deg])
-    return to_uint8(room_picture(cube, float(turned), camera_for(cube)), cube.transfer)
+    return to_uint8(tableau(cube, float(turned), (540, 960)), cube.transfer)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.drawing.room import camera_for, room_picture
+from lightcube.drawing.tableau import tableau
 from lightcube.events import Tell, counting
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import to_uint8
@@ -51,4 +51,4 @@ def page(cube: Cube, label: str | Label, tell: Tell, *, full: bool = False) -> P
 
 def preview(cube: Cube) -> NDArray[np.uint8]:
     """The cube in its room at its first stop, ``(630, 1200, 3)`` levels: a usual size where pages are shared."""
-    return to_uint8(room_picture(cube, float(cube.angles_deg[0]), camera_for(cube, (630, 1200))))
+    return to_uint8(tableau(cube, float(cube.angles_deg[0]), (630, 1200)))

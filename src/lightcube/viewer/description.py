@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from lightcube.drawing.room import camera_for
+from lightcube.drawing.eyes import camera_for
 from lightcube.drawing.standing import carries_cube, drawn
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import discs_sampled
