@@ -13,6 +13,8 @@ from lightcube.drawing import films, shows
 from lightcube.drawing.poster import Format
 from lightcube.errors import InputError
 from lightcube.jobs.reading import load
+from lightcube.optics.arrays import Reals
+from lightcube.optics.cube import Cube
 from lightcube.optics.light import Beams, check_zoom
 from lightcube.verbs import reliefs, words
 from lightcube.wording import counted
@@ -110,14 +112,7 @@ def play(
     turned = arguments.play_angles(loaded, angles_deg, start_deg, end_deg, count, stops=stops)
     if stops or angles_deg is not None:
         shown = np.unique(turned) if stops and (screens or in_room) else turned
-        if in_room:
-            film = (films.in_room if view == "room" else films.to_the_lamp)(loaded, style, shown)
-        elif screens or (many and not stops):
-            film = films.styled(loaded, shows.of_screens(loaded, shown, look), style, shown)
-        elif stops:
-            film = films.styled(loaded, shows.of_stops(loaded, look, target=target), style, shown)
-        else:
-            film = films.styled(loaded, shows.of_turn(loaded, shown, look, target=target), style, shown)
+        film = _film_at(loaded, look, style, shown, stops=stops, screens=screens or (many and not stops), target=target)
     else:
         steady = turns or not arguments.is_movie(output)
         film = films.filmed(loaded, look, style, turned, even=steady, target=target, screens=screens)
@@ -136,6 +131,19 @@ def play(
             names=film.show.names,
         )
     _told(output, film, as_json=as_json)
+
+
+def _film_at(
+    cube: Cube, look: shows.Look, style: films.Style, shown: Reals, *, stops: bool, screens: bool, target: bool
+) -> films.Film:
+    """What is shown at angles, on the wall or in the room."""
+    if style.view != "wall":
+        return (films.in_room if style.view == "room" else films.to_the_lamp)(cube, style, shown)
+    if screens:
+        show = shows.of_screens(cube, shown, look)
+    else:
+        show = shows.of_stops(cube, look, target=target) if stops else shows.of_turn(cube, shown, look, target=target)
+    return films.styled(cube, show, style, shown)
 
 
 def _play_relief(
@@ -160,7 +168,7 @@ def _play_relief(
         turned = reliefs.stops_deg(relief)
     with progress("playing", as_json=as_json) as advance:
         movie.write(
-            _counted(reliefs.under_lamp(relief, turned), len(turned), advance),
+            counting(reliefs.under_lamp(relief, turned), len(turned), advance),
             count=len(turned),
             fps=films.FPS if fps is None else fps,
             scale=arguments.movie_scale(output, len(relief.wanted[0])) if scale is None else scale,
