@@ -108,6 +108,7 @@ def test_as_black_glass_it_casts_the_same() -> None:
         np.testing.assert_allclose(picture[:high, :wide, 1], ~shadow, atol=1e-4)
     assert cube.targets is not None
     np.testing.assert_array_equal(cube.targets[0, :6, :5, 0] == 0, three_pictures(3, grid.shape)[0])
+    np.testing.assert_array_equal(cube.targets[..., 3] > 0, shape.rig.inside)
 
 
 def body(grid_side: int) -> Flags | np.ndarray[tuple[int, int, int], np.dtype[np.float32]]:
