@@ -6,7 +6,7 @@ from typing import Any
 from typer.core import TyperCommand
 
 #: The groups in the order in which they are shown: beside what may be said of a cube, where it goes and who computes.
-GROUPS = ("Output", "Pictures", "Solid", "Geometry", "Lamp", "Material", "Quality", "Machine")
+GROUPS = ("Output", "Pictures", "Geometry", "Lamp", "Material", "Quality", "Machine")
 #: What a command's own options stand under that are in no group.
 _OTHERS = "Options"
 

@@ -38,15 +38,17 @@ INVERT = typer.Option(
 REPAIR = typer.Option(
     help="Pictures that contradict each other: bend them (warp), leave out (trim) or add (grow) what is in the way, or "
     "none of it; auto trims what hardly shows, else bends.",
-    rich_help_panel="Solid",
+    rich_help_panel="Pictures",
 )
-KEEP = typer.Option(help="A picture, by its name, that stays as it is if it can.", rich_help_panel="Solid")
+KEEP = typer.Option(help="A picture, by its name, that stays as it is if it can.", rich_help_panel="Pictures")
 WALL = typer.Option(
-    help="How thick walls are at least, mm, where pictures are bent or a shell is made.", rich_help_panel="Solid"
+    help="How thick walls are at least, mm, where pictures are bent or a shell is made.", rich_help_panel="Material"
 )
-CARVE = typer.Option(help="Take out what no shadow needs: shell or lace.  [default: nothing]", rich_help_panel="Solid")
-DEEP = typer.Option(help="Voxels that a lace keeps on each ray of light.", min=1, rich_help_panel="Solid")
-DRAIN = typer.Option(help="Width of the holes of a shell, mm; 0 = none.", rich_help_panel="Solid")
+CARVE = typer.Option(
+    help="Take out what no shadow needs: shell or lace.  [default: nothing]", rich_help_panel="Material"
+)
+DEEP = typer.Option(help="Voxels that a lace keeps on each ray of light.", min=1, rich_help_panel="Material")
+DRAIN = typer.Option(help="Width of the holes of a shell, mm; 0 = none.", rich_help_panel="Material")
 OVERLAY = typer.Option(help="Draw what is cast over what was given (PNG).", rich_help_panel="Output")
 #: Steps that are told of: to have read, to have made, to have written.
 _READ, _MADE, _WRITTEN, _STEPS = 1, 17, 19, 20
