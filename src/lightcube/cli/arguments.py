@@ -6,8 +6,6 @@ from pathlib import PurePath
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.drawing import films
-from lightcube.drawing.poster import Format
 from lightcube.errors import InputError
 from lightcube.forward import turning
 from lightcube.optics.cube import Cube
@@ -99,13 +97,6 @@ def play_angles(
 def is_movie(output: str) -> bool:
     """Whether what is written is looked at as it moves: no single pictures, no numbers."""
     return PurePath(output).suffix.lower() not in ("", ".npy", ".png")
-
-
-def movie_frames(output: str, shape: Format | None, fps: float | None = None) -> tuple[tuple[int, int] | None, float]:
-    """Rows and columns of a format's frames, and how many a second; a GIF is a third as wide and as fast: small."""
-    small = shape is not None and output.lower().endswith(".gif")
-    size = None if shape is None else films.size_of(shape, small=small)
-    return size, (films.FPS / 3 if small else films.FPS) if fps is None else fps
 
 
 def movie_scale(output: str, rows: int) -> int:

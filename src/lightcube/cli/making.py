@@ -4,7 +4,7 @@ from lightcube import io
 from lightcube.backward.job import Job
 from lightcube.cli import arguments
 from lightcube.cli.console import counting, progress
-from lightcube.drawing.films import ROOM
+from lightcube.drawing.films import ROOM, frames_of
 from lightcube.drawing.making import MakingOf
 from lightcube.drawing.poster import Format
 from lightcube.errors import InputError
@@ -50,7 +50,7 @@ class Movie:
     def begin(self, job: Job) -> None:
         """Look on from now."""
         if self._path:
-            size, fps = arguments.movie_frames(self._path, self._shape)
+            size, fps = frames_of(self._path, self._shape)
             self.making = MakingOf(job.targets, job.grid, size or ROOM, fps)
 
     def write(self, cube: Cube, *, as_json: bool) -> list[str]:

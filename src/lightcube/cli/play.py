@@ -91,7 +91,7 @@ def play(
     if shape is not None and scale is not None:
         raise InputError("--format and --scale both say how large the picture is: leave one of them out")
     look = shows.Look(picture_only, check_zoom(zoom), light)
-    size, fps = arguments.movie_frames(output, shape, fps)
+    size, fps = films.frames_of(output, shape, fps)
     style = films.Style(size, captions, fps, view)
     in_room = view != "wall"
     if in_room and (target or picture_only or screens or zoom > 1):

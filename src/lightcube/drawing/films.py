@@ -87,6 +87,13 @@ def size_of(format: Format, *, small: bool = False) -> tuple[int, int]:  # noqa:
     return (rows // _LESS, columns // _LESS) if small else (rows, columns)
 
 
+def frames_of(output: str, shape: Format | None, fps: float | None = None) -> tuple[tuple[int, int] | None, float]:
+    """Rows and columns of a format's frames, and how many a second; a GIF is a third as wide and as fast: small."""
+    small = shape is not None and output.lower().endswith(".gif")
+    size = None if shape is None else size_of(shape, small=small)
+    return size, (FPS / 3 if small else FPS) if fps is None else fps
+
+
 @checked
 def film(
     cube: Cube,
