@@ -14,6 +14,7 @@ import lightcube as lc
 from lightcube.errors import InputError
 from lightcube.io import Output, read_shape, save
 from lightcube.io.shapes import is_shape_folder
+from lightcube.solids.shape import is_opaque
 from tests.laws.test_writer import a_cube, a_shape
 
 
@@ -88,8 +89,10 @@ def test_cubes_and_shapes_are_not_taken_for_each_other(tmp_path: Path, folder: P
     shutil.copytree(cube, tmp_path / "b.shape.zarr")
     with pytest.raises(InputError, match="is no shape: give a folder that lightcube hull wrote"):
         read_shape(tmp_path / "b.shape.zarr")
-    with pytest.raises(InputError, match="is a shape, no cube: lightcube info tells of it"):
-        lc.load(folder)
+    shutil.copytree(folder, tmp_path / "c.zarr")
+    with pytest.raises(InputError, match=r"is a shape, no cube: let its name end with \.shape\.zarr"):
+        lc.load(tmp_path / "c.zarr")
+    assert is_opaque(lc.load(folder))
     with pytest.raises(InputError, match="has no suffix that a shape can have"):
         read_shape(cube)
     assert is_shape_folder(folder)

@@ -23,7 +23,7 @@ FORMAT_VERSION = 5
 
 #: What to do with files of this package that are no cubes.
 _NO_CUBES = {
-    "shape": "lightcube info tells of it, lightcube.read_shape reads it",
+    "shape": "let its name end with .shape.zarr",
     "relief": "lightcube play, score and info take it, lightcube.read_relief reads it",
 }
 
