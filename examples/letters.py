@@ -3,7 +3,8 @@
     python examples/letters.py [FOLDER]
 
 A few seconds. Letters are DejaVu Sans Bold, which comes with matplotlib (extra `plot`); the pictures go to
-docs/pictures, or FOLDER. `why.png` maps what no object casts of a word that cannot be built.
+docs/pictures, or FOLDER. `why.png` maps what no object casts of a word that cannot be built, `bent.png` how that was
+bent until one casts it, and `hut.png` shows that, whole and as a lace.
 """
 
 import sys
@@ -16,6 +17,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 import lightcube as lc
 from lightcube.drawing.blame import blame_maps
+from lightcube.drawing.overlay import overlays
 from lightcube.solids.certificate import cast_mesh
 from lightcube.solids.walls import block
 
@@ -39,6 +41,16 @@ def main() -> None:
     found = lc.reach(*on_walls("HUT"))
     print("HUT", found, found.shares)
     lc.save(beside(list(blame_maps(found))), folder / "why.png", overwrite=True)
+    grid = lc.Grid((VOXELS,) * 3, SIDE_MM / VOXELS)
+    cuts = lc.cut(lc.Pictures(tuple(map(letter, "HUT")), ("H", "U", "T")))
+    free = lc.silhouettes(cuts, lc.walls(grid).rig(), "stretch")  # with room around them
+    bent = lc.repair(free, grid, wall_px=1.0)
+    print("HUT", bent, bent.warped, lc.reach(bent.shape.silhouettes, grid))
+    lc.save(overlays(bent), folder / "bent.png", overwrite=True)
+    lace = lc.carve(bent.shape, "lace")
+    print("HUT", lace.mesh, lace.inside.sum() / bent.shape.inside.sum(), lc.certify(lace.mesh, lace.silhouettes))
+    rows = [picture(bent.shape), picture(lace)]
+    lc.save(np.concatenate(rows, axis=1), folder / "hut.png", overwrite=True)
 
 
 def on_walls(word: str) -> tuple[lc.Silhouettes, lc.Grid]:

@@ -31,6 +31,7 @@ from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.scoring.metrics import score
 from lightcube.scoring.reliefs import score_relief
+from lightcube.solids.carving import carve
 from lightcube.solids.certificate import certify
 from lightcube.solids.cutting import cut
 from lightcube.solids.mesh import Mesh
@@ -39,10 +40,12 @@ from lightcube.solids.relief import Relief, ReliefRecipe
 from lightcube.solids.relief_light import relief_shadow
 from lightcube.solids.relief_making import relief
 from lightcube.solids.relief_mesh import relief_mesh
+from lightcube.solids.repair import Repaired, repair
 from lightcube.solids.shape import Shape, as_cube, hull
 from lightcube.solids.silhouettes import Silhouettes
 from lightcube.solids.standing import silhouettes
 from lightcube.solids.walls import walls
+from lightcube.solids.warp import Warped, warp
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Result
 from lightcube.viewer.label import Label
@@ -68,6 +71,7 @@ __all__ = [
     "Recipe",
     "Relief",
     "ReliefRecipe",
+    "Repaired",
     "Result",
     "Rig",
     "Scene",
@@ -80,8 +84,10 @@ __all__ = [
     "Targets",
     "Turntable",
     "Views",
+    "Warped",
     "as_cube",
     "best_order",
+    "carve",
     "cast",
     "certify",
     "check",
@@ -107,6 +113,7 @@ __all__ = [
     "relief",
     "relief_mesh",
     "relief_shadow",
+    "repair",
     "save",
     "scene_rig",
     "scene_targets",
@@ -119,4 +126,5 @@ __all__ = [
     "threads",
     "turntable",
     "walls",
+    "warp",
 ]

@@ -21,6 +21,7 @@ from lightcube.solids.reach import reach
 from lightcube.solids.shape import Shape, hull
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.warp import Warped, warp
+from lightcube.wording import counted
 
 #: How silhouettes are made to agree: bent, what no object casts left out, or what is in the way added.
 Way = Literal["auto", "none", "trim", "grow", "warp"]
@@ -59,6 +60,9 @@ class Repaired:
 
     def __post_init__(self) -> None:
         check_fields(self)
+
+    def __repr__(self) -> str:
+        return f"<{counted(len(self.given), 'silhouette')} by {self.way}, overlap {self.overlaps.min():.1%} and more>"
 
     @property
     def overlaps(self) -> Reals:

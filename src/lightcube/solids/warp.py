@@ -16,6 +16,7 @@ from lightcube.optics.grid import Grid
 from lightcube.solids import projections
 from lightcube.solids.elastic import NODES, elastic, least_area, splines
 from lightcube.solids.silhouettes import FINE, Silhouettes
+from lightcube.wording import counted
 
 Vector = np.ndarray[tuple[int], np.dtype[np.float64]]
 
@@ -57,6 +58,10 @@ class Warped:
     def __post_init__(self) -> None:
         check_fields(self)
         keep(self, nodes=np.float64)
+
+    def __repr__(self) -> str:
+        moved = f"moved by {self.moved_px:.2f} pixels on average"
+        return f"<{counted(len(self.given), 'silhouette')} {moved}, least area {self.least_area:.2f}>"
 
     def moves(self, finer: int = 1) -> Reals:
         """``(picture, 2, row, column)`` in pixels, at the middles of so many pixels for each along a side."""
