@@ -31,7 +31,7 @@ def main(cube: str, out: str) -> None:
             shown[-1] += 1
         else:
             frames, shown = [*frames, image], [*shown, 1]
-    lit = int(np.argmax([np.mean(image) for image in frames]))  # where pictures stand still, that is what is seen
+    lit = int(np.argmax([np.asarray(image).mean() for image in frames]))  # what does not play loops shows the first
     frames, shown = frames[lit:] + frames[:lit], shown[lit:] + shown[:lit]
     lasting = [round(1000 * count / FPS) for count in shown]
     frames[0].save(out, save_all=True, append_images=frames[1:], duration=lasting, loop=0, quality=90, method=4)

@@ -83,7 +83,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "Warped": {"given": SILHOUETTES, "nodes": np.zeros((len(SILHOUETTES), 2, 11, 11)), "weight": 1.0},
     "as_cube": {"shape": SHAPE},
     "carve": {"shape": SHAPE, "how": "lace"},
-    "repair": {"silhouettes": SILHOUETTES, "grid": GRID, "way": "trim"},
+    "repair": {"silhouettes": SILHOUETTES, "grid": GRID, "way": "warp"},
     "warp": {"silhouettes": SILHOUETTES, "grid": GRID},
     "best_order": {"targets": TARGETS, "grid": GRID},
     "cast": {"cube": CUBE},

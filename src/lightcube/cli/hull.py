@@ -14,6 +14,7 @@ from lightcube.drawing.overlay import overlays
 from lightcube.events import Progress
 from lightcube.pictures.fitting import Fit
 from lightcube.solids.carving import Carving
+from lightcube.solids.printing import stands
 from lightcube.solids.reach import count_pieces
 from lightcube.solids.repair import Way
 from lightcube.verbs import hulls, making, words
@@ -134,7 +135,7 @@ def hull(
     if as_json:
         mesh = shape.mesh
         facts: dict[str, Any] = {"volume_mm3": mesh.volume_mm3, "faces": len(mesh), "bad_edges": mesh.bad_edges}
-        facts |= {"pieces": pieces, "repair": making.facts(made)}
+        facts |= {"pieces": pieces, "stands": stands(mesh), "repair": making.facts(made)}
         json_line("result", out=output, seconds=seconds, **facts, **found.facts, **wanted.facts, doubts=doubts)
         return
     out.print(f"{output} is ready after {words.duration(seconds)}")

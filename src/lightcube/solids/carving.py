@@ -16,6 +16,8 @@ from lightcube.solids.shape import Shape
 
 #: What is left of a solid: its skin, or as little as casts its shadows and hangs together.
 Carving = Literal["shell", "lace"]
+#: No wall and no drain is wider, mm.
+_MOST_MM = 1e6
 #: Fields count in steps of 1/256 and are never 0: half a step more keeps them so.
 _HALF_STEP = 1 / 512
 #: What a voxel that was taken away is outside by: what is left is a little fatter than its voxels, and stays one.
@@ -60,9 +62,12 @@ def carve(
     >>> [int(lc.carve(whole, "lace", deep=deep).inside.sum()) for deep in (12, 1)][0]
     1728
     """
+    if not (0 < wall_mm <= _MOST_MM and 0 <= drain_mm <= _MOST_MM):
+        raise InputError(
+            f"a wall is thicker than 0 mm and a drain 0 mm or more, both at most {_MOST_MM:g}, "
+            f"not {wall_mm:g} and {drain_mm:g}"
+        )
     if how == "shell":
-        if not (wall_mm > 0 and drain_mm >= 0):
-            raise InputError(f"a wall is thicker than 0 mm and a drain 0 mm or more, not {wall_mm:g} and {drain_mm:g}")
         hollow = _shell(shape.field, wall_mm / shape.grid.voxel_mm)
         return replace(shape, field=_drained(hollow, shape, drain_mm / 2 / shape.grid.voxel_mm))
     if deep < 1:
@@ -83,7 +88,7 @@ def _lace(shape: Shape, deep: int, seed: int) -> Flags:
     from lightcube.kernels import carving  # here: the compiler comes with it
 
     onto = projections.of_voxels(projections.matrices(shape.rig), shape.grid)
-    solid, counts, size = np.pad(shape.inside, 1), _cast(shape.field, shape), shape.rig.picture_shape
+    solid, counts, size = np.pad(shape.inside, 1), landed(shape.inside, shape), shape.rig.picture_shape
     total = int(np.count_nonzero(solid))
     random = np.random.default_rng(seed)
     for _ in range(_PASSES):
@@ -101,7 +106,7 @@ def _drained(field: Volume, shape: Shape, radius: float) -> Volume:
     """A shell with a hole of a radius in voxels below and above each cavity, where all its shadows stay."""
     if radius == 0:
         return field
-    before = _cast(field, shape)
+    before = landed(field < 0, shape)
     numbers, count = ndimage.label(field > 0)
     labels = numbers.astype(np.int64)
     outside = set(np.unique(np.concatenate([side.ravel() for axis in range(3) for side in _ends(labels, axis)])))
@@ -113,7 +118,7 @@ def _drained(field: Volume, shape: Shape, radius: float) -> Volume:
         for way in (1, -1):  # the lowest, the highest
             order = places[np.argsort(way * places[:, 0], kind="stable")]
             tried = (_holed(made, place, way, radius) for place in order[:: max(1, len(order) // _TRIED)])
-            made = next((each for each in tried if np.array_equal(_cast(each, shape) > 0, before > 0)), made)
+            made = next((each for each in tried if np.array_equal(landed(each < 0, shape) > 0, before > 0)), made)
     return locked(made)
 
 
@@ -133,12 +138,12 @@ def _holed(field: Volume, place: Counts, way: int, radius: float) -> Volume:
     return made
 
 
-def _cast(field: Volume, shape: Shape) -> Counts:
-    """``(picture, pixel)``: how many voxels of a solid land on each pixel."""
+def landed(inside: Flags, shape: Shape) -> Counts:
+    """``(picture, pixel)``: how many voxels' middles land on each pixel of a shape's pictures."""
     from lightcube.kernels import carving  # here: the compiler comes with it
 
     onto = projections.of_voxels(projections.matrices(shape.rig), shape.grid)
     rows, columns = shape.rig.picture_shape
     counts = np.zeros((len(onto), rows * columns), np.int64)
-    carving.count(np.pad(field < 0, 1), onto, (rows, columns), counts)
+    carving.count(np.pad(inside, 1), onto, (rows, columns), counts)
     return counts

@@ -20,7 +20,7 @@ from lightcube.solids.field import hull_field
 from lightcube.solids.reach import reach
 from lightcube.solids.shape import Shape, hull
 from lightcube.solids.silhouettes import FINE, Silhouettes
-from lightcube.solids.warp import Warped, warp
+from lightcube.solids.warp import Warped, check_wall, warp
 from lightcube.wording import counted
 
 #: How silhouettes are made to agree: bent, what no object casts left out, or what is in the way added.
@@ -119,6 +119,7 @@ def repair(
     wall_px, held, told
         As `warp` takes them.
     """
+    check_wall(wall_px)
     if way in ("none", "trim", "auto"):
         shape = hull(silhouettes, grid)
         if way == "none":

@@ -32,6 +32,8 @@ _LARGE = 80
 _STEPS, _FEWER = 30, 15
 #: How much what moves a kept part costs there, and how much more a pixel counts that would leave a hole.
 _HELD, _URGENT = 50.0, 8.0
+#: Half of a wall is not thicker, pixels.
+_MOST_PX = 1e4
 #: Places of the block that must be inside, by how many pixels, and how much that counts.
 _INSIDE, _JOINED = 0.7, 4.0
 
@@ -58,6 +60,11 @@ class Warped:
     def __post_init__(self) -> None:
         check_fields(self)
         keep(self, nodes=np.float64)
+        wanted = (len(self.given), 2, NODES, NODES)
+        if self.nodes.shape != wanted or not np.all(np.isfinite(self.nodes)):
+            raise InputError(f"the nodes of bent silhouettes are numbers of shape {wanted}, not {self.nodes.shape}")
+        if not 0 <= self.weight <= _LADDER[-1]:
+            raise InputError(f"the weight of agreeing is a number from 0 to {_LADDER[-1]:g}, not {self.weight:g}")
 
     def __repr__(self) -> str:
         moved = f"moved by {self.moved_px:.2f} pixels on average"
@@ -223,8 +230,9 @@ def warp(
     Raises
     ------
     InputError
-        Where `held` has another shape.
+        Where `held` has another shape, or `wall_px` is below 0.
     """
+    check_wall(wall_px)
     problem = _problem(silhouettes, grid, wall_px, held, joined)
     if urgent is not None:
         problem = replace(problem, urgency=1 + _URGENT * urgent.astype(np.float64))
@@ -239,6 +247,12 @@ def warp(
         problem = replace(problem, edge=1.5 * problem.edge)
     nodes, weight = _relaxed(problem, nodes, ladder, _FEWER if large else _STEPS, told)
     return Warped(silhouettes, locked(nodes), weight)
+
+
+def check_wall(wall_px: float) -> None:
+    """Raise `InputError` where half of a wall is no length that pictures have."""
+    if not 0 <= wall_px <= _MOST_PX:
+        raise InputError(f"half of a wall is 0 pixels or more, and at most {_MOST_PX:g}, not {wall_px:g}")
 
 
 def _problem(

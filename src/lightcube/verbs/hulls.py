@@ -21,6 +21,7 @@ from lightcube.solids.certificate import Certificate, certify
 from lightcube.solids.cutting import Cut, cut, plain_ground
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.placement import best, placements
+from lightcube.solids.printing import stands
 from lightcube.solids.reach import thin_part
 from lightcube.solids.shape import Shape
 from lightcube.solids.silhouettes import FINE, Silhouettes
@@ -294,6 +295,8 @@ def results(shape: Shape, found: Certificate, pieces: int) -> list[str]:
         f"{size}, {counted(len(mesh), 'face')}, {closed}, {counted(pieces, 'piece')}",
         f"shadows of the file overlap what was given by {overlap}",
     ]
+    if not stands(mesh):
+        said.append("it tips over where it stands: lay it down, or glue it to a foot that no lamp sees")
     worst = int(np.argmax(found.missing))
     if found.missing[worst] > 0.005:
         better = ", and which placement is better" if shape.rig.screens.names == WALLS else ""
