@@ -209,7 +209,7 @@ def test_a_turntables_cube_is_played_as_a_stages(run, stage: Path) -> None:  # t
     np.testing.assert_allclose(shown["screens"], shown["stops"], rtol=1e-5)
     done = run("play", cube, "-o", stage.parent / "x.npy", "--view", "room", "--target")
     assert done.code == 2
-    assert "--view room shows all" in done.err
+    assert "--view room shows the room" in done.err
     assert run("play", cube, "-o", stage.parent / "room.npy", "--view", "room", "--angles-deg", "5").code == 0
     done = run("score", cube, stage)
     assert done.code == 2

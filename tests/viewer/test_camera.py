@@ -18,7 +18,7 @@ def ask(evaluate: Run, cube: str, expression: str, **more: Any) -> Any:
     text = f"""(() => {{
       const {{ scene, angle_deg, aspect }} = argument;
       const room = standing(scene, angle_deg);
-      const orbit = fitted(orbitFrom(scene.camera), scene, [room], aspect);
+      const orbit = fitted(orbitFrom(scene.camera), scene, [room], aspect, argument.head ?? 0);
       orbit.azimuth += argument.round ?? 0;
       const camera = cameraOf(orbit, aspect);
       return {expression};
@@ -44,6 +44,19 @@ def test_pointing_finds_what_is_drawn(evaluate: Run, cube: str, behind: bool) ->
     assert len(own) >= 0.6 * len(found)  # the others are behind another screen
     assert all((lit is None) == behind for lit, _ in own)
     assert all(lit == hit for lit, hit in own)
+
+
+@pytest.mark.parametrize("aspect", [0.46, 1.0, 2.3])
+@pytest.mark.parametrize("cube", CUBES)
+def test_above_all_there_is_room_for_a_title(evaluate: Run, cube: str, aspect: float) -> None:
+    """A fifth of the height, below which all is, as large as can be: something touches either margin."""
+    expression = "extentOf(scene, room).map((p) => seenAt(camera, p)).map((p) => [p.x, p.y])"
+    places = np.array(ask(evaluate, cube, expression, aspect=aspect, head=0.2))
+    assert places[:, 1].min() >= 0.25 - 1e-9
+    assert places.min() >= 0.05 - 1e-9
+    assert places.max() <= 0.95 + 1e-9
+    high, wide = np.isclose(np.ptp(places[:, 1]), 0.7), np.isclose(np.ptp(places[:, 0]), 0.9)
+    assert high or wide
 
 
 @pytest.mark.parametrize("aspect", [0.46, 1.0, 2.3])

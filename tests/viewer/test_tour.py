@@ -107,6 +107,15 @@ def test_its_buttons_do_the_same(visit: Open) -> None:
     assert button.get_attribute("aria-pressed") == "false"
 
 
+def test_who_starts_it_at_once_is_not_turned_away(visit: Open) -> None:
+    """By the key, with the focus anywhere: the page no longer turns by itself."""
+    tab = visit(width=640, height=400, untouched=True)
+    tab.evaluate("document.activeElement.blur()")
+    assert walk(tab, "g", "ArrowRight") == "The lamp is on"
+    tab.wait_for_timeout(5000)
+    assert angle_deg(tab) == STOPS[0]
+
+
 def test_at_the_end_the_table_turns(visit: Open) -> None:
     tab = visit(width=640, height=400)
     tab.keyboard.press("g")
@@ -192,10 +201,10 @@ def test_what_is_filled_is_a_box(evaluate: Evaluate) -> None:
 def test_larger_type_for_a_projector(visit: Open) -> None:
     tab = visit(width=1280, height=800, reduced_motion="reduce")
     walk(tab, "g")
-    box = [tab.locator(each).bounding_box()["height"] for each in (".tour h2", ".titles h1")]
+    box = [tab.locator(each).bounding_box()["height"] for each in (".tour h2", "header .tools")]
     assert box[0] > 30
     walk(tab, "a")
-    larger = [tab.locator(each).bounding_box()["height"] for each in (".tour h2", ".titles h1")]
+    larger = [tab.locator(each).bounding_box()["height"] for each in (".tour h2", "header .tools")]
     assert np.divide(larger, box) == pytest.approx(1.4, abs=0.05)
     assert tab.evaluate("document.documentElement.scrollWidth") <= 1280
 

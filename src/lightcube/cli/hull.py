@@ -9,7 +9,7 @@ from lightcube import io
 from lightcube.cli import arguments
 from lightcube.cli.console import done, err, json_line, out, telling
 from lightcube.cli.fields import flag
-from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
+from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.drawing.overlay import overlays
 from lightcube.events import Progress
 from lightcube.pictures.fitting import Fit
@@ -26,6 +26,13 @@ SOURCES = Annotated[
         metavar="PICTURES...", help="A folder of pictures, a video, a stage (TOML); or pictures one by one."
     ),
 ]
+OUTS = typer.Option(
+    "-o",
+    "--out",
+    help="Where to write: a mesh to print (.stl, .3mf, .obj, .ply), or all of the shape (.shape.zarr). It may be said "
+    "several times.",
+    rich_help_panel="Output",
+)
 WALLS = typer.Option("--walls", help="Three pictures: front, side and top.", rich_help_panel="Pictures")
 THRESHOLD = typer.Option(
     help="Where shape ends and ground begins, as a part of white, 0 to 1.  [default: by each picture's greys]",
@@ -58,7 +65,7 @@ _READ, _MADE, _WRITTEN, _STEPS = 1, 17, 19, 20
 @threaded
 def hull(
     pictures: SOURCES,
-    output: Annotated[str, OUT],
+    outputs: Annotated[list[str], OUTS],
     walls: Annotated[bool, WALLS] = False,
     threshold: Annotated[float | None, THRESHOLD] = None,
     invert: Annotated[bool | None, INVERT] = None,
@@ -97,8 +104,9 @@ def hull(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Carve the largest solid whose shadows stay within silhouettes: a mesh to print, or a shape, by suffix."""
-    file = io.Output(output, "shape", overwrite)
-    file.check()
+    files = [io.Output(output, "shape", overwrite) for output in dict.fromkeys(outputs)]
+    for file in files:
+        file.check()
     overlay_file = None if overlay is None else io.Output(overlay, "picture", overwrite)
     if overlay_file is not None:
         overlay_file.check()
@@ -122,22 +130,35 @@ def hull(
             made = making.make(wanted, how, making_told)
             shape = made.shape
             tell(Progress(_MADE, _STEPS))
-            file.write(shape)
+            for file in files:
+                file.write(shape)
             if overlay_file is not None:
                 overlay_file.write(overlays(made))
             tell(Progress(_WRITTEN, _STEPS))
-            found, pieces = hulls.certificate(output, shape), count_pieces(shape.inside)
+            found, pieces = hulls.certificate(outputs[0], shape), count_pieces(shape.inside)
             tell(Progress(_STEPS, _STEPS))
     if dry_run:
-        done(as_json, f"{output} is not written: this was a dry run", **wanted.facts, doubts=doubts)
+        done(as_json, "nothing is written: this was a dry run", **wanted.facts, doubts=doubts)
         return
     seconds = time.monotonic() - began
     if as_json:
         mesh = shape.mesh
         facts: dict[str, Any] = {"volume_mm3": mesh.volume_mm3, "faces": len(mesh), "bad_edges": mesh.bad_edges}
         facts |= {"pieces": pieces, "stands": stands(mesh), "repair": making.facts(made)}
-        json_line("result", out=output, seconds=seconds, **facts, **found.facts, **wanted.facts, doubts=doubts)
+        json_line(
+            "result",
+            out=outputs[0],
+            outs=outputs,
+            seconds=seconds,
+            **facts,
+            **found.facts,
+            **wanted.facts,
+            doubts=doubts,
+        )
         return
-    out.print(f"{output} is ready after {words.duration(seconds)}")
+    out.print(f"{' and '.join(outputs)} {'is' if len(outputs) == 1 else 'are'} ready after {words.duration(seconds)}")
     for line in [*making.in_words(made), *hulls.results(shape, found, pieces)]:
         out.print(line)
+    kept = next((output for output in outputs if io.is_shape(output)), None)
+    look = "add -o NAME.shape.zarr, and lightcube view" if kept is None else f"lightcube view {kept}"
+    out.print(f"to look at it between its walls: {look}" + ("" if kept else " shows that"))

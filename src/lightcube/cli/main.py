@@ -19,7 +19,7 @@ COMMANDS: Mapping[str, str] = {
     "hull": "Carve the largest solid whose shadows stay within silhouettes: a mesh to print, or a shape, by suffix.",
     "relief": "Make one relief that shows a picture under each of up to four low lamps.",
     "play": "Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.",
-    "score": "Compare what a cube really casts with what was wanted.",
+    "score": "Compare what a cube, a shape or a relief really casts with what was wanted.",
     "view": "Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail.",
     "report": (
         "Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, how it was made."

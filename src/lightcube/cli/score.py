@@ -36,7 +36,7 @@ def score(
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Compare what a cube, or a shape's mesh, really casts with what was wanted."""
+    """Compare what a cube, a shape or a relief really casts with what was wanted."""
     sheet_file = None if sheet is None else io.Output(sheet, "picture", overwrite)
     plot_file = None if plot is None else io.Output(plot, "plot", overwrite)
     if plot is not None and sheet is not None and Path(plot) == Path(sheet):

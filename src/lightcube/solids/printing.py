@@ -3,8 +3,6 @@
 import math
 
 import numpy as np
-from scipy import ndimage
-from scipy.spatial import ConvexHull, QhullError
 
 from lightcube.solids.carving import landed
 from lightcube.solids.mesh import Mesh
@@ -21,6 +19,8 @@ def thickest_wall_mm(shape: Shape, lost: float = 0.005) -> float:
 
     All but the part `lost` of them, of which corners that no ball reaches are most; 0 where even voxels lose more.
     """
+    from scipy import ndimage  # here: whoever prints nothing does without
+
     box = tuple(slice(int(each.min()), int(each.max()) + 1) for each in np.nonzero(shape.inside))
     inside = np.pad(shape.inside[box], 1)
     deep = ndimage.distance_transform_edt(inside)
@@ -45,6 +45,8 @@ def thickest_wall_mm(shape: Shape, lost: float = 0.005) -> float:
 
 def stands(mesh: Mesh) -> bool:
     """Whether a body's weight lies over what it stands on: it does not tip over on a level table."""
+    from scipy.spatial import ConvexHull, QhullError
+
     corners = mesh.vertices_mm
     foot = corners[corners[:, 2] <= corners[:, 2].min() + _FOOT_MM, :2]
     middle = _centre_mm(mesh)[:2]

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy import ndimage
-from skimage.graph import MCP
 
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Flags, Reals, Volume, locked
@@ -86,6 +84,8 @@ class Repaired:
 
 def form(inside: Flags) -> tuple[int, int]:
     """How many parts a silhouette has, touching at corners too, and how many holes."""
+    from scipy import ndimage  # here: whoever repairs nothing does without
+
     _, parts = ndimage.label(inside, np.ones((3, 3)))
     _, outside = ndimage.label(np.pad(~inside, 1, constant_values=True))
     return int(parts), int(outside) - 1
@@ -93,6 +93,8 @@ def form(inside: Flags) -> tuple[int, int]:
 
 def _apart(one: Flags, other: Flags) -> float:
     """Mean distance from the outline of one silhouette to the other's, and back."""
+    from scipy import ndimage
+
     outlines = [each & ~ndimage.binary_erosion(each) for each in (one, other)]
     away = [ndimage.distance_transform_edt(~each) for each in outlines]
     return float(np.mean(np.concatenate([away[1][outlines[0]], away[0][outlines[1]]])))
@@ -151,6 +153,8 @@ def repair(
 
 def _lost(bent: Silhouettes, cast: Silhouettes) -> Flags:
     """``(picture, row, column)``: pixels near which something is lost that was to be cast."""
+    from scipy import ndimage
+
     rows, columns = bent.rig.picture_shape
     lost = bent.inside & ~cast.inside
     coarse = np.any(lost.reshape(len(bent), rows, FINE, columns, FINE), axis=(2, 4))
@@ -169,6 +173,9 @@ def _trimmed(shape: Shape) -> Shape:
 
 def bridges(field: Volume) -> Reals:
     """``(place, 3)``: voxels on the ways that are least far outside, from each piece of a hull to its largest one."""
+    from scipy import ndimage
+    from skimage.graph import MCP
+
     labels, count = ndimage.label(field < 0)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)
     sizes[0] = 0

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
-from scipy.optimize import minimize
 
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Flags, Integers, Reals, keep, locked
@@ -280,6 +279,8 @@ def _relaxed(
     told: Callable[[int, int], None] | None,
 ) -> tuple[Reals, float]:
     """Nodes for the first weight that is enough, and that weight."""
+    from scipy.optimize import minimize  # here: whoever bends nothing does without
+
     rows, columns = problem.distances.shape[1:]
     high, wide = splines(rows), splines(columns)
     weight = ladder[0]

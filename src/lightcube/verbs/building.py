@@ -14,7 +14,6 @@ from lightcube.solids.printing import thickest_wall_mm
 from lightcube.solids.reach import Reach, reach
 from lightcube.solids.repair import MOST_BENT, Repaired, repair
 from lightcube.solids.shape import hull
-from lightcube.solids.walls import WALLS
 from lightcube.verbs import hulls, making
 from lightcube.wording import counted
 
@@ -179,10 +178,7 @@ def _placed(building: Building) -> list[str]:
     if top == given:
         return ["of all 24 placements of three pictures on three walls the given one is the best"]
     cuts = building.wanted.cuts
-    where = ", ".join(
-        f"{wall} = {cuts[number].name}{' mirrored' if way else ''}"
-        for wall, number, way in zip(WALLS, top.order, top.mirrored, strict=True)
-    )
+    where = hulls.on_which_wall(top, cuts)
     pieces = "in one piece" if top.is_one_piece else "in pieces"
     better = f"{top.share:.1%} cannot be cast, {pieces}; as given {given.share:.1%}"
     return [f"best of 24 placements: {where}: {better}; lightcube hull --placement best takes it"]

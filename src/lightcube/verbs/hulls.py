@@ -20,7 +20,7 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.solids.certificate import Certificate, certify
 from lightcube.solids.cutting import Cut, cut, plain_ground
 from lightcube.solids.mesh import Mesh
-from lightcube.solids.placement import best, placements
+from lightcube.solids.placement import Placement, best, placements
 from lightcube.solids.printing import stands
 from lightcube.solids.reach import thin_part
 from lightcube.solids.shape import Shape
@@ -70,12 +70,15 @@ class Wanted:
         What they were made of, one each.
     stretched
         By which part pictures on three walls were stretched, at most.
+    placed
+        Which picture stands on which of three walls, in words, where that was chosen.
     """
 
     silhouettes: Silhouettes
     grid: Grid
     cuts: tuple[Cut, ...]
     stretched: float = 0.0
+    placed: str = ""
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -154,11 +157,21 @@ def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Want
     names = [one.name.lower() for one in cuts]
     if sorted(names) == sorted(WALLS):
         cuts = tuple(cuts[names.index(name)] for name in WALLS)
+    placed = ""
     if placement == "best":
-        cuts = best(placements(cuts)).of(cuts)
+        top = best(placements(cuts))
+        placed, cuts = on_which_wall(top, cuts), top.of(cuts)
     grid, stretched = block(cuts, max(options.voxels), options.size_mm)
     made = _with_room(_standing([one.trimmed() for one in cuts], walls(grid).rig(), grid, "stretch"))
-    return replace(made, cuts=cuts, stretched=stretched)
+    return replace(made, cuts=cuts, stretched=stretched, placed=placed)
+
+
+def on_which_wall(placed: Placement, cuts: Sequence[Cut]) -> str:
+    """Which picture stands on which of three walls, and whether it is mirrored."""
+    return ", ".join(
+        f"{wall} = {cuts[number].name}{' mirrored' if way else ''}"
+        for wall, number, way in zip(WALLS, placed.order, placed.mirrored, strict=True)
+    )
 
 
 def _with_room(wanted: Wanted) -> Wanted:
@@ -276,12 +289,21 @@ def in_short(wanted: Wanted) -> list[str]:
         if at:
             bounds = f"{min(at):.2f}" if max(at) - min(at) < 0.005 else f"{min(at):.2f} to {max(at):.2f}"
             said.append(f"{counted(len(at), 'shape')} {words}, threshold {bounds}")
+    if wanted.placed:
+        said.append(f"placed as {wanted.placed}")
     nz, ny, nx = wanted.grid.shape
     size = " x ".join(f"{length:.4g}" for length in wanted.grid.size_mm)
     said.append(f"block of {nz} x {ny} x {nx} voxels, {size} mm (z, y, x)")
     if wanted.stretched >= _STRETCHED:
         said.append(f"pictures are stretched by {wanted.stretched:.0%} so that they share this block")
     return said
+
+
+def _promised(shape: Shape) -> str:
+    """What a shape's silhouettes are."""
+    repair = shape.provenance.get("repair")
+    way = repair.get("way") if isinstance(repair, dict) else None
+    return {"warp": "the bent pictures", "grow": "the pictures with what was added"}.get(str(way), "what was given")
 
 
 def results(shape: Shape, found: Certificate, pieces: int) -> list[str]:
@@ -293,7 +315,7 @@ def results(shape: Shape, found: Certificate, pieces: int) -> list[str]:
     overlap = f"{found.overlap.mean():.2%}, the worst by {found.overlap.min():.2%}"
     said = [
         f"{size}, {counted(len(mesh), 'face')}, {closed}, {counted(pieces, 'piece')}",
-        f"shadows of the file overlap what was given by {overlap}",
+        f"shadows of the file overlap {_promised(shape)} by {overlap}",
     ]
     if not stands(mesh):
         said.append("it tips over where it stands: lay it down, or glue it to a foot that no lamp sees")

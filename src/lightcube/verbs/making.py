@@ -11,7 +11,9 @@ from lightcube.optics.arrays import Flags
 from lightcube.solids import projections
 from lightcube.solids.carving import Carving, carve
 from lightcube.solids.repair import MOST_BENT, Repaired, Way, repair
+from lightcube.solids.walls import WALLS
 from lightcube.verbs.hulls import Wanted
+from lightcube.wording import counted
 
 #: What is left out of silhouettes is worth a word above this part of one, and advice above that.
 _SOME, _MUCH = 0.0005, 0.05
@@ -90,23 +92,25 @@ def facts(found: Repaired) -> dict[str, Any]:
 def in_words(found: Repaired) -> list[str]:
     """What was done to the silhouettes, for people; nothing where nothing was."""
     names, overlaps = found.given.names, found.overlaps
-    worst = int(np.argmin(overlaps))
+    worst = float(overlaps.min())
     changed = [name for name, kept in zip(names, found.kept_forms, strict=True) if not kept]
+    each = ", ".join(f"{name} {overlap:.0%}" for name, overlap in zip(names, overlaps, strict=True))
+    better = ", and --placement best may ask for less" if found.given.rig.screens.names == WALLS else ""
     said = []
     if found.way == "warp":
-        said.append(
-            f"the pictures contradict each other, and were bent until one object casts them: outlines moved by "
-            f"{found.moved_px:.1f} pixels on average, {names[worst]} is {overlaps[worst]:.0%} of what it was"
-        )
+        moved = f"{found.moved_px:.1f} pixels on average"
+        said.append(f"the pictures contradict each other, and were bent by {moved} until one object casts them")
+        said.append(f"of what was drawn it casts {each}; --overlay draws what has changed{better}")
     elif found.way == "grow":
-        said.append(f"what was in the way of others was added: {names[worst]} is {overlaps[worst]:.0%} of what it was")
-    elif found.way == "trim" and 1 - overlaps[worst] > _SOME:
-        said.append(f"what no object casts is left out: {names[worst]} is {overlaps[worst]:.1%} of what it was")
+        said.append(f"what was in the way of others was added: of what it casts was drawn {each}")
+    elif found.way == "trim" and 1 - worst > _SOME:
+        said.append(f"what no object casts is left out: of what was drawn it casts {each}")
     if said and changed:
         said.append(f"as drawn, {', '.join(changed)} had other parts or holes: look at it (--overlay)")
-    if found.way == "trim" and 1 - overlaps[worst] > _MUCH and len(names) > MOST_BENT:
+    if found.way == "trim" and 1 - worst > _MUCH and len(names) > MOST_BENT:
+        many = counted(len(names), "picture")
         said.append(
-            f"{len(names)} pictures that have nothing to do with each other are too many for an opaque object: "
+            f"{many} that have nothing to do with each other are too many for an opaque object: "
             f"take {MOST_BENT} at most, or coloured glass, which holds many more (lightcube solve)"
         )
     return said

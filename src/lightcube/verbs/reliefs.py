@@ -13,6 +13,7 @@ from lightcube import io
 from lightcube.drawing.relief_sheet import as_seen, in_words
 from lightcube.errors import InputError
 from lightcube.pictures.pictures import Pictures
+from lightcube.scoring.metrics import mark
 from lightcube.solids.relief import MOST, Relief, side_of
 from lightcube.solids.relief_light import relief_shadow, shown
 from lightcube.wording import counted
@@ -81,6 +82,11 @@ def told(relief: Relief, scores: Mapping[str, Any]) -> list[str]:
         )
     if "drift_px" in relief.provenance:
         lines.append(f"walls drift by {relief.provenance['drift_px']:.1f} columns of shadow")
+    if any(mark(each["psnr"]) == "poor" for each in scores["pictures"]):
+        lines.append("what would help: fewer pictures, plainer ones, or more columns (--columns)")
+    nozzle = f"with a nozzle of {relief.recipe.pitch_mm / 2:g} mm or finer"
+    lines.append(f"print it lying on its back, in matt white, {nozzle}")
+    lines.append("light it by one small lamp far away, in a dark room: +x is right, +y behind")
     return lines
 
 

@@ -1,6 +1,6 @@
 """Three small cubes to be shown around: photographs in stained glass, a juggler, and two walls at once."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from lightcube import io
@@ -22,6 +22,9 @@ SIDE, SIZE_MM = 64, 100.0
 _CLEAR = 0.12
 #: Two walls: stops at which none of the one wall's pictures has the beams of one of the other's.
 _STOPS_DEG = (11.25, 33.75, 191.25, 213.75)
+#: The photographs, in the order of the turn.
+_IN_GLASS = ("astronaut", "coffee", "cat", "rocket", "retina", "tissue", "colours", "camera")
+_ON_WALLS = ("coffee", "stars", "cat", "coins", "astronaut", "retina", "tissue", "rocket")
 #: How far below the light's way over the floor it falls, and where a wall's middle is, mm.
 _FALL, _AWAY_MM, _DOWN_MM = -0.7, 150.0, -105.0
 
@@ -47,7 +50,7 @@ class Wonder:
 def _glass() -> tuple[Targets, Grid, Recipe]:
     """Eight photographs without mats: nothing is asked for beside them, so little of the glass is dark."""
     recipe = Recipe.of_quality("normal", material=Material(_CLEAR))
-    planned = plan(photographs(8), SIDE, recipe, picture_width=0.5, longest_hold=True, smooth=True)
+    planned = plan(_photographs(_IN_GLASS), SIDE, recipe, picture_width=0.5, longest_hold=True, smooth=True)
     return planned.targets, planned.grid, planned.recipe
 
 
@@ -71,7 +74,7 @@ def _walls() -> tuple[Targets, Grid, Recipe]:
             ("side wall", (0.0, _AWAY_MM, _DOWN_MM), (0.0, -1.0, 0.0)),
         )
     )
-    pictures = _unlike_those_in_glass(2 * len(_STOPS_DEG))
+    pictures = _photographs(_ON_WALLS)
     shots = tuple(
         Shot(name, walls[number % 2].name, (lamps[number % 2].name,), number // 2)
         for number, name in enumerate(pictures.names)
@@ -81,10 +84,10 @@ def _walls() -> tuple[Targets, Grid, Recipe]:
     return planned.targets, planned.grid, planned.recipe
 
 
-def _unlike_those_in_glass(count: int) -> Pictures:
-    """So many photographs, the last there are."""
+def _photographs(names: Sequence[str]) -> Pictures:
+    """Photographs by their names."""
     whole = photographs(16)
-    return replace(whole, images=whole.images[-count:], names=whole.names[-count:])
+    return replace(whole, images=tuple(whole.images[whole.names.index(name)] for name in names), names=tuple(names))
 
 
 WONDERS = (

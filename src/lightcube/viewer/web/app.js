@@ -47,6 +47,7 @@ export function mount(root, scene, cube, { compact = false } = {}) {
   app.parts = createParts(app, cube, compact);
   const [show, rested] = showing(app);
   app.loop = createLoop(show, rested);
+  if (!compact) view.head = () => app.parts.header.element.offsetHeight / Math.max(1, view.canvas.clientHeight);
   view.aim(turning.angle, app.chosen, false);
   const ends = [
     compact ? () => {} : beckoning(app),
@@ -94,7 +95,7 @@ function nothingChosen() {
  */
 function beckoning(app) {
   const { root, turning } = app;
-  const touches = ["pointerdown", "keydown", "wheel"];
+  const touches = ["pointerdown", "wheel"];
   let timer = 0;
   const go = () => {
     end();
@@ -107,8 +108,10 @@ function beckoning(app) {
     app.drawn = null;
     clearTimeout(timer);
     for (const touch of touches) root.removeEventListener(touch, end, true);
+    document.removeEventListener("keydown", end, true);
   }
   for (const touch of touches) root.addEventListener(touch, end, true);
+  document.addEventListener("keydown", end, true); // which need not have its focus in here
   return end;
 }
 

@@ -69,23 +69,25 @@ export function cameraOf(orbit, aspect) {
  * eye, nearest to the cube's middle.
  *
  * To see p to the right of it, an eye at e needs p.r - s p.f <= e.r - s e.f, with r to the right, f ahead, and s the
- * tangent of half the width; and so on.
+ * tangent of half the width; and so on. Where there is more room than needed, all is in its middle.
  * @param {object} orbit
  * @param {object} scene
  * @param {object[]} rooms all that is to be seen
  * @param {number} aspect width by height
+ * @param {number} [head] the part of the height that stays free above
  */
-export function fitted(orbit, scene, rooms, aspect) {
+export function fitted(orbit, scene, rooms, aspect, head = 0) {
   const { right, up, ahead, across, tall } = cameraOf(orbit, aspect);
   const points = rooms.flatMap((room) => extentOf(scene, room));
-  let [eye, depth] = [[0, 0, 0], Infinity];
-  for (const [axis, half] of [[right, across], [up, tall]]) {
-    const free = half * (1 - 2 * MARGIN);
-    const most = Math.max(...points.map((point) => dot(point, axis) - free * dot(point, ahead)));
-    const least = Math.max(...points.map((point) => -dot(point, axis) - free * dot(point, ahead)));
-    eye = add(eye, scaled(axis, (most - least) / 2));
-    depth = Math.min(depth, -(most + least) / (2 * free));
-  }
+  const bounds = [[right, across, 0], [up, tall, head]].map(([axis, half, more]) => {
+    const [above, below] = [1 - 2 * MARGIN - 2 * more, 1 - 2 * MARGIN].map((part) => half * part);
+    const most = Math.max(...points.map((point) => dot(point, axis) - above * dot(point, ahead)));
+    const least = Math.max(...points.map((point) => -dot(point, axis) - below * dot(point, ahead)));
+    return { axis, above, below, most, least };
+  });
+  const depth = Math.min(...bounds.map(({ above, below, most, least }) => -(most + least) / (above + below)));
+  const eye = bounds.map(({ axis, above, below, most, least }) =>
+    scaled(axis, (most - least + (above - below) * depth) / 2)).reduce(add);
   return { ...orbit, target: eye, distance: -depth };
 }
 

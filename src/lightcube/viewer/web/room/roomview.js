@@ -15,6 +15,8 @@ import { createRenderer } from "./gpu.js";
 const EYE_SPEED = 0.3;
 /** How far the eye may go, in parts of the distance at which all is seen. */
 const [NEAREST, FARTHEST] = [0.2, 3];
+/** Above the room at most such a part of its height stays free for the title. */
+const MOST_HEAD = 0.2;
 /** Seconds that the eye takes to the lamp. */
 const TO_THE_LAMP = 1.4;
 /** Parts along the longer side of a shadow at most: all browsers have textures of twice as many. */
@@ -34,6 +36,7 @@ export class RoomView {
     this.comeBack();
     this.bases = {};
     this.atLamp = 0; // how far the eye is on its way there, 0..1
+    this.head = () => 0; // the part of the canvas's height that something above it covers
   }
 
   /**
@@ -155,10 +158,11 @@ export class RoomView {
 
   /** The eye that sees everything on a canvas of this shape. */
   base() {
-    const key = `${this.whole} ${this.aspect().toFixed(3)}`;
+    const head = Math.min(this.head(), MOST_HEAD);
+    const key = `${this.whole} ${this.aspect().toFixed(3)} ${head.toFixed(3)}`;
     if (!(key in this.bases)) {
       const rooms = roomsAround(this.scene, this.whole);
-      this.bases = { [key]: fitted(orbitFrom(this.scene.camera), this.scene, rooms, this.aspect()) };
+      this.bases = { [key]: fitted(orbitFrom(this.scene.camera), this.scene, rooms, this.aspect(), head) };
     }
     return this.bases[key];
   }
