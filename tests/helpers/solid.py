@@ -1,6 +1,7 @@
 """Silhouettes and bodies for tests of `lightcube.solids`, and plain ways to what its loops do."""
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 from scipy import ndimage
 
@@ -8,7 +9,10 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.solids.silhouettes import FINE, Silhouettes
+from tests.conftest import INTERPRETED
 
+#: For loops over so many voxels that they take minutes interpreted.
+compiled_only = pytest.mark.skipif(INTERPRETED, reason="takes minutes interpreted")
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 

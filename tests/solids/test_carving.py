@@ -17,7 +17,7 @@ from lightcube.solids.certificate import certify
 from lightcube.solids.shape import Shape, hull
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.walls import walls
-from tests.helpers.solid import around, blobs, seen
+from tests.helpers.solid import around, blobs, compiled_only, seen
 from tests.solids.test_warp import letters
 
 FACES = ndimage.generate_binary_structure(3, 1)
@@ -38,6 +38,7 @@ def pieces(inside: NDArray[np.bool_]) -> int:
     return int(ndimage.label(inside, FACES)[1])
 
 
+@compiled_only
 @pytest.mark.parametrize("deep", [1, 3])
 def test_a_lace_casts_all_and_hangs_together(deep: int) -> None:
     silhouettes, grid = letters("OHO", 24)
@@ -55,6 +56,7 @@ def test_a_lace_casts_all_and_hangs_together(deep: int) -> None:
         assert np.all(kept >= np.minimum(had, deep))
 
 
+@compiled_only
 def test_a_lace_of_any_views_casts_all() -> None:
     grid = Grid((15, 17, 13), 1.0)
     silhouettes = blobs(around(grid, 4), 3, full=0.7)
@@ -71,6 +73,7 @@ def test_a_lace_of_any_views_casts_all() -> None:
     assert pieces(made.inside) == pieces(whole.inside)
 
 
+@compiled_only
 def test_the_same_seed_makes_the_same_lace() -> None:
     silhouettes, grid = letters("HHH", 16)
     whole = hull(silhouettes, grid)

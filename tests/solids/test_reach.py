@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numba import config
 from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
@@ -22,9 +21,9 @@ from lightcube.solids.reach import reach, thin_part
 from lightcube.solids.shape import hull
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.walls import walls
+from tests.conftest import INTERPRETED
 from tests.helpers.solid import Flags, around, blobs, near_lamps, of_pixels, products, seen
 
-JIT_OFF = bool(getattr(config, "DISABLE_JIT", 0))
 #: Letters of DejaVu Sans Bold, A to Z, each stretched to 32 x 32 pixels, black on white.
 LETTERS = Path(__file__).parent / "files" / "letters.png"
 
@@ -71,7 +70,7 @@ def test_a_connected_object_exists_where_it_is_said_to(n: int) -> None:
     random = np.random.default_rng(n)
     grid, tried, found = Grid((n, n, n)), 0, [0, 0]
     rig = walls(grid).rig()
-    while tried < (12 if JIT_OFF else 60):
+    while tried < (12 if INTERPRETED else 60):
         pictures = random_pictures(random, n)
         inside = plain_hull(*pictures)
         if not all(map(np.any, pictures)) or not 0 < np.count_nonzero(inside) <= 10:
@@ -109,7 +108,7 @@ def widened(silhouettes: Silhouettes, picture: int, row: float, column: float, p
     return Silhouettes(inside, silhouettes.rig, silhouettes.names)
 
 
-@settings(max_examples=5 if JIT_OFF else 40, deadline=None)
+@settings(max_examples=5 if INTERPRETED else 40, deadline=None)
 @given(seed=st.integers(0, 10**6), count=st.integers(3, 4), is_near=st.booleans())
 def test_widening_what_is_in_the_way_by_the_depth_mends_a_pixel(seed: int, count: int, is_near: bool) -> None:
     grid = Grid((12, 10, 11))
@@ -248,11 +247,11 @@ def test_all_letter_triples_are_as_in_the_table() -> None:
     triples = list(itertools.combinations_with_replacement(known, 3))
     assert len(triples) == 3276
     shares = []
-    for triple in triples[:: 60 if JIT_OFF else 1]:
+    for triple in triples[:: 60 if INTERPRETED else 1]:
         pictures = [known[name] for name in triple]
         shown = reachable(*pictures)
         shares.append(1 - sum(map(np.count_nonzero, shown)) / sum(map(np.count_nonzero, pictures)))
-    if not JIT_OFF:
+    if not INTERPRETED:
         assert shares.count(0) == 88
         assert np.percentile(shares, [50, 90]) == pytest.approx([0.058, 0.22], abs=0.002)
 

@@ -21,6 +21,7 @@ from lightcube.solids.repair import bridges, form, repair
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.walls import walls
 from lightcube.solids.warp import warp
+from tests.helpers.solid import compiled_only
 
 BLOCK = Grid((5, 6, 7), 1.3)
 BULB = Stage(
@@ -182,6 +183,7 @@ def test_splines_are_even() -> None:
         np.testing.assert_allclose(np.diff(line), (NODES - 3) / count)
 
 
+@compiled_only
 def test_what_agrees_stays() -> None:
     silhouettes, grid = letters("OOO", 30)
     found = warp(silhouettes, grid)
@@ -189,6 +191,7 @@ def test_what_agrees_stays() -> None:
     assert np.mean(found.silhouettes.inside ^ silhouettes.inside) < 0.02
 
 
+@compiled_only
 def test_a_word_becomes_one_object() -> None:
     """H, U and T leave two fifths of each other out: bent, all is cast by one watertight piece, as they were formed."""
     silhouettes, grid = letters("HUT", 40)
@@ -206,6 +209,7 @@ def test_a_word_becomes_one_object() -> None:
     assert 0.2 < found.moved_px < 3
 
 
+@compiled_only
 def test_threads_decide_no_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     from lightcube import kernels
 
@@ -217,6 +221,7 @@ def test_threads_decide_no_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.array_equal(found[0], found[1])
 
 
+@compiled_only
 def test_what_is_held_stays() -> None:
     silhouettes, grid = letters("HUT", 30)
     held = np.zeros((3, 30, 30), bool)
@@ -228,6 +233,7 @@ def test_what_is_held_stays() -> None:
         warp(silhouettes, grid, held=held[:2])
 
 
+@compiled_only
 def test_walls_are_kept_thick() -> None:
     """With walls of 3 pixels asked for, what a ball of that size can reach casts nearly all."""
     silhouettes, grid = letters("HUT", 48)
@@ -242,6 +248,7 @@ def test_walls_are_kept_thick() -> None:
     assert lost[1] < 0.5 * lost[0]
 
 
+@compiled_only
 def test_trimming_keeps_to_what_was_given_and_ends() -> None:
     silhouettes, grid = letters("HUT", 30)
     once = repair(silhouettes, grid, "trim")
@@ -250,6 +257,7 @@ def test_trimming_keeps_to_what_was_given_and_ends() -> None:
     assert again.overlaps.min() > 0.98
 
 
+@compiled_only
 def test_growing_keeps_all_that_was_given() -> None:
     silhouettes, grid = letters("HUT", 24)
     found = repair(silhouettes, grid, "grow")
@@ -259,6 +267,7 @@ def test_growing_keeps_all_that_was_given() -> None:
     assert found.overlaps.min() > 0.5
 
 
+@compiled_only
 def test_alone_it_trims_what_hardly_shows_and_bends_the_rest() -> None:
     agreeing, grid = letters("OOO", 30)
     assert repair(agreeing, grid).way == "trim"
