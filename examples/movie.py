@@ -15,7 +15,7 @@ from PIL import Image
 import lightcube as lc
 from lightcube.drawing import films
 
-RESTS, WAY = (0, 5, 10, 16, 30, 52, 58, 64, 72, 104), (6, 25, 60, 70, 78, 86, 94, 104, 116, 160)
+RESTS, WAY = (0, 19, 24, 29, 37, 46, 51, 56, 74, 148), (0, 7, 42, 52, 60, 68, 76, 86, 98, 142)
 
 
 def main(cube: str, folder: Path) -> None:

@@ -62,6 +62,8 @@ def test_play_shows_the_whole_screen_or_the_picture_only(played) -> None:  # typ
     turned = show("--angles-deg", "3,50")
     assert np.array_equal(turned, casting.play(cube, [3, 50]))
     assert np.array_equal(turned, show("--angles-deg", "3,50", "--screens"))
+    large = show("--angles-deg", "3,50", "--format", "square")
+    assert np.array_equal(large, show("--angles-deg", "3,50", "--format", "square", "--screens"))
 
 
 def test_play_puts_what_was_wanted_beside_it(played) -> None:  # type: ignore[no-untyped-def]

@@ -1,5 +1,6 @@
 """Movies: how the lamp comes and goes, what flickers, and frames in which a picture stands large."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +10,10 @@ import pytest
 from numpy.typing import NDArray
 
 import lightcube as lc
+from lightcube.backward.mat import margin
 from lightcube.drawing import films, shows
 from lightcube.drawing.orbit import lamps_orbit
-from lightcube.drawing.poster import SIZES, poster
+from lightcube.drawing.poster import SIZES, mat_pixels, poster
 from lightcube.drawing.room import Room
 from lightcube.drawing.tableau import Tableau
 from lightcube.errors import InputError
@@ -87,19 +89,21 @@ def test_what_is_dimmed_is_the_light_times_the_lamp(transfer: Transfer) -> None:
 def test_a_film_rests_on_whole_screens_and_does_not_flicker() -> None:
     cube = noisy([20.0, 100.0, 290.0])
     film = lc.film(cube)
-    frames = frames_of(film)
+    loop = frames_of(film)
     course = Course.of(3, 30.0, shows.brightest(cube))
-    assert len(frames) == len(film) == 3 * len(course.lamp)
+    assert len(loop) == len(film) == 3 * len(course.lamp)
+    np.testing.assert_array_equal(loop[0], loop[-1])
+    frames = np.roll(loop, course.fade + course.rest // 2, axis=0)
     assert not frames[0].any()
     assert not frames[-1].any()
     for stop, wanted in enumerate(to_uint8(lc.play(cube))):
         start = stop * len(course.lamp) + course.fade
         assert np.max(np.abs(frames[start : start + 30].astype(int) - wanted)) <= 1
-    jumps = np.max(np.abs(np.diff(frames.astype(int), axis=0)), axis=3) >= 51
+    jumps = np.max(np.abs(np.diff(loop.astype(int), axis=0)), axis=3) >= 51
     assert film.flicker.share == pytest.approx(np.mean(jumps), abs=1e-9)
     assert film.flicker.share <= 0.03
     assert film.warning == ""
-    assert flashes(frames, 30.0) <= 1
+    assert flashes(np.concatenate([loop, loop]), 30.0) <= 1
     assert "rests for 1 s" in film.said
 
 
@@ -144,8 +148,19 @@ def test_where_nothing_turns_the_one_stop_fades_in_and_out() -> None:
     stage = lc.Stage(GRID, (sun,), (wall,), (lc.Shot("a", "wall", ("sun",)),), cube_turns=False)
     film = lc.film(lc.Cube(noisy([5.0]).extinction, GRID, stage.rig()))
     frames = frames_of(film)
-    assert (frames[0].any(), frames[-1].any(), len(film)) == (False, False, 18 + 30 + 18 + 8)
+    dark = [number for number, frame in enumerate(frames) if not frame.any()]
+    assert (dark, len(film)) == (list(range(15 + 17, 15 + 18 + 8 + 1)), 18 + 30 + 18 + 8)
     assert "on the one stop" in film.said
+
+
+def test_a_room_rests_first() -> None:
+    cube = noisy([20.0, 140.0])
+    film = films.filmed(cube, shows.Look(), films.Style((30, 54), fps=10, view="room"), cube.angles_deg, even=False)
+    frames = frames_of(film)
+    room = Tableau(cube, (30, 54))
+    np.testing.assert_array_equal(frames[0], to_uint8(room.seen(20.0)))
+    np.testing.assert_array_equal(frames[-1], frames[0])
+    assert len(frames) == len(film)
 
 
 def test_an_eye_goes_from_the_dark_room_to_the_lamp_where_the_picture_rests() -> None:
@@ -153,6 +168,8 @@ def test_an_eye_goes_from_the_dark_room_to_the_lamp_where_the_picture_rests() ->
     film = films.filmed(cube, shows.Look(), style, cube.angles_deg, even=False)
     frames = frames_of(film)
     assert len(frames) == len(film)
+    assert frames[0].mean() > 10
+    frames = np.roll(frames, Course.of(1, 10).fade, axis=0)
     assert not np.any(frames[0])
     assert not np.any(frames[-1])
     assert not film.flicker.is_much
@@ -190,17 +207,55 @@ def test_flicker_counts_what_jumps_by_a_fifth() -> None:
     assert flicker.is_much
 
 
+def lit_box(frame: NDArray[np.floating[Any]]) -> tuple[int, int, int, int]:
+    """First and last row and column on which any light is."""
+    rows, columns = (np.flatnonzero(frame.any(axis=axis)) for axis in ((1, 2), (0, 2)))
+    return int(rows[0]), int(rows[-1]), int(columns[0]), int(columns[-1])
+
+
+SHAPES = [(8, 8), (5, 13), (19, 4)]
+
+
+@pytest.mark.parametrize("mat", [False, True])
+@pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("size", SIZES.values())
-def test_a_poster_has_the_picture_large_in_its_middle_and_dark_around(size: tuple[int, int]) -> None:
-    picture = np.full((30, 20, 3), 5.0, np.float32)
-    picture[9:17, 5:13] = (0.5, 0.2, 0.7)
-    small = (size[0] // 6, size[1] // 6)
-    frame = poster(picture, np.array([9, 5, 8, 8]), small, "srgb")
+def test_nothing_around_a_picture_is_lit_and_all_of_it_is_seen(
+    size: tuple[int, int], shape: tuple[int, int], mat: bool
+) -> None:
+    """Whatever stands around it, however bright; a mat only as far as it is shown, which is within the frame."""
+    small, (rows, columns) = (size[0] // 4, size[1] // 4), shape
+    picture = np.full((40, 31, 3), 5.0, np.float32)
+    picture[9 : 9 + rows, 5 : 5 + columns] = (0.5, 0.2, 0.7)
+    wide = mat_pixels(shape) if mat else 0
+    scale = 0.8 * min(small[0] / (rows + 2 * wide), small[1] / (columns + 2 * wide))
+    frame = poster(picture, np.array([9, 5, rows, columns]), small, "srgb", mat=mat)
     assert frame.shape == (*small, 3)
-    wide = round(0.35 * min(small) / 2)
-    middle = frame[small[0] // 2 - wide : small[0] // 2 + wide, small[1] // 2 - wide : small[1] // 2 + wide]
-    np.testing.assert_allclose(middle, np.broadcast_to((0.5, 0.2, 0.7), middle.shape), rtol=2e-3)
-    assert frame[[0, 0, -1, -1], [0, -1, 0, -1]].max() < 0.02
+
+    down, across = (np.abs(np.arange(count) + 0.5 - count / 2) for count in small)
+    beyond_down, beyond_across = down[:, None] - scale * rows / 2, across - scale * columns / 2
+    beyond = np.maximum(beyond_down, beyond_across)
+    assert np.mean(frame[beyond > scale * wide + 1]) == 0
+    within = frame[beyond < -(2 * scale if mat else 1)]  # a mat's light is smoothly enlarged, too
+    np.testing.assert_allclose(within, np.broadcast_to((0.5, 0.2, 0.7), within.shape), rtol=2e-3)
+    assert np.all(frame[beyond < -1] > 0.05)
+    if mat:
+        ring = frame[(beyond > 0.3 * scale * wide) & (beyond < 0.4 * scale * wide)]
+        assert ring.max() > 0.3
+        rim = np.hypot(np.maximum(beyond_down, 0), np.maximum(beyond_across, 0)) > scale * wide + 1
+        assert not frame[rim].any()
+
+
+@pytest.mark.parametrize("mat", [False, True])
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("size", [(320, 180), (180, 320), (200, 200)])
+def test_a_caption_stands_whole_in_the_black_below(size: tuple[int, int], shape: tuple[int, int], mat: bool) -> None:
+    bright, window = np.full((40, 31, 3), 5.0, np.float32), np.array([9, 5, *shape])
+    bare, named = (poster(bright, window, size, "srgb", name, mat=mat) for name in ("", "gj moon ÅÉ"))
+    top, bottom, left, right = lit_box(bare)
+    np.testing.assert_array_equal(named[: bottom + 1], bare[: bottom + 1])
+    first, last, begin, end = lit_box(named[bottom + 1 :])
+    assert (first > 0, last < size[0] - bottom - 2, begin > 0, end < size[1] - 1) == (True, True, True, True)
+    assert (top > 0, left > 0, right < size[1] - 1) == (True, True, True)
 
 
 @pytest.mark.parametrize("name", ["a", "a_very " * 2000, "<b>", "שלום", "\n\t", "日本"])
@@ -209,11 +264,46 @@ def test_captions_are_one_line_in_the_frame(name: str) -> None:
     frame = poster(black, np.array([9, 5, 8, 8]), (180, 320), "srgb", name)
     lit = np.argwhere(frame[..., 0] > 0.1)
     if name.strip():
-        assert lit[:, 0].min() > 90 + 0.5 * 0.68 * 180 - 5
+        assert lit[:, 0].min() > 90 + 0.5 * 0.8 * 180
         assert (lit[:, 0].max() < 180, lit[:, 1].min() > 9, lit[:, 1].max() < 311) == (True, True, True)
         assert 0.6 < float(encode(frame.max(keepdims=True)).item()) <= 0.75 + 1e-6
     else:
         assert not len(lit)
+
+
+@pytest.mark.parametrize(
+    ("mat", "noise", "calm"),
+    [
+        (None, 0.0, False),
+        (lc.Mat(0.5), 0.1, True),
+        (lc.Mat(0.5), 0.3, False),
+        (lc.Mat(0.02), 0.02, False),
+        (lc.Mat(0.02), 0.0, True),
+        (lc.Mat(0.5, width=0.01), 0.0, False),
+    ],
+)
+def test_a_mat_is_seen_where_there_is_one_and_it_is_calm(
+    monkeypatch: pytest.MonkeyPatch, mat: lc.Mat | None, noise: float, calm: bool
+) -> None:
+    """Only what a poster shows of it counts: neither the picture nor what lies beyond."""
+
+    def cast(cube: lc.Cube, rig: lc.Rig) -> Iterator[NDArray[np.float32]]:
+        assert mat is not None
+        (rows, columns), (high, wide) = margin(rig_of, GRID, mat), rig_of.picture_shape
+        for sign in (1, -1):
+            shown = np.full((*rig.picture_shape, 3), 4.0)
+            shown[rows - 1 : rows + high + 1, columns - 1 : columns + wide + 1] = decode(
+                np.array(max(mat.tone + sign * noise, 0.0)), cube.transfer
+            )
+            shown[rows : rows + high, columns : columns + wide] = 3.0
+            yield shown.astype(np.float32)
+
+    plain = noisy([20.0, 140.0])
+    rig_of = plain.rig
+    recipe = lc.Recipe(mat=mat)
+    cube = lc.Cube(plain.extinction, GRID, rig_of, provenance=recipe.plain())
+    monkeypatch.setattr("lightcube.forward.casting.cast", cast)
+    assert shows.has_calm_mat(cube) is calm
 
 
 def test_captions_say_names_without_the_numbers_of_files() -> None:
@@ -240,8 +330,8 @@ def test_formats_are_small_files_that_a_second_decoder_reads(tmp_path: Path, for
             flicker.see(shown)
             bright.append(float(shown.max()))
     assert len(bright) == len(film) == 6 + 3 + 6 + 1
-    assert max(bright[0], bright[-1]) <= 2
-    assert max(bright) > 150
+    assert min(bright) <= 2
+    assert min(bright[0], bright[-1]) > 150
     assert flicker.share <= 0.03
     assert path.stat().st_size / (len(bright) / 3) < 700_000
 

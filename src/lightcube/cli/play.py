@@ -90,7 +90,7 @@ def play(
     movie.check()
     if shape is not None and scale is not None:
         raise InputError("--format and --scale both say how large the picture is: leave one of them out")
-    look = shows.Look(picture_only, check_zoom(zoom), light)
+    look = shows.Look(picture_only or (screens and shape is not None), check_zoom(zoom), light)
     size, fps = films.frames_of(output, shape, fps)
     style = films.Style(size, captions, fps, view)
     in_room = view != "wall"

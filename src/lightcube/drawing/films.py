@@ -202,11 +202,17 @@ def filmed(
     if style.view == "room":
         course = Course.of(len(stops), style.fps, 1.0, _TURN_S)
         show = shows.resting_room(cube, course, style.size or ROOM)
-        return Film(show, style.fps, cube.transfer, _rests(len(stops), course))
+        return _resting(show, course, len(stops), style, cube)
     show = shows.of_screens(cube, stops, look) if beside else shows.of_stops(cube, look, target=target)
     lit = styled(cube, show, style, stops if beside else cube.angles_deg)
     course = Course.of(show.count, style.fps, shows.brightest(cube) if style.size is None else 1.0)
-    return replace(lit, show=shows.resting(cube, lit.show, course), said=_rests(show.count, course))
+    return _resting(shows.resting(cube, lit.show, course), course, show.count, style, cube)
+
+
+def _resting(show: Show, course: Course, stops: int, style: Style, cube: Cube) -> Film:
+    """The film of a lamp that comes and goes, from the middle of its first rest on."""
+    begun = shows.begun(show, course.fade + course.rest // 2)
+    return Film(begun, style.fps, cube.transfer, _rests(stops, course))
 
 
 def styled(cube: Cube, show: Show, style: Style, angles_deg: Angles) -> Film:

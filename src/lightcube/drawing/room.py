@@ -5,6 +5,7 @@ The page that is turned by hand draws the same room, by the same laws.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -24,12 +25,14 @@ from lightcube.drawing.furniture import (
     table_layers,
 )
 from lightcube.drawing.glass import Glass
-from lightcube.drawing.poster import iris
 from lightcube.drawing.standing import PlacedLamp, PlacedScreen, Standing, extent, size_of, standing
 from lightcube.forward.casting import screens
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import decode
+
+#: An eye's iris is open as far as this from the middle of the picture, in halves of its diagonal, and shut there.
+_OPEN, _SHUT = 1.1, 1.5
 
 
 def room_picture(cube: Cube, angle_deg: float, camera: Camera) -> Floats:
@@ -153,7 +156,7 @@ class Room:
             return
         screen, lamp = self.eyes_lamp(angle_deg)
         _, across, below = canvas.plane(screen.corner, screen.right, screen.down, canvas.whole)
-        part = decode(iris(below, across, screen.pixels), self.cube.transfer)
+        part = decode(_iris(below, across, screen.pixels), self.cube.transfer)
         light = part[..., None] * [lamp.light[min(i, len(lamp.light) - 1)] for i in range(3)]
         there = (canvas.glass > canvas.near)[..., None]
         canvas.light += np.float32(bare) * (np.where(there, light.astype(np.float32), 0) - canvas.light)
@@ -175,3 +178,11 @@ class Room:
         draw_hints(canvas, now, lamps, part, front)
         for lamp in now.lamps:
             draw_lamp(canvas, self.cube.grid, lamp, part, front)
+
+
+def _iris(down: Floats, across: Floats, window: tuple[int, int]) -> Floats:
+    """What a round iris lets through at some rows and columns of a picture, in display values; all of the picture."""
+    rows, columns = window
+    away = np.hypot(down - rows / 2, across - columns / 2) / (math.hypot(rows, columns) / 2)
+    part = np.clip((_SHUT - away) / (_SHUT - _OPEN), 0, 1)
+    return np.asarray(part * part * (3 - 2 * part), np.float32)

@@ -6,14 +6,17 @@ And how a movie goes: under a steady lamp, picture by picture, or resting on eac
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.backward.mat import margin, widened
+from lightcube.backward.recipe import recipe_of
 from lightcube.drawing.eyes import camera_for
 from lightcube.drawing.orbit import between, lamps_orbit, orbit_of, soft
-from lightcube.drawing.poster import poster
+from lightcube.drawing.poster import mat_pixels, poster
 from lightcube.drawing.room import Room
 from lightcube.drawing.sheet import beside_each_other, beside_targets
 from lightcube.drawing.tableau import Tableau
@@ -40,6 +43,8 @@ _WAIT_S, _WAY_S, _CALM_S, _STAY_S = 0.5, 2.8, 0.5, 1.4
 _FEWEST, _WAY = 6, 84
 #: So much of its way glass is seen as one likes to see it.
 _BARE = 0.35
+#: A mat that is off its tone by more than this part of it is no calm one: a dark one's noise is as bright as it is.
+_CALM = 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,9 +156,9 @@ def resting_room(cube: Cube, course: Course, size: tuple[int, int]) -> Show:
 
 
 def of_eye(cube: Cube, angles_deg: NDArray[np.float64], size: tuple[int, int], fps: float) -> Show:
-    """The eye goes to where the lamp is, and noise becomes the picture, at each of some angles; from dark to dark.
+    """The eye goes to where the lamp is, and noise becomes the picture, at each of some angles.
 
-    There it is what the wall shows, the mean of each pixel. 8-bit display levels.
+    There it is what the wall shows, the mean of each pixel. 8-bit display levels, from the lit room on.
     """
     room, start = Room(cube), orbit_of(camera_for(cube, size))
     course = Course.of(len(angles_deg), fps)
@@ -180,7 +185,7 @@ def of_eye(cube: Cube, angles_deg: NDArray[np.float64], size: tuple[int, int], f
             yield from [0 * rests] * course.dark
 
     count = len(angles_deg) * (2 * course.fade + wait + way + calm + stay + course.dark)
-    return Show((to_uint8(light, cube.transfer) for light in lights()), count, size[0])
+    return begun(Show((to_uint8(light, cube.transfer) for light in lights()), count, size[0]), course.fade)
 
 
 def flickers(cube: Cube, angles_deg: NDArray[np.float64], look: Look) -> float:
@@ -210,6 +215,17 @@ def resting(cube: Cube, show: Show, course: Course) -> Show:
     return Show(frames, show.count * len(course.lamp), show.rows)
 
 
+def begun(show: Show, frame: int) -> Show:
+    """The same loop from another of its frames on: what a movie is known by, before it plays, is its first."""
+
+    def frames() -> Iterator[Frame]:
+        before = list(islice(show.pictures, frame))
+        yield from show.pictures
+        yield from before
+
+    return replace(show, pictures=frames())
+
+
 def brightest(cube: Cube) -> float:
     """The brightest that a cube's lamps show past the cube, in display values."""
     rig = cube.rig
@@ -218,15 +234,34 @@ def brightest(cube: Cube) -> float:
 
 
 def shaped(cube: Cube, show: Show, size: tuple[int, int], captions: Sequence[str] | None) -> Show:
-    """The same, large in a dark frame of so many rows and columns, with names below if there are any."""
+    """The same, large in a black frame of so many rows and columns, with names below if there are any.
+
+    Of what surrounds the pictures only a calm mat is seen.
+    """
+    mat = show.windows is not None and bool(np.any(show.windows[:, :2])) and has_calm_mat(cube)
 
     def framed() -> Iterator[Picture]:
         pictures, begun = cast("Iterator[Picture]", show.pictures), show.windows
         for number, picture in enumerate(pictures):
             window = np.array([0, 0, *picture.shape[:2]]) if begun is None else begun[number]
-            yield poster(picture, window, size, cube.transfer, captions[number] if captions else "")
+            yield poster(picture, window, size, cube.transfer, captions[number] if captions else "", mat=mat)
 
     return Show(framed(), show.count, size[0])
+
+
+def has_calm_mat(cube: Cube) -> bool:
+    """Whether the mats that a cube was made with are calm as far as a poster shows them, at the stops, on the whole."""
+    mat, shape = recipe_of(cube).mat, cube.rig.picture_shape
+    wide, spare = mat_pixels(shape), margin(cube.rig, cube.grid, mat)
+    if mat is None or min(spare) < wide:
+        return False
+    rig = widened(cube.rig, cube.grid, mat)
+    around = np.zeros(rig.picture_shape, bool)
+    for more, seen in ((wide, True), (0, False)):
+        rows, columns = (slice(edge - more, edge + own + more) for edge, own in zip(spare, shape, strict=True))
+        around[rows, columns] = seen
+    off = [np.mean((encode(picture[around], cube.transfer) - mat.tone) ** 2) for picture in casting.cast(cube, rig)]
+    return float(np.sqrt(np.mean(off))) <= _CALM * mat.tone
 
 
 def captions_of(cube: Cube, angles_deg: NDArray[np.float64]) -> list[str]:
