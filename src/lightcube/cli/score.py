@@ -65,7 +65,7 @@ def score(
     if as_json:
         json_document(found.scores)
     else:
-        printing.scored(found.scores)
+        printing.scored(found.scores, loaded.rig)
 
 
 def _score_shape(path: str, given: list[str], *, as_json: bool) -> None:
