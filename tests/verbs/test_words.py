@@ -1,5 +1,6 @@
 """What is said of pictures: how near they come, which are no good, and what would help."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from lightcube.backward.recipe import Recipe
 from lightcube.optics.grid import Grid
+from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
 from lightcube.pictures.fitting import Fit
 from lightcube.pictures.pictures import Pictures
@@ -45,6 +47,19 @@ def test_pictures_that_lose_more_than_a_third_are_named_the_worst_first() -> Non
 def test_nothing_is_cut_off_where_nothing_is_cropped_or_little(fit: Fit) -> None:
     assert doubts_of_cropping(planned((24, 24), (24, 60), fit=fit)) == []
     assert doubts_of_cropping(planned((24, 24), (24, 35), (24, 24))) == []
+
+
+@pytest.mark.parametrize("light", [Light(), Light(grain=0.01), Light(grain=2.0), Light.thin()])
+def test_what_is_grainy_from_close_up_is_told_plainly_and_what_helps(light: Light) -> None:
+    smooth, fine, coarse = (words.from_near(rms, light) for rms in (0.02, 0.05, 0.2))
+    assert "smooth" in smooth
+    assert "a little grainy" in fine
+    assert "--" not in smooth + fine
+    assert coarse.startswith("from close up, the pictures look grainy, like coarse film: stand further back")
+    asked = re.findall(r"--grain ([0-9.]+)", coarse)
+    assert len(asked) == (light.grain < 2 and not light.is_thin)
+    assert all(light.grain < float(each) <= 2 for each in asked)
+    assert ("--light thin" in coarse) == light.is_thin
 
 
 def test_words_for_how_near_pictures_come_fall_with_the_figures() -> None:

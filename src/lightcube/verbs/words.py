@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lightcube.backward.recipe import recipe_of
 from lightcube.backward.solution import Solution
 from lightcube.jobs.publishing import Published
-from lightcube.optics.light import Beams
+from lightcube.optics.light import MOST_GRAIN, Beams, Light
 from lightcube.optics.rig import Rig
 from lightcube.optics.tables import POWER_MOST
 from lightcube.pictures.fitting import cut_off, fit_report, said_sizes
@@ -30,10 +31,12 @@ _NAMED, _LONGEST = 5, 40
 _MUCH = 1 / 3
 #: What is said of grain.
 _FROM_NEAR = {
-    "smooth": "the light is smooth, from near by too",
-    "fine": "from near by the light inside pixels is a little uneven",
-    "coarse": "from near by the light inside pixels is uneven: look from further away, or use a larger --grain",
+    "smooth": "from close up too, the pictures are smooth",
+    "fine": "from close up, the pictures look a little grainy, like fine film",
+    "coarse": "from close up, the pictures look grainy, like coarse film: stand further back",
 }
+#: So many times as much is tried against grain as a cube was made with, and so much where that was nothing.
+_SMOOTHER, _LITTLE = 3, 0.01
 
 
 def in_short(planned: Plan, order: "Order | None") -> list[str]:
@@ -218,7 +221,19 @@ def solved(solution: Solution) -> list[str]:
         lines.append(
             f"lamp: at most {power:.3g} times as strong as one that makes the bare wall white ({in_ev(power)})"
         )
-    return [*lines, _FROM_NEAR[grain_word(scores["grain_rms"])]]
+    return [*lines, from_near(scores["grain_rms"], recipe_of(cube).beams)]
+
+
+def from_near(grain_rms: float, light: Light) -> str:
+    """What pictures look like from close up, by their grain, and what makes one that was solved for `light` calmer."""
+    word = grain_word(grain_rms)
+    said = _FROM_NEAR[word]
+    if word != "coarse":
+        return said
+    if light.is_thin:
+        return f"{said}, or solve by method display, without --light thin or --paper"
+    grain = min(_SMOOTHER * light.grain or _LITTLE, MOST_GRAIN)
+    return f"{said}, or try --grain {grain:g}, which costs some likeness" if grain > light.grain else said
 
 
 def duration(seconds: float) -> str:
