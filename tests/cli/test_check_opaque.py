@@ -84,7 +84,7 @@ def test_what_is_beyond_repair_is_exit_code_4(run, tmp_path: Path) -> None:  # t
         (["--walls"], "say --opaque too"),
         (["--map", "maps"], "say --opaque too"),
         (["--threshold", 0.5], "say --opaque too"),
-        ([], "more than one place of pictures is for opaque objects"),
+        ([], "more than one place is for opaque objects"),
         (["--opaque", "--walls", "--angles-deg", "1,2,3"], "--angles-deg is for a turntable"),
     ],
 )

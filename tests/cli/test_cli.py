@@ -315,11 +315,26 @@ MISTAKEN = [
         for verb in ("play", "info", "score", "view", "report")
         for given, kind in (
             ("{tmp}/photos", "pictures"),
-            ("{tmp}/photos/1.PNG", "pictures"),
+            ("{tmp}/photos/1.PNG", "one picture by its name"),
             ("{tmp}/film.mp4", "pictures"),
+            ("{tmp}/film.GIF", "pictures"),
             ("{tmp}/room.toml", "a stage's or a scene's file"),
         )
     ),
+    *(
+        (
+            verb,
+            f"{{tmp}}/word.{suffix}",
+            f"{{tmp}}/word.{suffix} is a mesh, which holds no lamps and screens: lightcube ",
+        )
+        for verb in ("play", "info", "score", "view", "report")
+        for suffix in ("stl", "3MF", "obj", "ply")
+    ),
+    *(
+        (verb, "{tmp}/made", "{tmp}/made is a folder, no cube: give a cube that is in it, such as {tmp}/made/moon.zarr")
+        for verb in ("play", "info", "score", "view", "report")
+    ),
+    ("view", "{tmp}/plates", "{tmp}/plates has no suffix that a cube can have: "),
     ("play", "{tmp}/empty", "{tmp}/empty has no suffix that a cube can have: "),
     *((verb, "{tmp}/file.zarr", "{tmp}/file.zarr is a file, and no cube ") for verb in ("play", "info", "score")),
 ]
@@ -335,11 +350,57 @@ def test_what_stands_in_the_wrong_place_is_named(  # type: ignore[no-untyped-def
     (tmp_path / "empty").mkdir()
     (tmp_path / "photos").mkdir()
     (tmp_path / "photos" / "1.PNG").touch()
+    (tmp_path / "photos" / "2.jpg").touch()
+    for name in ("made/1.png", "made/2.png", "made/art.shape.zarr", "made/moon.zarr", "plates/a.relief.zarr"):
+        (tmp_path / name).mkdir(parents=True)
     target = {"solve": ("-o", "{tmp}/a.zarr"), "trace": ("-o", "{tmp}/a"), "play": ("-o", "{tmp}/a.gif")}
     target |= dict.fromkeys(("view", "report"), ("-o", "{tmp}/a.html"))
     done = run(*[word.format(tmp=tmp_path) for word in (verb, given, *target.get(verb, ()))])
     assert done.code == 2, done.err
     assert any(line.startswith(f"lightcube: {said.format(tmp=tmp_path)}") for line in done.lines), done.err
+
+
+@pytest.mark.parametrize(("verb", "target"), [("solve", "a.zarr"), ("play", "a.gif")])
+@pytest.mark.parametrize("given", ["one.jpg", "folder"])
+def test_what_solve_would_refuse_is_not_suggested(  # type: ignore[no-untyped-def]
+    run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, given: str, verb: str, target: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("folder").mkdir()
+    Path("one.jpg").write_text("a text")
+    Path("folder/a.png").write_text("another")
+    done = run(verb, given, "-o", target)
+    assert (done.code, len(done.lines)) == (2, 1)
+    assert f"solve {given}" not in done.err
+    assert ("in lightcube solve photos -o" in done.err) == (verb == "play")
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (("solve", "a.jpg", "b.jpg", "-o", "x.zarr"), "b.jpg is too much for lightcube solve, which takes pictures"),
+        (("solve", "a.jpg", "-o", "x.zarr", "b.jpg", "c.jpg"), "b.jpg, c.jpg are too much for lightcube solve, which"),
+        (("score", "x.zarr", "a.jpg", "b.jpg"), "b.jpg is too much for lightcube score, which takes pictures"),
+        (("report", "x.zarr", "a.jpg", "b.jpg"), "b.jpg is too much for lightcube report, which takes pictures"),
+        (("check", "a.jpg", "b.jpg"), "more than one place is for opaque objects: put all"),
+    ],
+)
+def test_pictures_of_several_places_go_into_one_folder(  # type: ignore[no-untyped-def]
+    run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, asked: tuple[str, ...], said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = run(*asked)
+    assert (done.code, len(done.lines), list(tmp_path.iterdir())) == (2, 1, [])
+    assert done.err.startswith(f"lightcube: {said}")
+    assert "into one folder" in done.err
+
+
+def test_other_words_that_are_too_many_are_named(run) -> None:  # type: ignore[no-untyped-def]
+    done = run("view", "a.zarr", "b.zarr")
+    assert (done.code, done.lines) == (
+        2,
+        ["lightcube: b.zarr is too much for lightcube view: leave it out, or see lightcube view --help"],
+    )
 
 
 @pytest.mark.parametrize("arguments", BAD, ids=lambda a: " ".join(a))

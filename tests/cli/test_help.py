@@ -61,6 +61,22 @@ def test_options_in_no_group_stand_together_with_help(capsys: pytest.CaptureFixt
     assert told.index("--json") < told.index("--help")
 
 
+@pytest.mark.parametrize("name", main.COMMANDS)
+def test_where_a_word_lacks_an_example_has_it(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    needed = [each.opts[0] for each in options(name) if each.required]
+    if needed:
+        assert main.run([name, "thing"]) == 2
+        said = capsys.readouterr().err
+        example = EXAMPLES[name][0][0]
+        assert said == f"lightcube: Missing option '-o' / '--out': give it, as in {example}\n"
+        assert set(needed) <= set(example.split())
+
+
+def test_commands_that_write_say_where_to() -> None:
+    needing = [name for name in main.COMMANDS if any(each.required for each in options(name))]
+    assert needing == ["trace", "solve", "hull", "relief", "play", "draw"]
+
+
 @pytest.mark.parametrize(("name", "typed"), [(name, typed) for name, all_ in EXAMPLES.items() for typed, _ in all_])
 def test_examples_can_be_typed(name: str, typed: str) -> None:
     program, verb, *words = typed.split()

@@ -217,6 +217,15 @@ def test_two_pictures_are_no_three_walls_and_one_grey_no_shape(run, tmp_path: Pa
     assert (done.code, "has no suffix that a shape can have" in done.err) == (2, True)
 
 
+def test_one_picture_makes_no_solid_and_it_is_said_what_does(run, tmp_path: Path, three: list[Path]) -> None:  # type: ignore[no-untyped-def]
+    for asked in (("hull", three[0], "-o", tmp_path / "a.stl"), ("check", three[0], "--opaque")):
+        done = run(*asked)
+        assert (done.code, len(done.lines)) == (2, 1)
+        assert "holds one picture, and a solid needs two at least" in done.err
+        assert "cube" not in done.err.replace("lightcube", "").replace(str(tmp_path), "")
+        assert not (tmp_path / "a.stl").exists()
+
+
 def test_transparent_pictures_are_cut_by_their_opacity(run, tmp_path: Path, three: list[Path]) -> None:  # type: ignore[no-untyped-def]
     for path in three:
         grey = np.asarray(Image.open(path))

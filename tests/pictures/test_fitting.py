@@ -15,7 +15,7 @@ from lightcube.optics.grid import Grid, picture_shape
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import to_uint16
 from lightcube.optics.views import distinct_angles, spread_angles
-from lightcube.pictures.fitting import Fit, as_levels, fit, fit_report, targets_of
+from lightcube.pictures.fitting import Fit, as_levels, cut_off, fit, fit_report, targets_of
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from tests.helpers.recipes import fitted
@@ -267,25 +267,54 @@ class TestRefused:
 @pytest.mark.parametrize(
     ("sizes", "mode", "line"),
     [
-        ([(12, 16)] * 3, "crop", "3 pictures of 16 x 12, not resampled"),
-        ([(24, 32)] * 3, "crop", "3 pictures, scaled from 32 x 24 to 16 x 12"),
-        ([(24, 32), (48, 64)], "pad", "2 pictures, scaled from 32 x 24 and 1 other size to 16 x 12"),
+        ([(12, 16)] * 3, "crop", "3 pictures of 16 x 12 pixels, not resampled"),
+        ([(24, 32)] * 3, "crop", "3 pictures, scaled from 32 x 24 pixels to 16 x 12 pixels"),
+        ([(24, 32), (48, 64)], "pad", "2 pictures, scaled from 32 x 24 pixels and 1 other size to 16 x 12 pixels"),
+        ([(23, 31)] * 2, "crop", "2 pictures, scaled from 31 x 23 pixels to 16 x 12 pixels"),
+        ([(100, 149)] * 2, "crop", "2 pictures, scaled from 149 x 100 pixels to 16 x 10 pixels"),
         (
             [(24, 32), (30, 32), (9, 9)],
             "crop",
-            "3 pictures, cropped from 32 x 24 and 2 other sizes to 16 x 12, the aspect of {}",
+            (
+                "3 pictures, scaled from 32 x 24 pixels and 2 other sizes to 16 x 12 pixels, cropped to the shape of "
+                "{}, 4:3"
+            ),
         ),
-        ([(24, 32), (30, 32)], "pad", "2 pictures, padded from 32 x 24 and 1 other size to 16 x 12, the aspect of {}"),
         (
-            [(24, 32), (30, 32)],
+            [(100, 149), (30, 32)],
+            "pad",
+            (
+                "2 pictures, scaled from 149 x 100 pixels and 1 other size to 16 x 10 pixels, padded to the shape of "
+                "{}, about 3:2"
+            ),
+        ),
+        (
+            [(32, 32), (48, 32), (32, 32)],
             "stretch",
-            "2 pictures, stretched from 32 x 24 and 1 other size to 16 x 12, the aspect of {}",
+            (
+                "3 pictures, scaled from 32 x 32 pixels and 1 other size to 16 x 16 pixels, stretched to the shape of "
+                "{}, a square"
+            ),
+        ),
+        (
+            [(100, 103), (30, 60)],
+            "crop",
+            (
+                "2 pictures, scaled from 103 x 100 pixels and 1 other size to 16 x 16 pixels, cropped to the shape of "
+                "{}, 1.03:1"
+            ),
         ),
     ],
 )
 def test_the_report_says_what_was_done(sizes: list[tuple[int, int]], mode: Fit, line: str) -> None:
     read = pictures(*sizes)
     assert fit_report(read, fitted(read, GRID, fit_mode=mode), mode) == line.format(read.names[0])
+
+
+@pytest.mark.parametrize("focus", [(0.5, 0.5), (0, 1)])
+def test_a_cropped_picture_loses_what_its_shape_has_too_much(focus: tuple[float, float]) -> None:
+    read = replace(pictures((24, 32), (24, 64), (96, 32), (12, 16)), focus=focus)
+    assert cut_off(read, fitted(read, GRID)) == pytest.approx([0, 1 / 2, 3 / 4, 0])
 
 
 class TestTargets:

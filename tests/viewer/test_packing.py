@@ -246,7 +246,16 @@ def test_bad_input_is_a_sentence(
 
 @pytest.mark.parametrize(
     ("path", "name"),
-    [("a/b.zarr", "b"), ("b.zarr.zip", "b"), ("b.npz", "b"), ("x.y.zarr.partial", "x.y"), ("s3://k/b.zarr", "b")],
+    [
+        ("a/b.zarr", "b"),
+        ("b.zarr.zip", "b"),
+        ("b.npz", "b"),
+        ("x.y.zarr.partial", "x.y"),
+        ("s3://k/b.zarr", "b"),
+        ("a/b.shape.zarr", "b"),
+        ("x.y.Relief.zarr", "x.y"),
+        (".shape.zarr", ".shape.zarr"),
+    ],
 )
 def test_a_page_is_named_after_its_cube(path: str, name: str) -> None:
     assert io.bare_name(path) == name

@@ -63,7 +63,7 @@ def check(
     if maps is not None or how != hulls.Cutting():
         raise InputError("--walls, --threshold, --invert and --map are for opaque objects: say --opaque too")
     if len(pictures) > 1:
-        raise InputError("more than one place of pictures is for opaque objects: give one, or say --opaque")
+        raise InputError("more than one place is for opaque objects: put all pictures into one folder, or say --opaque")
     sheet_file = None if sheet is None else io.Output(sheet, "picture", overwrite)
     if sheet_file is not None:
         sheet_file.check()

@@ -61,7 +61,7 @@ def run(folder: Path) -> None:
     for wonder in WONDERS:
         cube, seconds = _made(wonder, folder)
         rows[wonder.name] = {"seconds": seconds, **cube.scores}
-        good = words.judged(cube.names, [view["psnr"] for view in cube.scores["pictures"]], "are")
+        good = words.judged(cube.names, [view["psnr"] for view in cube.scores["pictures"]], "are", cube.rig)
         out.print(f"{wonder.title}, after {words.duration(seconds)}. {good}")
         seen = to_uint8(tableau(cube, float(cube.angles_deg[0]), _SEEN), cube.transfer)
         cards.append(Card(wonder.title, wonder.said, seen, f"{wonder.name}.html"))

@@ -1,9 +1,12 @@
-"""How a command's help is laid out: options in groups, most used first, and examples at the end, in plain text."""
+"""How a command's help is laid out, options in groups and examples at the end, and what it says of missing words."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import typer
 from typer.core import TyperCommand
+
+from lightcube.errors import InputError
 
 #: The groups in the order in which they are shown: beside what may be said of a cube, where it goes and who computes.
 GROUPS = ("Output", "Pictures", "Geometry", "Lamp", "Material", "Quality", "Machine")
@@ -42,6 +45,14 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ),
         ("lightcube hull room.toml -o a.shape.zarr", "any lamps and screens, kept with its silhouettes"),
     ],
+    "trace": [
+        ("lightcube trace carousel -o pictures", "a scene that comes with lightcube, as a folder of PNGs"),
+        ("lightcube trace scene.toml -o film.mp4 --count 64", "a scene of your own, as a movie"),
+    ],
+    "play": [
+        ("lightcube play cube.zarr -o turn.mp4", "the table turns, and rests at each picture"),
+        ("lightcube play cube.zarr -o pictures --stops", "just the pictures, as a folder of PNGs"),
+    ],
     "score": [
         ("lightcube score cube.zarr", "how near each picture comes"),
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
@@ -60,7 +71,28 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
 
 
 class Laid(TyperCommand):
-    """A command whose help has groups and examples."""
+    """A command whose help has groups and examples, and which says what to do where words lack or are too many."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """What is left of the words: nothing, or `InputError`."""
+        ctx.allow_extra_args = True  # they are refused below, with what to do
+        try:
+            left = super().parse_args(ctx, args)
+        except typer.TyperException as error:
+            said, examples = error.format_message(), EXAMPLES.get(str(self.name))
+            if examples is None or not said.startswith("Missing "):
+                raise
+            raise InputError(f"{said.rstrip('.')}: give it, as in {examples[0][0]}") from error
+        if left and not ctx.resilient_parsing:
+            raise InputError(self._too_many(left))
+        return left
+
+    def _too_many(self, left: list[str]) -> str:
+        """What is said of words that are left."""
+        over = f"{', '.join(left)} {'is' if len(left) == 1 else 'are'} too much for lightcube {self.name}"
+        if any(each.name == "pictures" for each in self.params):
+            return f"{over}, which takes pictures from one place: put all of them into one folder, and give that"
+        return f"{over}: leave it out, or see lightcube {self.name} --help"
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write arguments, options by groups, and last how help is asked for."""

@@ -7,6 +7,7 @@ from typing import Any
 from lightcube.backward.solution import Solution
 from lightcube.cli.console import out
 from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.rig import Rig
 from lightcube.optics.told import remembered
 from lightcube.scoring.metrics import grain_word
 from lightcube.verbs import words
@@ -53,7 +54,7 @@ def _beside(scores: Mapping[str, Any]) -> str:
     return f", {grain_word(scores['grain_rms'])} grain ({scores['grain_rms']:.2f}){mat}"
 
 
-def scored(scores: dict[str, Any]) -> None:
+def scored(scores: dict[str, Any], rig: Rig) -> None:
     """Print one line per view, the means, and what was asked for besides."""
     lobes = scores["between"]["lobe_deg"] if "between" in scores else []
     out.print(f"{'picture':>20} {'angle, °':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}" + " 30 dB over" * bool(lobes))
@@ -64,7 +65,7 @@ def scored(scores: dict[str, Any]) -> None:
     names, psnr = (
         list(each) for each in zip(*((view["name"], view["psnr"]) for view in scores["pictures"]), strict=True)
     )
-    out.print(words.judged(names, psnr, "are"))
+    out.print(words.judged(names, psnr, "are", rig))
     worst, mean = scores["psnr_min"], scores["psnr_mean"]
     out.print(
         f"mean PSNR {mean:.2f} dB (worst {worst:.2f}), SSIM {scores['ssim_mean']:.4f}, dE {scores['delta_e_mean']:.2f}"

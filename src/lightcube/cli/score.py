@@ -65,7 +65,7 @@ def score(
     if as_json:
         json_document(found.scores)
     else:
-        printing.scored(found.scores)
+        printing.scored(found.scores, loaded.rig)
 
 
 def _score_shape(path: str, given: list[str], *, as_json: bool) -> None:
@@ -90,7 +90,7 @@ def _score_relief(path: str, sheet: io.Output | None, *, off: bool, refused: str
     relief = io.read_relief(path)
     scores = score_relief(relief, off=off)
     if sheet is not None:
-        sheet.write(relief_sheet(relief, scores, io.bare_name(path).removesuffix(".relief")))
+        sheet.write(relief_sheet(relief, scores, io.bare_name(path)))
     if as_json:
         json_document(scores)
         return

@@ -21,6 +21,8 @@ Replaceable = Callable[[Place], bool] | None
 
 #: What the name of a cube that is still being made ends with.
 PARTIAL_SUFFIX = ".partial"
+#: What the names of shapes and of reliefs end with.
+SHAPE_SUFFIX, RELIEF_SUFFIX = ".shape.zarr", ".relief.zarr"
 
 
 def suffix_entry(path: Place, table: Mapping[str, Entry], what: str) -> Entry:

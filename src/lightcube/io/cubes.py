@@ -7,22 +7,25 @@ from pathlib import Path
 
 from lightcube.errors import InputError, encodable
 from lightcube.io._bounds import check_file
-from lightcube.io._files import PARTIAL_SUFFIX, Writer, suffix_entry, system_errors
-from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
+from lightcube.io._files import PARTIAL_SUFFIX, RELIEF_SUFFIX, SHAPE_SUFFIX, Writer, suffix_entry, system_errors
+from lightcube.io._places import Place, child, fetched, name_of, names_in, place, read_bytes
 from lightcube.optics.cube import Cube
 
 Format = tuple[Callable[[Path], Cube], Callable[[Path, Cube], None]]
 
 #: What the name of a cube may end with.
 _SUFFIXES = (".zarr", ".zarr.zip", ".npz")
+#: And that of a mesh, of which no cube can be made.
+_MESHES = (".stl", ".3mf", ".obj", ".ply")
 
 
 def bare_name(path: str | Path) -> str:
-    """Name of a cube's file without its suffix; `InputError` where there is none."""
+    """Name of a cube's file, a shape's or a relief's, without its suffix; `InputError` where there is none."""
     name = name_of(place(path))
     if not name:
         raise InputError(f"{str(path)!r} names no cube: give a file or folder that ends with {', '.join(_SUFFIXES)}")
-    found = [suffix for suffix in (*_SUFFIXES, PARTIAL_SUFFIX) if name.lower().endswith(suffix)]
+    known = (*_SUFFIXES, SHAPE_SUFFIX, RELIEF_SUFFIX, PARTIAL_SUFFIX)
+    found = [suffix for suffix in known if name.lower().endswith(suffix)]
     return bare_name(name[: -len(max(found, key=len))]) if found and name.lower() not in found else encodable(name)
 
 
@@ -38,25 +41,54 @@ def read_cube(path: str | Path) -> Cube:
     try:
         _suffix(at)
     except InputError:
-        _refuse_pictures(at)
+        _refuse_other(at)
         raise
     with fetched(at) as local:
         return _read(local)
 
 
-def _refuse_pictures(at: Place) -> None:
-    """Raise `InputError` where what is given as a cube is what cubes are made from."""
-    from lightcube.io.pictures import is_pictures  # here: who reads a cube waits for no reader of pictures
-
+def _refuse_other(at: Place) -> None:
+    """Raise `InputError` where what is given as a cube holds some, is what they are made from, or is a solid's mesh."""
     with system_errors(at, "reading"):
-        pictures = is_pictures(at)
-    if pictures:
-        asked = f"lightcube solve {shlex.quote(str(at))} -o cube.zarr"
-        raise InputError(f"{at} is pictures, no cube: make one of them first, as in {asked}")
-    if name_of(at).lower().endswith(".toml"):
+        cubes = _cubes_in(at)
+        if cubes:
+            raise InputError(f"{at} is a folder, no cube: give a cube that is in it, such as {shlex.quote(cubes[0])}")
+        _refuse_pictures(at)
+    name = name_of(at)
+    if name.lower().endswith(".toml"):
         raise InputError(
             f"{at} is a stage's or a scene's file, no cube: make one first, by lightcube solve, of a scene after trace"
         )
+    stem, dot, suffix = name.rpartition(".")
+    if dot + suffix.lower() in _MESHES:
+        kept = shlex.quote(f"{stem}{SHAPE_SUFFIX}")
+        raise InputError(
+            f"{at} is a mesh, which holds no lamps and screens: lightcube hull ... -o {kept} keeps them, view that"
+        )
+
+
+def _cubes_in(folder: Place) -> list[str]:
+    """Cubes that lie in a folder on this disk, and after them shapes, which stand for cubes."""
+    if not (isinstance(folder, Path) and folder.is_dir()):
+        return []
+    found = [name for name in names_in(folder) if name.lower().endswith(_SUFFIXES)]
+    kept = [name for name in found if not name.lower().endswith(RELIEF_SUFFIX)]
+    return [str(folder / name) for name in sorted(kept, key=lambda name: name.lower().endswith(SHAPE_SUFFIX))]
+
+
+def _refuse_pictures(at: Place) -> None:
+    """Raise `InputError` where what is given as a cube is pictures: which command makes one, of them if it can."""
+    from lightcube.io.pictures import is_pictures, is_several  # here: who reads a cube waits for no reader of pictures
+
+    if not is_pictures(at):
+        return
+    if is_several(at):
+        asked = f"lightcube solve {shlex.quote(str(at))} -o cube.zarr"
+        raise InputError(f"{at} is pictures, no cube: make one of them first, as in {asked}")
+    raise InputError(
+        f"{at} is one picture by its name, no cube: make one of two or more, in a folder of their own, "
+        "as in lightcube solve photos -o cube.zarr"
+    )
 
 
 def _read(path: Path) -> Cube:

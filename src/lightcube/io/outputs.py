@@ -13,7 +13,15 @@ import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.io import cubes, documents, movies, printable, reliefs, shapes
-from lightcube.io._files import Replaceable, Writer, check_free, suffix_entry, written_whole
+from lightcube.io._files import (
+    RELIEF_SUFFIX,
+    SHAPE_SUFFIX,
+    Replaceable,
+    Writer,
+    check_free,
+    suffix_entry,
+    written_whole,
+)
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
@@ -80,10 +88,10 @@ KINDS: Mapping[Kind, Row] = {
         "a relief",
         reliefs.WRITERS,
         lambda thing: isinstance(thing, Relief),
-        {reliefs.SUFFIX: reliefs.is_relief_folder},
+        {RELIEF_SUFFIX: reliefs.is_relief_folder},
     ),
     "shape": Row(
-        "a shape", shapes.WRITERS, lambda thing: isinstance(thing, Shape), {shapes.SUFFIX: shapes.is_shape_folder}
+        "a shape", shapes.WRITERS, lambda thing: isinstance(thing, Shape), {SHAPE_SUFFIX: shapes.is_shape_folder}
     ),
     "page": Row("a page", dict.fromkeys((".html", ".htm"), documents.write_text), lambda thing: isinstance(thing, str)),
     "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),

@@ -39,7 +39,8 @@ from lightcube.wording import counted
 
 #: Of films and of all other files with pictures, by suffix.
 _FILMS = (".mp4", ".webm", ".mkv", ".mov", ".avi")
-_ANIMATIONS = (".gif", ".apng", *PICTURE_SUFFIXES)
+_MOVING = (".gif", ".apng")
+_ANIMATIONS = (*_MOVING, *PICTURE_SUFFIXES)
 
 #: Pixels of a picture as it is kept, at most: screens have some hundred rows, and linear light takes four times as much
 #: memory as levels of 8 bits.
@@ -148,6 +149,13 @@ def is_pictures(at: Place) -> bool:
     """Whether a place is named as pictures are, or is a folder on this disk with some in it."""
     folder = isinstance(at, Path) and at.is_dir()
     return any(map(is_picture, names_in(at))) if folder else PurePath(name_of(at)).suffix.lower() in _SUFFIXES
+
+
+def is_several(at: Place) -> bool:
+    """Whether a place is named as films and animations are, or is a folder on this disk with two pictures at least."""
+    if isinstance(at, Path) and at.is_dir():
+        return sum(map(is_picture, names_in(at))) > 1
+    return PurePath(name_of(at)).suffix.lower() in (*_FILMS, *_MOVING)
 
 
 def _is_wanted(name: str) -> bool:

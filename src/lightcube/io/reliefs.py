@@ -10,21 +10,19 @@ import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.io import printable
-from lightcube.io._files import Writer, system_errors
+from lightcube.io._files import RELIEF_SUFFIX, Writer, system_errors
 from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
 from lightcube.io._relief_json import KIND
 from lightcube.optics.checks import checked
 from lightcube.solids.relief import Relief
 from lightcube.solids.relief_mesh import relief_mesh
 
-#: What the name of a relief's file ends with.
-SUFFIX = ".relief.zarr"
 _MOST_LEVEL = 65535
 
 
 def is_relief(path: str | Path) -> bool:
     """Whether a name is that of a relief's file."""
-    return name_of(place(path)).lower().rstrip("/").endswith(SUFFIX)
+    return name_of(place(path)).lower().rstrip("/").endswith(RELIEF_SUFFIX)
 
 
 def is_relief_folder(at: Place) -> bool:
@@ -49,7 +47,7 @@ def read_relief(path: str | Path) -> Relief:
 
     at = place(path)
     if not is_relief(path):
-        raise InputError(f"{at} is no relief: give a folder that ends with {SUFFIX}")
+        raise InputError(f"{at} is no relief: give a folder that ends with {RELIEF_SUFFIX}")
     with fetched(at) as local:
         with system_errors(local, "reading"):
             there = (local / "zarr.json").is_file()
@@ -89,7 +87,7 @@ def _printed(write: Writer) -> Writer:
 
 
 WRITERS: dict[str, Writer] = {
-    SUFFIX: _write,
+    RELIEF_SUFFIX: _write,
     ".png": _write_heights,
     **{suffix: _printed(write) for suffix, write in printable.WRITERS.items()},
 }

@@ -8,14 +8,11 @@ from pathlib import Path
 from lightcube.errors import InputError
 from lightcube.io import printable
 from lightcube.io._bounds import check_file
-from lightcube.io._files import Writer, suffix_entry, system_errors
+from lightcube.io._files import SHAPE_SUFFIX, Writer, suffix_entry, system_errors
 from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
 from lightcube.optics.checks import checked
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.shape import Shape
-
-#: What the name of a shape ends with.
-SUFFIX = ".shape.zarr"
 
 
 @checked
@@ -30,7 +27,7 @@ def read_shape(path: str | Path) -> Shape:
     from lightcube.io import _zarr  # here: Zarr comes with it
 
     at = place(path)
-    suffix_entry(at, {SUFFIX: SUFFIX}, "a shape")
+    suffix_entry(at, {SHAPE_SUFFIX: SHAPE_SUFFIX}, "a shape")
     with fetched(at) as local:
         with system_errors(local, "reading"):
             there = check_file(local).is_dir()
@@ -49,7 +46,7 @@ def written_mesh(path: str | Path) -> Mesh:
 
 def is_shape(path: str | Path) -> bool:
     """Whether a place is named as shapes are."""
-    return name_of(place(path)).lower().endswith(SUFFIX)
+    return name_of(place(path)).lower().endswith(SHAPE_SUFFIX)
 
 
 def is_shape_folder(path: Place) -> bool:
@@ -77,4 +74,4 @@ def _standing(suffix: str) -> Writer:
     return write
 
 
-WRITERS = {SUFFIX: _write, **{suffix: _standing(suffix) for suffix in printable.WRITERS}}
+WRITERS = {SHAPE_SUFFIX: _write, **{suffix: _standing(suffix) for suffix in printable.WRITERS}}

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Literal, get_args
 
 import numpy as np
@@ -22,6 +22,9 @@ from lightcube.wording import counted
 
 Fit = Literal["crop", "pad", "stretch"]
 Picture = Images
+
+#: Shapes of pictures are told as so many parts high at most; they are nearly that by this part of it.
+_HIGHEST, _NEARLY = 16, 0.01
 
 
 def check_fit(name: str) -> Fit:
@@ -70,20 +73,34 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
 def fit_report(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit] = "crop") -> str:
     """Say in one line, without a full stop, what `fit` did to the pictures; sizes are width x height."""
     target = targets.rig.picture_shape
-    sizes = Counter((image.shape[0], image.shape[1]) for image in pictures.images)
-    first = (pictures.images[0].shape[0], pictures.images[0].shape[1])
+    sizes = [(image.shape[0], image.shape[1]) for image in pictures.images]
     count = counted(len(pictures), "picture")
     if set(sizes) == {target}:
-        return f"{count} of {_size(target)}, not resampled"
-    rows, columns = target
-    other_aspect = any(size[0] * columns != size[1] * rows for size in sizes)
+        return f"{count} of {said_sizes([target])}, not resampled"
+    scaled = f"{count}, scaled from {said_sizes(sizes)} to {said_sizes([target])}"
+    if not any(_is_other_shape(size, target) for size in sizes):
+        return scaled
     words = {"crop": "cropped", "pad": "padded", "stretch": "stretched"}
-    did = {words[check_fit(way)] for way in ([ways] if isinstance(ways, str) else ways)} if other_aspect else {"scaled"}
-    done = " or ".join(sorted(did))
-    others = len(sizes) - 1
+    did = {words[check_fit(way)] for way in ([ways] if isinstance(ways, str) else ways)}
+    return f"{scaled}, {' or '.join(sorted(did))} to the shape of {pictures.names[0]}, {_aspect(sizes[0])}"
+
+
+def cut_off(pictures: Pictures, targets: Targets) -> list[float]:
+    """Which part of its area each picture loses where it is cropped, 0 to 1, as they were read."""
+    parts = []
+    for image in pictures.images:
+        size = image.shape[:2]
+        left, top, right, bottom = source_box(size, targets.rig.picture_shape, "crop", pictures.focus)
+        parts.append(1 - (right - left) * (bottom - top) / math.prod(size))
+    return parts
+
+
+def said_sizes(shapes: Sequence[tuple[int, int]]) -> str:
+    """``(rows, columns)`` as people say them, width x height: the first, and how many others there are."""
+    others = len(set(shapes)) - 1
+    rows, columns = shapes[0]
     more = f" and {counted(others, 'other size')}" if others else ""
-    rule = f", the aspect of {pictures.names[0]}" if other_aspect else ""
-    return f"{count}, {done} from {_size(first)}{more} to {_size(target)}{rule}"
+    return f"{columns} x {rows} pixels{more}"
 
 
 def as_levels(targets: Targets) -> Levels:
@@ -166,6 +183,19 @@ def _resample(image: Picture, shape: tuple[int, ...], box: tuple[float, float, f
     return np.stack(planes, axis=2)
 
 
-def _size(shape: tuple[int, int]) -> str:
-    """``(rows, columns)`` as people say it."""
-    return f"{shape[1]} x {shape[0]}"
+def _is_other_shape(size: tuple[int, int], target: tuple[int, int]) -> bool:
+    """Whether pictures of `size`, ``(rows, columns)``, are shaped otherwise, by a pixel at least: less is rounding."""
+    rows, columns = target
+    high, wide = columns * size[0] / size[1], rows * size[1] / size[0]
+    return min(abs(high - rows), abs(wide - columns)) >= 1
+
+
+def _aspect(shape: tuple[int, int]) -> str:
+    """The shape of a picture of ``(rows, columns)`` as photographers say it: a square, 3:2, 9:16; nearly, about 3:2."""
+    ratio = Fraction(shape[1], shape[0])
+    near = (Fraction(round(ratio * high), high) for high in range(1, _HIGHEST + 1))
+    simple = next((each for each in near if abs(each / ratio - 1) <= _NEARLY), None)
+    if simple is None:
+        return f"{float(ratio):.3g}:1"
+    about = "" if simple == ratio else "about "
+    return f"{about}{'a square' if simple == 1 else f'{simple.numerator}:{simple.denominator}'}"

@@ -199,10 +199,16 @@ def _standing(cuts: Sequence[Cut], rig: Rig, grid: Grid, ways: Fit | Sequence[Fi
 def _pictures(sources: Sequence[str], options: Options) -> Pictures:
     """All pictures of several places, one behind the other."""
     if len(sources) == 1:
-        return _read_one(sources[0], options.transfer, least=2, **solving.part(sources[0], options))
+        read = _read_one(sources[0], options.transfer, **solving.part(sources[0], options))
+        if len(read) < 2:
+            raise InputError(
+                f"{sources[0]} holds one picture, and a solid needs two at least, as of its front and its side: "
+                "give another"
+            )
+        return read
     if options.is_of_a_film:
         raise InputError("--most, --every, --from and --to are for one film or animation: give one alone")
-    each = [_read_one(source, options.transfer, least=1) for source in sources]
+    each = [_read_one(source, options.transfer) for source in sources]
     alone = [PurePath(source).stem for source in sources]
     names = [read.names if len(read) > 1 else (one,) for one, read in zip(alone, each, strict=True)]
     return replace(
@@ -215,9 +221,9 @@ def _pictures(sources: Sequence[str], options: Options) -> Pictures:
     )
 
 
-def _read_one(source: str, transfer: Transfer, least: int, **part: Any) -> Pictures:
+def _read_one(source: str, transfer: Transfer, **part: Any) -> Pictures:
     """Pictures of one place."""
-    return _on_white(lambda: io.read_pictures(source, transfer=transfer, least=least, **part))
+    return _on_white(lambda: io.read_pictures(source, transfer=transfer, least=1, **part))
 
 
 def _on_white(read: Callable[[], Read]) -> Read:

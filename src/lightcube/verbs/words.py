@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lightcube.backward.recipe import recipe_of
 from lightcube.backward.solution import Solution
 from lightcube.jobs.publishing import Published
-from lightcube.optics.light import Beams
+from lightcube.optics.light import MOST_GRAIN, Beams, Light
 from lightcube.optics.rig import Rig
 from lightcube.optics.tables import POWER_MOST
-from lightcube.pictures.fitting import fit_report
+from lightcube.pictures.fitting import cut_off, fit_report, said_sizes
 from lightcube.planning.consistency import advice, check
 from lightcube.planning.measured import is_measured
 from lightcube.planning.plan import Plan, narrower
@@ -26,12 +27,16 @@ if TYPE_CHECKING:
 _WORTH_DB = 1.0
 #: So many pictures are named; and so many characters of a name.
 _NAMED, _LONGEST = 5, 40
+#: A picture that loses more than this part of its area by cropping is named.
+_MUCH = 1 / 3
 #: What is said of grain.
 _FROM_NEAR = {
-    "smooth": "the light is smooth, from near by too",
-    "fine": "from near by the light inside pixels is a little uneven",
-    "coarse": "from near by the light inside pixels is uneven: look from further away, or use a larger --grain",
+    "smooth": "from close up too, the pictures are smooth",
+    "fine": "from close up, the pictures look a little grainy, like fine film",
+    "coarse": "from close up, the pictures look grainy, like coarse film: stand further back",
 }
+#: So many times as much is tried against grain as a cube was made with, and so much where that was nothing.
+_SMOOTHER, _LITTLE = 3, 0.01
 
 
 def in_short(planned: Plan, order: "Order | None") -> list[str]:
@@ -40,6 +45,7 @@ def in_short(planned: Plan, order: "Order | None") -> list[str]:
     held = f"; each picture stands for {hold_deg:.2g} degrees to either side of its stop" if hold_deg else ""
     return [
         _wanted(planned),
+        *_cropped(planned),
         f"cube of {voxels(planned.grid.shape)} voxels, {planned.grid.size_mm[2]:.3g} mm wide{held}",
         *expected(planned),
         *gain(planned, order),
@@ -67,6 +73,18 @@ def _wanted(planned: Plan) -> str:
     return ", ".join(counted(count, name) for name, count in counts.items())
 
 
+def _cropped(planned: Plan) -> list[str]:
+    """Which pictures lose much by cropping, the worst first, and what helps; nothing of a stage, which says its own."""
+    if planned.stage is not None or planned.fit != "crop":
+        return []
+    parts = zip(cut_off(planned.pictures, planned.targets), planned.pictures.names, strict=True)
+    much = [f"{part:.0%} of {_short(name)}" for part, name in sorted(parts) if part > _MUCH]
+    if not much:
+        return []
+    helps = "look at it by lightcube check --sheet, move it by --focus X,Y, or keep all by --fit pad"
+    return [f"doubtful: cropping cuts off {_worst(much)}: {helps}"]
+
+
 def unsampled(rig: Rig, light: Beams) -> list[str]:
     """A sentence where lamps have a size that thin beams do not mind."""
     if light != "thin" or not np.any(rig.sums.disc_deg):
@@ -79,13 +97,17 @@ def expected(planned: Plan) -> list[str]:
     """What the pictures will be like, as far as it is known."""
     prediction, by = planned.prediction, " (by method display)" * (planned.recipe.method != "display")
     if prediction.is_known:
-        return [f"{judged(planned.targets.names, prediction.psnr, 'will be')}{by}"]
+        return [f"{judged(planned.targets.names, prediction.psnr, 'will be', planned.targets.rig)}{by}"]
     told = planned.impossible or is_measured(planned.targets.rig, planned.grid)
     return [] if told else ["how good the pictures become was not measured in rooms like this"]
 
 
-def judged(names: Sequence[str], psnr: Iterable[float], are: str) -> str:
-    """How near pictures come, in words, the nearest first, and which of them are no good."""
+def judged(names: Sequence[str], psnr: Iterable[float], are: str, rig: Rig) -> str:
+    """How near pictures come, in words, the nearest first, which of them are no good, and of how many pixels they are.
+
+    The same words of a picture of few pixels and of one of many do not mean as much.
+    """
+    at = f", at {said_sizes([(int(rows), int(columns)) for rows, columns in rig.stops.window])}"
     kinds: dict[str, list[str]] = {}
     for decibels, name in sorted(zip(map(float, psnr), names, strict=True), key=lambda each: -each[0]):
         kinds.setdefault(nearness(decibels), []).append(name)
@@ -93,19 +115,28 @@ def judged(names: Sequence[str], psnr: Iterable[float], are: str) -> str:
     many = counted(len(names), "picture")
     if len(kinds) == 1:
         (kind,) = kinds
-        return f"{label}: all {many} {are} {kind}" if len(names) > 1 else f"{label}: it {one} {kind}"
+        return f"{label}: all {many} {are} {kind}{at}" if len(names) > 1 else f"{label}: it {one} {kind}{at}"
     said = [
         f"{len(those)} {are if len(those) > 1 else one} {kind}{_those(kind, those)}" for kind, those in kinds.items()
     ]
-    return f"{label}: of {many} {', '.join(said[:-1])} and {said[-1]}"
+    return f"{label}: of {many} {', '.join(said[:-1])} and {said[-1]}{at}"
 
 
 def _those(kind: str, names: Sequence[str]) -> str:
     """Which pictures are fair or poor, the worst first."""
     if kind not in ("fair", "poor"):
         return ""
-    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    return f" ({', '.join(name[:_LONGEST] for name in reversed(names[-_NAMED:]))}{more})"
+    return f" ({_worst([_short(name) for name in names])})"
+
+
+def _worst(said: Sequence[str]) -> str:
+    """What is said of the worst, which are the last, the worst of all first, and how many more there are."""
+    more = f" and {len(said) - _NAMED} more" if len(said) > _NAMED else ""
+    return f"{', '.join(reversed(said[-_NAMED:]))}{more}"
+
+
+def _short(name: str) -> str:
+    return name[:_LONGEST]
 
 
 def gain(planned: Plan, order: "Order | None") -> list[str]:
@@ -184,13 +215,25 @@ def holds(made: Published) -> str:
 def solved(solution: Solution) -> list[str]:
     """How good a cube is, how strong a lamp it takes, and what it looks like from near by."""
     cube, scores = solution.cube, solution.cube.scores
-    lines = [judged(cube.names, (view["psnr"] for view in scores["pictures"]), "are")]
+    lines = [judged(cube.names, (view["psnr"] for view in scores["pictures"]), "are", cube.rig)]
     power = float(cube.powers.max())
     if power != 1:
         lines.append(
             f"lamp: at most {power:.3g} times as strong as one that makes the bare wall white ({in_ev(power)})"
         )
-    return [*lines, _FROM_NEAR[grain_word(scores["grain_rms"])]]
+    return [*lines, from_near(scores["grain_rms"], recipe_of(cube).beams)]
+
+
+def from_near(grain_rms: float, light: Light) -> str:
+    """What pictures look like from close up, by their grain, and what makes one that was solved for `light` calmer."""
+    word = grain_word(grain_rms)
+    said = _FROM_NEAR[word]
+    if word != "coarse":
+        return said
+    if light.is_thin:
+        return f"{said}, or solve by method display, without --light thin or --paper"
+    grain = min(_SMOOTHER * light.grain or _LITTLE, MOST_GRAIN)
+    return f"{said}, or try --grain {grain:g}, which costs some likeness" if grain > light.grain else said
 
 
 def duration(seconds: float) -> str:
