@@ -276,6 +276,22 @@ def test_alone_it_trims_what_hardly_shows_and_bends_the_rest() -> None:
     assert repair(word, grid, "none").shape.silhouettes is word
 
 
+@compiled_only
+def test_what_casts_nothing_in_common_is_bent_until_it_does() -> None:
+    """The front is above the side: nothing at all can stand, and alone it bends nevertheless."""
+    grid = Grid((24, 24, 24))
+    inside = np.zeros((3, 96, 96), bool)
+    inside[0, 24:48, 20:76] = inside[1, 50:76, 20:76] = inside[2, 20:76, 20:76] = True
+    given = Silhouettes(inside, walls(grid).rig(), ("F", "S", "T"))
+    assert reach(given, grid).share == 1
+    found = repair(given, grid)
+    assert found.way == "warp"
+    assert reach(found.shape.silhouettes, grid).share < 0.01
+    assert found.overlaps.min() > 0.4
+    with pytest.raises(InputError, match="nothing casts shadows in all these"):
+        repair(given, grid, "trim")
+
+
 def test_bridges_join_pieces() -> None:
     z, y, x = np.mgrid[:9, :11, :25]
     balls = [np.sqrt((z - 4) ** 2 + (y - 5) ** 2 + (x - at) ** 2) - 3.3 for at in (4, 20)]

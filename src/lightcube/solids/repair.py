@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -122,30 +123,36 @@ def repair(
         As `warp` takes them.
     """
     check_wall(wall_px)
-    if way in ("none", "trim", "auto"):
-        shape = hull(silhouettes, grid)
-        if way == "none":
-            return Repaired(silhouettes, shape, way, None)
-        trimmed = Repaired(silhouettes, _trimmed(shape), "trim", None)
-        found = reach(silhouettes, grid)
-        is_little = found.share <= _LITTLE and found.is_one_piece and all(trimmed.kept_forms)
-        if way == "trim" or is_little or len(silhouettes) > MOST_BENT:
-            return trimmed
+    if way == "none":
+        return Repaired(silhouettes, hull(silhouettes, grid), way, None)
     if way == "grow":
         return Repaired(silhouettes, _trimmed(hull(_grown(silhouettes, grid), grid)), way, None)
-    bent = warp(silhouettes, grid, wall_px=wall_px, held=held, told=told)
-    joined = np.empty((0, 3))
+    if way == "trim" or (way == "auto" and _may_be_trimmed(silhouettes, grid)):
+        trimmed = Repaired(silhouettes, _trimmed(hull(silhouettes, grid)), "trim", None)
+        if way == "trim" or all(trimmed.kept_forms) or len(silhouettes) > MOST_BENT:
+            return trimmed
+    return _warped(silhouettes, grid, partial(warp, silhouettes, grid, wall_px=wall_px, held=held, told=told))
+
+
+def _may_be_trimmed(silhouettes: Silhouettes, grid: Grid) -> bool:
+    """Whether hardly anything is lost by it, or they are too many to be bent."""
+    found = reach(silhouettes, grid)
+    return len(silhouettes) > MOST_BENT or (found.share <= _LITTLE and found.is_one_piece)
+
+
+def _warped(silhouettes: Silhouettes, grid: Grid, bend: Callable[..., Warped]) -> Repaired:
+    """Silhouettes bent until one piece casts them, and again where parts or holes have come or gone."""
+    bent, joined = bend(), np.empty((0, 3))
     for _ in range(_ROUNDS):
         if reach(bent.silhouettes, grid).is_one_piece:
             break
         joined = np.concatenate([joined, bridges(hull_field(bent.silhouettes, grid))])
-        bent = warp(silhouettes, grid, wall_px=wall_px, held=held, start=bent, joined=joined, told=told)
+        bent = bend(start=bent, joined=joined)
     best = Repaired(silhouettes, _trimmed(hull(bent.silhouettes, grid)), "warp", bent)
     for _ in range(_ROUNDS):
         if all(best.kept_forms):
             break
-        urgent = _lost(bent.silhouettes, best.shape.silhouettes)
-        bent = warp(silhouettes, grid, wall_px=wall_px, held=held, start=bent, joined=joined, urgent=urgent, told=told)
+        bent = bend(start=bent, joined=joined, urgent=_lost(bent.silhouettes, best.shape.silhouettes))
         other = Repaired(silhouettes, _trimmed(hull(bent.silhouettes, grid)), "warp", bent)
         best = other if sum(other.kept_forms) >= sum(best.kept_forms) else best
     return best
