@@ -51,7 +51,7 @@ def test_a_word_that_must_give_way_is_exit_code_3_with_maps_and_a_better_placeme
     assert done.code == 3, done.err
     assert "1U: 6" in done.out  # per cent
     assert "in the way: 0H (" in done.out
-    assert "of which none casts all: if all silhouettes grow by" in done.out
+    assert "of which none casts all; one would if all silhouettes grew by" in done.out
     assert "best of 24 placements: front = " in done.out
     pictures = [np.asarray(Image.open(path).convert("RGB")) for path in sorted(maps.glob("*.png"))]
     assert len(pictures) == 3
@@ -75,6 +75,13 @@ def test_what_is_beyond_repair_is_exit_code_4(run, tmp_path: Path) -> None:  # t
     assert done.code == 4, done.err
     assert "this is beyond repair" in done.out
     assert "placements" not in done.out
+
+
+def test_a_word_that_another_placement_saves_is_told_that(run, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    done = run("check", *written(tmp_path, "ALT"), "--opaque", "--walls", "--n", 32)
+    assert done.code == 4, done.err
+    assert "contradict each other too much: place them as above" in done.out
+    assert "beyond repair" not in done.out
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,10 @@ def test_a_word_that_contradicts_itself_is_bent(run: Any, word: list[Path], tmp_
     assert done.code == 0
     assert "until one object casts them" in done.out
     assert "watertight, 1 piece" in done.out
+    assert "--placement best may ask for less" in done.out
+    placed = run("hull", *word, "--walls", "--n", 24, "--placement", "best", "-o", tmp_path / "b.stl")
+    assert "may ask for less" not in placed.out
+    assert "placed as front = side, side = top" in placed.err
     levels = np.asarray(Image.open(drawn).convert("RGB")).astype(int)
     for colour in ((52, 55, 60), (236, 120, 70), (104, 160, 214)):  # both, given only, cast only
         assert np.mean(np.abs(levels - colour).max(axis=2) < 3) > 0.003

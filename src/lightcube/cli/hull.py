@@ -157,7 +157,7 @@ def hull(
         )
         return
     out.print(f"{' and '.join(outputs)} {'is' if len(outputs) == 1 else 'are'} ready after {words.duration(seconds)}")
-    for line in [*making.in_words(made), *hulls.results(shape, found, pieces)]:
+    for line in [*making.in_words(made, is_placed=bool(wanted.placed)), *hulls.results(shape, found, pieces)]:
         out.print(line)
     kept = next((output for output in outputs if io.is_shape(output)), None)
     look = "add -o NAME.shape.zarr, and lightcube view" if kept is None else f"lightcube view {kept}"

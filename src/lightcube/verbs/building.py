@@ -157,8 +157,12 @@ def _pieces(found: Reach) -> str:
     if found.is_one_piece:
         more = "" if found.pieces == 1 else f" of {counted(found.pieces, 'piece')}"
         return f"one piece{more} casts all that can be cast"
-    far = "even by 8 voxels none does" if found.gap is None else f"by {found.gap:.1f} voxels one does"
-    return f"it falls into {counted(found.pieces, 'piece')}, of which none casts all: if all silhouettes grow {far}"
+    far = (
+        "none would if all silhouettes grew by 8 voxels"
+        if found.gap is None
+        else f"one would if all silhouettes grew by {found.gap:.1f} voxels"
+    )
+    return f"it falls into {counted(found.pieces, 'piece')}, of which none casts all; {far}"
 
 
 def _walls(building: Building) -> list[str]:
@@ -196,6 +200,8 @@ def _verdict(building: Building) -> str:
         name, overlap = building.wanted.silhouettes.names[worst], building.repaired.overlaps[worst]
         moved = f"outlines would move by {building.repaired.moved_px:.1f} pixels on average"
         return f"{said}; lightcube hull bends them: {moved}, {name} would be {overlap:.0%} of what it is"
+    if building.placed and best(building.placed).share <= _HOPELESS:
+        return "as they stand the silhouettes contradict each other too much: place them as above"
     return (
         "this is beyond repair: the silhouettes contradict each other too much; take fewer of them, or other ones, or "
         "coloured glass, which holds many pictures (lightcube solve)"

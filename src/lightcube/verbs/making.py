@@ -89,13 +89,15 @@ def facts(found: Repaired) -> dict[str, Any]:
     }
 
 
-def in_words(found: Repaired) -> list[str]:
-    """What was done to the silhouettes, for people; nothing where nothing was."""
+def in_words(found: Repaired, *, is_placed: bool) -> list[str]:
+    """What was done to the silhouettes, for people; nothing where nothing was. Placed ones stand best already."""
     names, overlaps = found.given.names, found.overlaps
     worst = float(overlaps.min())
     changed = [name for name, kept in zip(names, found.kept_forms, strict=True) if not kept]
     each = ", ".join(f"{name} {overlap:.0%}" for name, overlap in zip(names, overlaps, strict=True))
-    better = ", and --placement best may ask for less" if found.given.rig.screens.names == WALLS else ""
+    better = (
+        ", and --placement best may ask for less" if found.given.rig.screens.names == WALLS and not is_placed else ""
+    )
     said = []
     if found.way == "warp":
         moved = f"{found.moved_px:.1f} pixels on average"
