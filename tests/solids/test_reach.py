@@ -122,6 +122,9 @@ def test_widening_what_is_in_the_way_by_the_depth_mends_a_pixel(seed: int, count
     depth, place = float(found.depth[picture, row, column]), found.places[picture, row, column]
     onto = projections.of_voxels(projections.matrices(given_.rig), grid) @ np.append(place, 1)
     widths = projections.voxels_a_pixel(given_.rig, grid)
+    landed = onto[:, [1, 0]] / onto[:, 2:]
+    if np.any(landed < 0) or np.any(landed > np.array(given_.rig.picture_shape) - 1):
+        return  # beside a screen is ground, whatever its picture
     mended = given_
     for other in range(count):
         right, below, away = onto[other]

@@ -19,8 +19,11 @@ LOOK = """async (places) => {
   const levels = [];
   for (const place of places) {
     const there = heard("seeked");
+    const painted = new Promise((done) => video.requestVideoFrameCallback(done));
+    const late = new Promise((done) => setTimeout(done, 2000)); // where it is there already
     video.currentTime = place;
     await there;
+    await Promise.race([painted, late]);
     canvas.drawImage(video, 0, 0);
     const { data } = canvas.getImageData(0, 0, video.videoWidth, video.videoHeight);
     const colours = data.filter((_, i) => i % 4 < 3);
