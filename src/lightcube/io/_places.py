@@ -6,6 +6,7 @@ mark, and whoever finds the mark takes the folder for unfinished.
 """
 
 import io
+import json
 import os
 import re
 import shutil
@@ -381,3 +382,12 @@ def _detail(error: Exception, url: str) -> str:
         return type(error).__name__
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return " ".join(said.split())[:150] or type(error).__name__
+
+
+def holds(folder: Place, kind: str) -> bool:
+    """Whether a folder is of this package, and of some kind but a cube."""
+    try:
+        document = json.loads(read_bytes(child(folder, "zarr.json")) or b"")
+        return bool(document["attributes"]["lightcube"]["kind"] == kind)
+    except (OSError, ValueError, LookupError, TypeError):
+        return False

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from io import BytesIO
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.io import printable
 from lightcube.io._files import RELIEF_SUFFIX, Writer, system_errors
-from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
+from lightcube.io._places import Place, fetched, holds, name_of, place
 from lightcube.io._relief_json import KIND
 from lightcube.optics.checks import checked
 from lightcube.solids.relief import Relief
@@ -27,11 +26,7 @@ def is_relief(path: str | Path) -> bool:
 
 def is_relief_folder(at: Place) -> bool:
     """Whether a folder holds a relief, and may therefore be replaced by another one."""
-    try:
-        document = json.loads(read_bytes(child(at, "zarr.json")) or b"")
-        return bool(document["attributes"]["lightcube"]["kind"] == KIND)
-    except (OSError, ValueError, LookupError, TypeError):
-        return False
+    return holds(at, KIND)
 
 
 @checked

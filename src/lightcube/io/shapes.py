@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from lightcube.errors import InputError
 from lightcube.io import printable
 from lightcube.io._bounds import check_file
 from lightcube.io._files import SHAPE_SUFFIX, Writer, suffix_entry, system_errors
-from lightcube.io._places import Place, child, fetched, name_of, place, read_bytes
+from lightcube.io._places import Place, fetched, holds, name_of, place
 from lightcube.optics.checks import checked
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.shape import Shape
@@ -51,11 +50,7 @@ def is_shape(path: str | Path) -> bool:
 
 def is_shape_folder(path: Place) -> bool:
     """Whether a folder holds a shape, and may therefore be replaced by another one."""
-    try:
-        document = json.loads(read_bytes(child(path, "zarr.json")) or b"")
-        return bool(document["attributes"]["lightcube"]["kind"] == "shape")
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
+    return holds(path, "shape")
 
 
 def _write(path: Path, shape: Shape) -> None:

@@ -178,15 +178,12 @@ class _Problem:
             np.add.at(slopes[picture], (i, j), 2 * _JOINED * wanting)
         return loss
 
-    def missing(self, nodes: Reals) -> Flags:
-        """``(picture, row, column)``: pixels inside for which the others leave no room."""
-        values = self.bent(_moves(nodes, *self.distances.shape[1:]))[0]
-        return np.asarray((values < 0) & (self.ways(values)[0] > 0))
-
     def left(self, nodes: Reals) -> float:
-        """Which part of the pixels inside that is."""
+        """Which part of the pixels inside the others leave no room for."""
         values = self.bent(_moves(nodes, *self.distances.shape[1:]))[0]
-        return int(np.count_nonzero(self.missing(nodes))) / max(int(np.count_nonzero(values < 0)), 1)
+        inside = values < 0
+        lost = inside & (self.ways(values)[0] > 0)
+        return int(np.count_nonzero(lost)) / max(int(np.count_nonzero(inside)), 1)
 
 
 def _moves(nodes: Reals, rows: int, columns: int) -> Reals:
