@@ -19,6 +19,7 @@ from lightcube.optics.arrays import Images
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light, finer
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.pictures.targets import Targets
 
 #: Passes at each of the coarser sizes at most; no more than of the cube itself.
@@ -80,7 +81,7 @@ class Job:
     def levels(self) -> int:
         """How often the cube is halved for its start; smaller cubes come first."""
         least = int(self.frozen)
-        if not self.recipe.solver.coarse_to_fine or self.start is not None:
+        if not self.recipe.solver.coarse_to_fine or self.start is not None or isinstance(self.grid, Stack):
             return least
         return max(halvings(self.grid), least)
 
@@ -103,7 +104,7 @@ class Job:
         passes = recipe.passes or recipe.solver.passes
         first = 0 if passes is None else min(FEW_PASSES, int(_FEW_PART * passes))
         fewer = min(light.points, light.row_points) > max(FEW.points, FEW.row_points)
-        if passes is None or not (first and fewer) or self.start is not None:
+        if passes is None or not (first and fewer) or self.start is not None or isinstance(self.grid, Stack):
             return [Phase(recipe, passes)]
         return [Phase(replace(recipe, light=replace(FEW, grain=light.grain)), first), Phase(recipe, passes - first)]
 
@@ -193,6 +194,7 @@ def fingerprint(job: Job) -> Fingerprint:
         "black": float(targets.rig.screens.black.max()),
         "voxels": f"{nz} x {ny} x {nx}",
         "voxel side": grid.voxel_mm if grid.tall == 1 else f"{grid.voxel_mm!r} wide and {grid.slice_mm!r} tall",
+        **({"films": f"{grid.heights_mm} mm in {grid.index!r}"} if isinstance(grid, Stack) else {}),
         "transfer": targets.transfer,
         **{_WORDS.get(name, name): value for name, value in job.recipe.plain().items()},
         "units": job.units,

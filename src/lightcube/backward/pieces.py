@@ -18,6 +18,7 @@ from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import Part, coarse_shape, coarser
 from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
+from lightcube.optics.stack import Stack
 from lightcube.pictures.resampling import enlarged
 from lightcube.solvers.contract import Progress, Result
 
@@ -30,6 +31,9 @@ _SPARE_DB = 0.5
 #: The solver ends where the mean squared difference was never so much smaller than it has been for so many passes, and
 #: for so large a part of all of them: some turns take long.
 _BETTER, _IN_VAIN, _PART_IN_VAIN = 0.99, 30, 1 / 3
+
+#: The largest absorbance of the random films that a stack starts from: 0.02 to 1 are as good, 0 is not (measured).
+_RANDOM = np.float32(0.3)
 
 Floats = NDArray[np.floating[Any]]
 
@@ -149,14 +153,23 @@ def _posed(job: Job, name: str, store: Store, recipe: Recipe) -> tuple[Problem, 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats | None:
     """Extinction that a part of the cube halved `level` times starts from, if any.
 
-    What the job was given, or the next smaller cube, enlarged, which is finished.
+    What the job was given, or the next smaller cube, enlarged, which is finished; films start at random.
     """
     if level == 0 and job.start is not None:
         return np.clip(job.start[part.colours, part.slices], 0, job.max_extinction)
+    if isinstance(job.grid, Stack):
+        return np.minimum(_at_random(job)[part.colours], job.max_extinction)
     if level >= job.levels:
         return None
     whole = _finished(job, store, level_name(level + 1))[VOXELS]
     return enlarged(whole[part.colours], coarse_shape(job.grid.shape, level), part.slices)
+
+
+def _at_random(job: Job) -> Floats:
+    """Films of random cells: clear ones are alike within a pixel, and a solver could never tell them apart."""
+    shape = job.channels, *job.grid.shape
+    absorbance = _RANDOM * np.random.default_rng(job.recipe.seed).random(shape, np.float32)
+    return absorbance / np.float32(job.grid.voxel_mm)
 
 
 def known(job: Job, store: Store, name: str) -> Arrays | None:

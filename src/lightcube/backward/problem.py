@@ -155,7 +155,7 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
     all_that = asked(targets.rig, grid, recipe)
     rig, views = all_that.rig, all_that.rig.views
     wanted, heavy = _wanted(targets, grid, recipe, all_that)
-    matrix = Projector(grid, views, (heavy > 0)[rig.sums.picture])
+    matrix = Projector(grid, rig, (heavy > 0)[rig.sums.picture])
     darkest = decode(targets.rig.screens.black[targets.rig.stops.screen].astype(np.float32), targets.transfer)
     high, channels = views.picture_shape[0], targets.pictures.shape[-1]
     part = part or Part(slice(0, channels), slice(0, grid.shape[0]))
@@ -170,11 +170,14 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
     light = np.maximum(wanted[:, rows, :, part.colours], darkest[all_that.stop, None, None, None])
     own = np.repeat(heavy[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1)
     mixture = None if rig.is_thin else Mixture.of(rig, channels, part.colours, rows)
+    if mixture is not None:
+        mixture = mixture.in_parts(matrix.parts, matrix.areas)
+    lamp = lamp_numbers(targets.rig, rig, all_that.stop, recipe.powers).repeat(matrix.parts)
     return Problem(
         matrix=matrix,
         light=block(light),
         weights=block(own),
-        lighting=Lighting(lamp_numbers(targets.rig, rig, all_that.stop, recipe.powers), mixture),
+        lighting=Lighting(lamp, mixture),
         part=part,
         rows=rows,
         targets=targets,

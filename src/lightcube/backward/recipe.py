@@ -78,6 +78,11 @@ class Recipe:
         small as at this PSNR, dB, and half a decibel more.
     dtype
         Of the computation: ``"float32"`` or ``"float64"``.
+    seed
+        At least 0: of the random films that a stack starts from; cubes have no use for it.
+    assembly_mm
+        How far films lie off when they are put together, root of the mean square of each side, mm: pictures are asked
+        for at `MISPLACED` places of them at once; 0 = as designed. For stacks only.
 
     Raises
     ------
@@ -94,6 +99,8 @@ class Recipe:
     passes: int | None = None
     enough_db: float = math.inf
     dtype: str = "float32"
+    seed: int = 0
+    assembly_mm: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "dtype", _precision(self.dtype))
@@ -112,9 +119,13 @@ class Recipe:
             raise InputError(f"a hold must be a number of degrees of at least 0, not {self.hold_deg:g}")
         if math.isnan(self.enough_db):
             raise InputError("good enough must be a number of dB, or infinity for never, not nan")
+        if not 0 <= self.assembly_mm <= 1e5:
+            raise InputError(f"films lie 0 to 1e5 mm off, not {self.assembly_mm:g}")
+        if self.seed < 0:
+            raise InputError(f"a seed must be a whole number of at least 0, not {self.seed}")
         if self.passes is not None and self.passes < 1:
             raise InputError(f"a solver needs at least 1 pass, not {self.passes}")
-        for name in ("hold_deg", "enough_db"):
+        for name in ("hold_deg", "enough_db", "assembly_mm"):
             object.__setattr__(self, name, float(getattr(self, name)))
 
     @classmethod

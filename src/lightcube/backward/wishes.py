@@ -14,15 +14,22 @@ import numpy as np
 
 from lightcube.backward.mat import places_beyond, widened
 from lightcube.backward.recipe import Recipe
+from lightcube.errors import InputError
 from lightcube.optics.arrays import Counts, Reals
 from lightcube.optics.grid import Grid, dense_step_deg
-from lightcube.optics.light import Light, bundle, finer, is_in_slices
+from lightcube.optics.light import Light, bundle, finer, is_exact, is_in_slices
+from lightcube.optics.moves import misplaced
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 
 #: How finely light is averaged over the pixels of a mat, where that is coarser than over those of the pictures.
 MAT = Light(3, 3)
 #: And over those of the shadow beyond it.
 BEYOND = Light.thin()
+#: At so many places of films that lie off pictures are asked for: 10 are no better (measured).
+MISPLACED = 4
+#: The middle of a pixel, about which means are taken that are exact.
+_MIDDLE = np.zeros((1, 4))
 #: The points of a pixel at which smoothness is asked for.
 SMOOTH = Light(2, 2)
 
@@ -83,6 +90,7 @@ def asked(rig: Rig, grid: Grid, recipe: Recipe) -> Asked:
     picture, wish = np.concatenate(pictures), np.repeat(np.arange(len(wishes)), [len(each) for each in pictures])
     if not recipe.beams.is_thin:
         turned = _split(turned.take(picture), [wishes[each] for each in wish])
+        turned = turned.squared(1.0) if is_exact(rig, grid) else turned
     return Asked(turned, wishes, wish, picture // angles, picture % angles)
 
 
@@ -96,11 +104,25 @@ def _split(rig: Rig, wishes: Sequence[Wish]) -> Rig:
 
 def held(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
     """Every picture at the angles that a hold asks for, those of a picture in a row; fewer where light is averaged."""
-    return rig.held(recipe.hold_deg, dense_step_deg(grid), to_the_ends=recipe.beams.is_thin)
+    turned = rig.held(recipe.hold_deg, dense_step_deg(grid), to_the_ends=recipe.beams.is_thin)
+    return turned if not recipe.assembly_mm else _assembled(turned, recipe, grid)
+
+
+def _assembled(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
+    """Every picture with films that lie off by chance, each time alike for all pictures; those of one in a row."""
+    if not isinstance(grid, Stack):
+        raise InputError("films that lie off are of a stack, and a cube has none: leave --assembly-mm out")
+    random = np.random.default_rng(recipe.seed)
+    off_mm = np.zeros((MISPLACED, grid.shape[0], 3))
+    off_mm[..., :2] = recipe.assembly_mm * random.standard_normal((MISPLACED, grid.shape[0], 2))
+    every = rig.take(np.repeat(np.arange(len(rig)), MISPLACED))
+    return misplaced(every, grid, np.tile(off_mm, (len(rig), 1, 1)))
 
 
 def _wishes(rig: Rig, grid: Grid, recipe: Recipe) -> list[Wish]:
     """What a recipe asks for, the picture itself first; `rig` has the pictures with their mats."""
+    if is_exact(rig, grid):
+        return [Wish(_MIDDLE, _MIDDLE, picture=1.0, mat=1.0)]
     light, in_slices = finer(recipe.beams, rig, grid), is_in_slices(rig, grid)
     own, coarse, single = (bundle(each, in_slices=in_slices) for each in (light, MAT, SMOOTH))
     apart = recipe.mat is not None and len(own[0]) > len(coarse[0])

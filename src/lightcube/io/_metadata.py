@@ -8,14 +8,14 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import ConfigDict, Field, ValidationError
 
 from lightcube.errors import InputError, encodable
 from lightcube.io import _older
+from lightcube.io._blocks import BlockJson, block_to_json
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube, Status
-from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 
 #: Of the files that this version writes; earlier ones are told as this one when they are read (`lightcube.io._older`).
@@ -31,7 +31,7 @@ _Number = Annotated[float, Field(allow_inf_nan=False)]
 _Strict = ConfigDict(extra="forbid", strict=True)
 
 
-class _CubeJson(BaseModel):
+class _CubeJson(BlockJson):
     """Everything of `lightcube.optics.cube.Cube` that is no large array."""
 
     model_config = _Strict
@@ -39,8 +39,6 @@ class _CubeJson(BaseModel):
     format_version: Literal[5]
     written_by: str
     extinction_unit: Literal["1/mm"]
-    voxel_mm: Annotated[_Number, Field(gt=0)]
-    tall: Annotated[_Number, Field(gt=0)] = 1.0
     rig: RigJson
     lamp_powers: list[list[Annotated[_Number, Field(gt=0)]]]
     names: list[str]
@@ -57,8 +55,7 @@ def to_json(cube: Cube) -> dict[str, Any]:
         "format_version": FORMAT_VERSION,
         "written_by": f"lightcube {version('lightcube')}",
         "extinction_unit": "1/mm",
-        "voxel_mm": cube.grid.voxel_mm,
-        **({} if cube.grid.tall == 1 else {"tall": cube.grid.tall}),
+        **block_to_json(cube.grid),
         "rig": rig_to_json(cube.rig),
         "lamp_powers": cube.powers.tolist(),
         "names": plain(cube.names),
@@ -102,10 +99,9 @@ def from_json(path: Path, document: object, extinction: NDArray[Any], targets: N
         raise damaged(path, f"extinction has {extinction.ndim} axes, not 4")
     extinction = _narrowed(path, "extinction", extinction, np.dtype(np.float32))
     try:
-        _, nz, ny, nx = extinction.shape
         return Cube(
             extinction,
-            Grid((nz, ny, nx), said.voxel_mm, said.tall),
+            said.block(extinction.shape[1:]),
             said.rig.rig(),
             np.array(said.lamp_powers, dtype=np.float64),
             targets,

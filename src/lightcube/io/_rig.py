@@ -5,6 +5,7 @@ from dataclasses import fields
 from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from lightcube.optics.rig import Rig
@@ -62,6 +63,7 @@ class _StopsJson(BaseModel):
     angle_deg: list[_Number]
     screen: list[_Count]
     window: list[Annotated[list[_Count], Field(min_length=2, max_length=2)]]
+    films: list[list[Annotated[list[_Number], Field(min_length=7, max_length=7)]]] = []
 
 
 class _LampsJson(BaseModel):
@@ -103,7 +105,7 @@ class RigJson(BaseModel):
             Sums(**said["sums"]),
             Fading(**said["fading"]),
             Turning(**said["turning"]),
-            Stops(**said["stops"]),
+            Stops(**{**said["stops"], "films": np.array(said["stops"]["films"], np.float64)}),
             Lamps(**said["lamps"]),
             Screens(**said["screens"]),
         )
@@ -115,7 +117,13 @@ def rig_to_json(rig: Rig) -> dict[str, Any]:
 
 
 def _plain(part: Any) -> dict[str, Any]:
-    return {each.name: _finite(np.asarray(getattr(part, each.name)).tolist()) for each in fields(part)}
+    arrays = {each.name: np.asarray(getattr(part, each.name)) for each in fields(part)}
+    return {name: _finite(array.tolist()) for name, array in arrays.items() if not _is_usual(name, array)}
+
+
+def _is_usual(name: str, array: NDArray[Any]) -> bool:
+    """Whether an array says nothing: squares are never kept, and films only where they do not lie as usual."""
+    return name == "square" or (name == "films" and array.size == 0)
 
 
 def _finite(value: Any) -> Any:

@@ -7,158 +7,29 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
 from lightcube.errors import InputError
+from lightcube.io._attenuators import AttenuatorFile, attenuator_of
 from lightcube.io._files import system_errors
+from lightcube.io._stage_tables import StageFile
 from lightcube.io._toml import read_tables
 from lightcube.io.pictures import read_pictures
 from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
-from lightcube.optics.transfer import Transfer, check_transfer, decode
-from lightcube.optics.views import doubt_angles, spread_angles
+from lightcube.optics.transfer import Transfer, check_transfer
+from lightcube.optics.views import doubt_angles
 from lightcube.pictures.fitting import Fit, fit
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
-from lightcube.scene.description import Count, Line, Number, Point, Positive, hex_colour, sentence
-from lightcube.wording import counted
+from lightcube.scene.description import sentence
 
-_LISTS = ("lamp", "screen", "picture")
-
-
-def _light(value: Any) -> Any:
-    """An sRGB colour such as ``"#ffeedd"`` in linear light; anything else as it is, for the next check."""
-    colour = hex_colour(value)
-    return colour if colour is value else tuple(decode(np.array(colour)).tolist())
-
-
-Name = Annotated[Line, Field(max_length=64)]
-Flag = Annotated[bool, Field(strict=True)]
-Light = Annotated[Point, BeforeValidator(_light)]
-
-
-class _Table(BaseModel):
-    model_config: ClassVar[ConfigDict] = ConfigDict(extra="forbid", frozen=True, defer_build=True)
-
-    def said(self) -> dict[str, Any]:
-        """The keys that the file gives; what it leaves out has the default of what is made of them."""
-        return {key: getattr(self, key) for key in self.model_fields_set}
-
-
-class CubeTable(_Table):
-    """The cube: `shape` in voxels ``(z, y, x)``, `size_mm` along its longest side, how tall its slices are."""
-
-    shape: tuple[Count, Count, Count]
-    size_mm: Positive = 100.0
-    slices_tall: Count = 1
-    turns: Flag = True
-
-
-class TurntableTable(_Table):
-    """Where the table stops: at the angles `stops_deg`, or `count` times, spread evenly over the whole turn."""
-
-    stops_deg: Annotated[tuple[Number, ...], Field(min_length=1)] = (0.0,)
-    count: Count | None = None
-    axis: Point = (0.0, 0.0, 1.0)
-
-    @model_validator(mode="after")
-    def _one_of_two(self) -> Self:
-        if {"stops_deg", "count"} <= self.model_fields_set:
-            raise PydanticCustomError("stops_deg", "stops_deg and count are both given: use one of the two")
-        return self
-
-    @property
-    def angles_deg(self) -> tuple[float, ...]:
-        """Of the stops, degrees."""
-        return self.stops_deg if self.count is None else tuple(spread_angles(self.count, 360.0).tolist())
-
-
-class LampTable(_Table):
-    """A lamp, as `lightcube.optics.stage.Lamp`, which checks what its numbers may be."""
-
-    name: Name
-    direction: Point | None = None
-    position_mm: Point | None = None
-    colour: Light | None = None
-    power: Number | None = None
-    power_max: Number | None = None
-    turns: Flag | None = None
-    size_deg: Number | None = None
-    reach_mm: Number | None = None
-    falloff_mm: Number | None = None
-    full_at_mm: Number | None = None
-
-    @model_validator(mode="after")
-    def _fixed_or_free(self) -> Self:
-        if {"power", "power_max"} <= self.model_fields_set:
-            raise PydanticCustomError("power", "power and power_max are both given: use one of the two")
-        return self
-
-
-class ScreenTable(_Table):
-    """A screen, as `lightcube.optics.stage.Screen`; `pitch_mm` is the cube's voxel side where it is left out."""
-
-    name: Name
-    centre_mm: Point
-    size_mm: tuple[Number, Number]
-    pitch_mm: Number | None = None
-    normal: Point | None = None
-    up: Point | None = None
-    rear: Flag | None = None
-    turns: Flag | None = None
-    reach_mm: Number | None = None
-    falloff_mm: Number | None = None
-    cosine: Flag | None = None
-    black: Number | None = None
-
-
-class PictureTable(_Table):
-    """One picture for the stop number `stop`, or several for it and the following ones, or one each for `stops`."""
-
-    file: Line
-    screen: Name
-    lamps: tuple[Name, ...] | None = None
-    stop: Count = 1
-    stops: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
-    fit: Fit = "crop"
-
-    @model_validator(mode="after")
-    def _one_of_two(self) -> Self:
-        if {"stop", "stops"} <= self.model_fields_set:
-            raise PydanticCustomError("stops", "stop and stops are both given: use one of the two")
-        return self
-
-    def stops_of(self, count: int, last: int) -> Sequence[int]:
-        """Numbers of the stops, from 1 to `last`, of so many pictures; `InputError` where they do not come out."""
-        stops = range(self.stop, self.stop + count) if self.stops is None else self.stops
-        if len(stops) != count:
-            raise InputError(
-                f"{self.file} holds {counted(count, 'picture')} for {counted(len(stops), 'stop')}: "
-                "give one stop per picture"
-            )
-        if stops[-1] > last and self.stops is None:
-            raise InputError(
-                f"{self.file} holds {counted(count, 'picture')} for the stops from {self.stop} on, "
-                f"and the last one is {last}: "
-                "take out pictures, or add stops"
-            )
-        return stops
-
-
-class StageFile(_Table):
-    """A whole stage file."""
-
-    cube: CubeTable
-    turntable: TurntableTable = TurntableTable()
-    lamp: tuple[LampTable, ...] = ()
-    screen: tuple[ScreenTable, ...] = ()
-    picture: tuple[PictureTable, ...] = ()
+_LISTS = ("lamp", "screen", "picture", "move")
 
 
 def is_stage(path: str | Path) -> bool:
@@ -191,6 +62,8 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
     """
     file, transfer = Path(path), check_transfer(transfer)
     said = _parse(file)
+    if isinstance(said, AttenuatorFile):
+        return _read_attenuator(file, said, transfer)
     with _about(file.name):
         stage = _stage(said)
     doubt_angles(stage.stops_deg, f"{file.name}: turntable: stops_deg", stacklevel=3)
@@ -209,6 +82,32 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
     shots = _told_apart(shots)
     named = Pictures(tuple(images), tuple(shot.name for shot in shots), transfer=transfer, opacities=tuple(opacities))
     return replace(stage, shots=tuple(shots)), named, tuple(fits)
+
+
+def _read_attenuator(file: Path, said: AttenuatorFile, transfer: Transfer) -> tuple[Stage, Pictures, tuple[Fit, ...]]:
+    """Read the pictures of a stage file of films, which are as wide and high as the first one."""
+    read, tables = [], []
+    for number, table in enumerate(said.picture, start=1):
+        with _about(f"{file.name}: picture {number}"):
+            read.append(read_pictures(file.parent / table.file, transfer=transfer, least=1))
+        tables += [table] * len(read[-1])
+    if not read:
+        raise InputError(f"{file.name}: no picture is wanted of these films: name some, [[picture]] file = ...")
+    named = Pictures(
+        tuple(image for pictures in read for image in pictures.images),
+        tuple(name for pictures in read for name in pictures.names),
+        transfer=transfer,
+        opacities=tuple(opacity for pictures in read for opacity in pictures.opacities),
+    )
+    named = replace(named, names=_numbered(named.names))
+    with _about(file.name):
+        return attenuator_of(said, tables, named), named, tuple(table.fit for table in tables)
+
+
+def _numbered(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of which none is used twice."""
+    count = Counter(names)
+    return tuple(f"{name} ({number})" if count[name] > 1 else name for number, name in enumerate(names, 1))
 
 
 def stage_pictures(path: str | Path) -> list[Path]:
@@ -233,10 +132,11 @@ def _about(where: str) -> Iterator[None]:
         raise InputError(f"{where}: {error}") from error
 
 
-def _parse(file: Path) -> StageFile:
-    """Read and check the tables of a stage file."""
+def _parse(file: Path) -> StageFile | AttenuatorFile:
+    """Read and check the tables of a stage file, of a cube or of films."""
+    tables = read_tables(file, file.name)
     try:
-        return StageFile.model_validate(read_tables(file, file.name))
+        return (AttenuatorFile if "stack" in tables else StageFile).model_validate(tables)
     except ValidationError as error:
         raise InputError(f"{file.name}: {_sentence(error.errors(include_url=False)[0])}") from None
 

@@ -18,13 +18,14 @@ from typing import IO, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field, ValidationError
 
 from lightcube.backward.job import Fingerprint, Job, differences, fingerprint, unit_name
 from lightcube.backward.recipe import from_plain
 from lightcube.backward.store import Arrays
 from lightcube.errors import InputError
 from lightcube.io._archives import archive
+from lightcube.io._blocks import BlockJson, block_to_json
 from lightcube.io._bounds import MOST_TEXT, check_file, check_text
 from lightcube.io._files import PARTIAL_SUFFIX, system_errors
 from lightcube.io._metadata import plain
@@ -44,7 +45,6 @@ from lightcube.io._places import (
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.io._workplaces import workplace
 from lightcube.optics.arrays import locked
-from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 from lightcube.pictures.targets import Targets
 from lightcube.solvers import check_lasting, find_method
@@ -61,17 +61,13 @@ _STALE_S = 600.0
 _OWNER = "job-key"
 
 
-class _JobJson(BaseModel):
+class _JobJson(BlockJson):
     """Everything of a job but its arrays."""
-
-    model_config = ConfigDict(extra="forbid", strict=True)
 
     format_version: Literal[5]
     written_by: str
     fingerprint: dict[str, str | int | float | None]
     shape: Annotated[list[Annotated[int, Field(ge=1)]], Field(min_length=3, max_length=3)]
-    voxel_mm: Annotated[float, Field(gt=0, allow_inf_nan=False)]
-    tall: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 1.0
     names: list[str]
     transfer: Transfer
     rig: RigJson
@@ -292,7 +288,7 @@ def load_job(partial: str | Path) -> Job:
         start = locked(arrays["start"]) if "start" in arrays else None
         job = Job(
             targets=Targets(pictures, said.rig.rig(), weights, tuple(said.names), said.transfer),
-            grid=Grid((said.shape[0], said.shape[1], said.shape[2]), said.voxel_mm, said.tall),
+            grid=said.block(said.shape),
             recipe=from_plain(said.recipe),
             units=said.units,
             start=start,
@@ -314,8 +310,7 @@ def _document(job: Job) -> bytes:
         "written_by": f"lightcube {version('lightcube')}",
         "fingerprint": dict(fingerprint(job)),
         "shape": list(grid.shape),
-        "voxel_mm": grid.voxel_mm,
-        "tall": grid.tall,
+        **block_to_json(grid),
         "names": list(targets.names),
         "transfer": targets.transfer,
         "rig": rig_to_json(targets.rig),

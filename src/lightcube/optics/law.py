@@ -94,6 +94,15 @@ class Mixture:
         """Each view a picture, under all of its lamp's light, whose shadow does not fade."""
         return cls(np.arange(views + 1), np.ones((views, channels)), *np.ones((2, views, 1), np.float32))
 
+    def in_parts(self, parts: int, areas: Floats | None) -> "Mixture":
+        """Each view as so many that follow each other, of parts of its pixels' `areas`, ``(views * parts, pixels)``."""
+        if areas is None:
+            return self
+        light, shadow = (each.repeat(parts, axis=0) for each in (self.light, self.shadow))
+        return Mixture(
+            self.starts * parts, self.share.repeat(parts, axis=0), light * areas, np.broadcast_to(shadow, areas.shape)
+        )
+
     def under(self, powers: Floats, dtype: DTypeLike | None = None) -> "kernels.Mixture":
         """The same for compiled loops, under lamps of powers ``(views, channels)``, all in `dtype`; None = as it is."""
         from lightcube.kernels.light import Mixture as Compiled  # here: the compiler comes with it

@@ -29,6 +29,7 @@ from lightcube.optics.arrays import Reals, locked
 from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import PARALLEL, Grid
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 
 #: Means over areas, or the one beam through each pixel's middle.
 Beams = Literal["area", "thin"]
@@ -134,8 +135,11 @@ def bundle(light: Light, *, in_slices: bool) -> tuple[Reals, Reals]:
 
 
 def judged(rig: Rig, grid: Grid) -> Rig:
-    """Each view as those that what is cast is judged by: 55 points a pixel, 16 in a row, times 16 of a lamp's disc."""
-    return _judged(rig, judge_points(rig, grid))
+    """Each view as those that what is cast is judged by: 55 points a pixel, 16 in a row, times 16 of a lamp's disc.
+
+    Or exact means, where they can be had.
+    """
+    return rig.squared(1.0) if is_exact(rig, grid) else _judged(rig, judge_points(rig, grid))
 
 
 def judged_one_by_one(rig: Rig, grid: Grid) -> list[Rig]:
@@ -162,11 +166,12 @@ def in_parts(rig: Rig, grid: Grid, beams: Beams, zoom: int, *, around: bool = Fa
     around
         Whether it is what stands around pictures, which takes fewer points.
     """
-    row = is_in_slices(rig, grid)
+    row, exact = is_in_slices(rig, grid), beams != "thin" and is_exact(rig, grid)
     middles = (np.arange(zoom) + 0.5) / zoom - 0.5
-    points = np.zeros((1, 2)) if beams == "thin" else _part_points(zoom, row=row, around=around)
-    cut = _split if beams == "thin" else _judged
-    return [[cut(rig, points / zoom + (across, down)) for across in middles] for down in ([0.0] if row else middles)]
+    points = np.zeros((1, 2)) if beams == "thin" or exact else _part_points(zoom, row=row, around=around)
+    cut = _split if beams == "thin" or exact else _judged
+    rigs = [[cut(rig, points / zoom + (across, down)) for across in middles] for down in ([0.0] if row else middles)]
+    return [[part.squared(1 / zoom) for part in line] for line in rigs] if exact else rigs
 
 
 def _part_points(zoom: int, *, row: bool, around: bool) -> Reals:
@@ -202,6 +207,15 @@ def judge_points(rig: Rig, grid: Grid) -> Reals:
 def _judge(row: bool) -> Reals:
     """The judge's points: in a row, or of a square."""
     return side_by_side(JUDGE_ROW) if row else _rank_1(JUDGE, JUDGE_STEP, 0)
+
+
+def is_exact(rig: Rig, grid: Grid) -> bool:
+    """Whether means over pixels are taken exactly: those of films whose cells lie along the pixels."""
+    if not isinstance(grid, Stack):
+        return False
+    from lightcube.optics.films import are_exact  # here: the compiler comes with it
+
+    return are_exact(grid, rig)
 
 
 def is_in_slices(rig: Rig, grid: Grid) -> bool:

@@ -177,7 +177,12 @@ class Rig:
     @cached_property
     def is_thin(self) -> bool:
         """Whether every picture is the unfaded shadow of one white lamp in single beams: then the problem is convex."""
-        return bool(len(self.views) == len(self) and np.all(self.sums.share == 1) and self.fading.is_none)
+        return bool(
+            len(self.views) == len(self)
+            and np.all(self.sums.share == 1)
+            and self.fading.is_none
+            and not np.any(self.sums.square)
+        )
 
     @property
     def inside(self) -> Flags:
@@ -255,6 +260,18 @@ class Rig:
         for name, part in parts.items():
             object.__setattr__(rig, name, part)
         return rig
+
+    def of_views(self, views: slice) -> Rig:
+        """Some of the views, and the pictures that they add to."""
+        chosen = np.arange(len(self.views))[views]
+        pictures, number = np.unique(self.sums.picture[chosen], return_inverse=True)
+        taken = self._with_views(chosen)
+        sums, stops = replace(taken.sums, picture=number), _taken(self.stops, pictures)
+        return Rig(taken.views, sums, taken.fading, taken.turning, stops, self.lamps, self.screens)
+
+    def squared(self, side: float) -> Rig:
+        """The same with pixels that show means over squares of a side in pixels, exactly; for films only."""
+        return replace(self, sums=replace(self.sums, square=np.full(len(self.views), float(side))))
 
     def turned(self, degrees: Numbers) -> Rig:
         """The same when the table has turned on by so many degrees: one number, or one per picture."""

@@ -16,7 +16,10 @@ from lightcube.errors import InputError
 from lightcube.optics.arrays import Reals
 from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import Grid
+from lightcube.optics.material import Material
+from lightcube.optics.moves import Move, moved
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.optics.tables import POWER_MAX, POWER_MIN, POWER_MOST, Fading, Lamps, Screens, Stops, Sums, Turning
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import MOST_DEG, Views, unit
@@ -161,12 +164,16 @@ _Named = TypeVar("_Named", Lamp, Screen)
 
 @dataclass(frozen=True)
 class Shot:
-    """A picture that is wanted: its name, on which screen, under which lamps, at which stop (counted from 0)."""
+    """A picture that is wanted: its name, on which screen, under which lamps, at which stop (counted from 0).
+
+    And how the films of a stack lie for it; None = as they lie in the stack.
+    """
 
     name: str
     screen: str
     lamps: tuple[str, ...]
     stop: int = 0
+    move: Move | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -188,6 +195,8 @@ class Stage:
         Of the turntable, through the cube's middle.
     cube_turns
         Whether the table carries the cube.
+    material
+        What bounds the extinction of this block; None = as the recipe says.
 
     Raises
     ------
@@ -202,6 +211,7 @@ class Stage:
     stops_deg: tuple[float, ...] = (0.0,)
     axis: Vector = (0.0, 0.0, 1.0)
     cube_turns: bool = True
+    material: Material | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -266,6 +276,8 @@ class Stage:
             Lamps(tuple(lamps), least, most),
             Screens(tuple(screens), np.array([each.black for each in self.screens]), np.zeros(len(screens), np.bool_)),
         )
+        if isinstance(self.grid, Stack):
+            standing = moved(standing, self.grid, [shot.move for shot in self.shots])
         return standing.turned([self.stops_deg[shot.stop] for shot in self.shots])
 
     def _check_shot(self, shot: Shot) -> None:
@@ -281,6 +293,8 @@ class Stage:
                 raise InputError(f"picture {shot.name!r}: there is no lamp {name!r}: use one of {', '.join(lamps)}")
         if len(set(shot.lamps)) < len(shot.lamps):
             raise InputError(f"picture {shot.name!r} names a lamp twice: name each lamp once")
+        if shot.move is not None and not isinstance(self.grid, Stack):
+            raise InputError(f"picture {shot.name!r}: only the films of a stack are moved: leave out its move")
         if not 0 <= shot.stop < len(self.stops_deg):
             raise InputError(
                 f"picture {shot.name!r}: there is no stop {shot.stop + 1}: the turntable has {len(self.stops_deg)}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -56,26 +56,35 @@ class Sums(_Columns):
     disc_deg
         ``(views,)``: angular diameter of the lamp's disc as seen from the cube's middle, degrees, of which the view is
         the middle; 0 where it has none, or the view is a sample of it.
+    square
+        ``(views,)``: side, in pixels, of the square about each pixel's middle whose mean the view is, exactly; 0, as
+        where nothing is said = its middle beam alone. Only films can be cast so (`lightcube.projection.films`).
     """
 
     picture: Counts
     lamp: Counts
     share: Reals
     disc_deg: Reals
+    square: Reals = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
+        if np.size(self.square) == 0:
+            object.__setattr__(self, "square", np.zeros(np.shape(self.picture)))
         self._keep(
             "picture",
             picture=(np.intp, (None,)),
             lamp=(np.intp, (None,)),
             share=(np.float64, (None, _ANY)),
             disc_deg=(np.float64, (None,)),
+            square=(np.float64, (None,)),
         )
         steps = np.diff(self.picture, prepend=-1)
         if not len(self.picture) or np.any((steps != 0) & (steps != 1)) or steps[0] != 1:
             raise InputError("views of a rig must be in the order of their pictures, none of which is left out")
         if np.any(self.share < 0):
             raise InputError("a rig's shares must be at least 0")
+        if np.any(self.square < 0):
+            raise InputError("the squares of a rig's pixels must have sides of at least 0")
 
     def of_colours(self, channels: int) -> Reals:
         """``(views, channels)``: the share of each view and colour."""
@@ -155,14 +164,27 @@ class Stops(_Columns):
         ``(pictures,)``: angle of the stop (degrees), and the screen, a number into the rig's `Screens`.
     window
         ``(pictures, 2)``: how many rows and columns of the picture, from its upper left, lie on the screen.
+    films
+        ``(pictures, films, 7)``: where each film of a stack lies for each picture, ``(a, b, c, d, x, y, z)``: at (X, Y)
+        in the block's axes, mm, and height z, is what the film has at ``u = a X + b Y + x``, ``v = c X + d Y + y``. No
+        films, as where nothing is said = all lie as the stack has them.
     """
 
     angle_deg: Reals
     screen: Counts
     window: Counts
+    films: Reals = field(default_factory=lambda: np.zeros((0, 0, 7)))
 
     def __post_init__(self) -> None:
-        self._keep("angle_deg", angle_deg=(np.float64, (None,)), screen=(np.intp, (None,)), window=(np.intp, (None, 2)))
+        if np.size(self.films) == 0:
+            object.__setattr__(self, "films", np.zeros((np.size(self.angle_deg), 0, 7)))
+        self._keep(
+            "angle_deg",
+            angle_deg=(np.float64, (None,)),
+            screen=(np.intp, (None,)),
+            window=(np.intp, (None, 2)),
+            films=(np.float64, (None, _ANY, 7)),
+        )
 
 
 @dataclass(frozen=True, eq=False)

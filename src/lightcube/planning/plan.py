@@ -15,6 +15,7 @@ from lightcube.errors import InputError
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, check_tall, dense_step_deg
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.optics.stage import Stage
 from lightcube.optics.views import swept_mm
 from lightcube.pictures.arranging import spread_over_screen
@@ -23,6 +24,7 @@ from lightcube.pictures.fitting import fit as fitted
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from lightcube.pictures.turntable import Turntable
+from lightcube.planning import films
 from lightcube.planning.feasibility import doubtful, impossible
 from lightcube.planning.measured import is_measured, unmeasured, voxels_a_pixel
 from lightcube.planning.prediction import Prediction
@@ -104,13 +106,16 @@ class Plan:
     @cached_property
     def impossible(self) -> list[str]:
         """What cannot be in the room, a sentence each."""
-        return [] if self.stage is None else impossible(self.stage)
+        return [] if self.stage is None or isinstance(self.grid, Stack) else impossible(self.stage)
 
     @cached_property
     def doubtful(self) -> list[str]:
         """What is probably not meant in a room that is described, which pictures are out of reach, what is unknown."""
         unknown = unmeasured(self.targets.rig) if self.prediction.is_known else []
-        return unknown if self.stage is None else [*doubtful(self.stage), *sentences(self.targets), *unknown]
+        if self.stage is None:
+            return unknown
+        doubts = films.doubtful(self.stage) if isinstance(self.grid, Stack) else doubtful(self.stage)
+        return [*doubts, *sentences(self.targets), *unknown]
 
 
 @checked
@@ -232,6 +237,8 @@ def plan_stage(
         As `plan` takes them.
     """
     asked, rig = recipe or Recipe(), stage.rig()
+    if isinstance(stage.grid, Stack):
+        asked = replace(asked, enough_db=math.inf, material=asked.material or stage.material)
     targets = fitted(pictures, rig, ways)
     made = Plan(pictures, targets, stage.grid, asked, ways, Prediction.unknown(len(targets)), stage=stage)
     if not (told or smooth) or made.impossible or not is_measured(rig, stage.grid):

@@ -22,6 +22,7 @@ from lightcube.optics.arrays import Counts, Flags, Floats, Reals, as_numbers
 from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.optics.views import Views, check_reach
 
 if TYPE_CHECKING:
@@ -31,6 +32,28 @@ if TYPE_CHECKING:
 
 #: Of a dot test, which needs few.
 _MOST_COLUMNS = 1000
+
+
+class Engine(Protocol):
+    """What multiplies by a matrix, of which `shape` and `level` are as a `Projector`'s."""
+
+    level: bool
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """``(equations, unknowns)`` of a column."""
+
+    def forward(self, x: Floats) -> Floats:
+        """``A @ x`` of a contiguous block of columns."""
+
+    def adjoint(self, b: Floats) -> Floats:
+        """``A.T @ b`` of a contiguous block of columns."""
+
+    def row(self, index: int) -> tuple[NDArray[np.int64], Reals]:
+        """The unknowns of an equation, and its beam's length (mm) in each."""
+
+    def to_sparse(self) -> csr_array:
+        """The same matrix, float64."""
 
 
 class Projector:
@@ -113,18 +136,15 @@ class Projector:
 
     @checked
     def __init__(self, grid: Grid, rig: Rig | Views, heard: Flags | None = None) -> None:
-        from lightcube.projection.rays import Rays  # here: the compiler comes with them
-        from lightcube.projection.stacked import StackedBeams, is_stacked
-
         views = rig if isinstance(rig, Views) else rig.views
         check_reach(views, grid)
         self.grid, self.views = grid, views
-        self.domain_shape, self.range_shape = grid.shape, (len(views), *views.picture_shape)
         heard = None if heard is None else np.asarray(heard, np.bool_)
-        if heard is not None and heard.shape != self.range_shape:
-            raise InputError(f"which pixels count has shape {heard.shape}, not {self.range_shape}")
-        self._engine = StackedBeams(grid, views, heard) if is_stacked(grid, views) else Rays(grid, views, heard)
+        if heard is not None and heard.shape != (len(views), *views.picture_shape):
+            raise InputError(f"which pixels count has shape {heard.shape}, not {(len(views), *views.picture_shape)}")
+        self._engine = _engine(grid, rig, heard)
         self.shape, self.level = self._engine.shape, self._engine.level
+        self.domain_shape, self.range_shape = grid.shape, (self.parts * len(views), *views.picture_shape)
 
     def __repr__(self) -> str:
         return f"<projector of {' x '.join(map(str, self.domain_shape))} voxels, {self.views}>"
@@ -168,6 +188,16 @@ class Projector:
     def __matmul__(self, x: Floats) -> Floats:
         """``A @ x`` of a vector ``(A.shape[1],)`` or a block ``(A.shape[1], columns)``, as numpy shapes it."""
         return _product(self.forward, x)
+
+    @property
+    def parts(self) -> int:
+        """How many beams each pixel of a view has, which follow each other: 1, or so many rectangles."""
+        return getattr(self._engine, "parts", 1)
+
+    @property
+    def areas(self) -> Floats | None:
+        """``(views * parts, columns * rows)``: the part of its pixel's area that each rectangle has; None of beams."""
+        return getattr(self._engine, "light", None)
 
     @property
     def view_of_row(self) -> Counts:
@@ -288,6 +318,20 @@ class Transpose:
     def to_sparse(self) -> csr_array:
         """Return the same matrix, float64."""
         return self.T.to_sparse().T.tocsr()
+
+
+def _engine(grid: Grid, rig: Rig | Views, heard: Flags | None) -> Engine:
+    """What multiplies by the matrix of a block: the quickest there is."""
+    if isinstance(grid, Stack):
+        from lightcube.projection.films import Middles, Rectangles  # here: the compiler comes with them
+
+        lit = Rig.of(rig, np.zeros(len(rig))) if isinstance(rig, Views) else rig
+        return Rectangles(grid, lit) if np.any(lit.sums.square) else Middles(grid, lit)
+    from lightcube.projection.rays import Rays
+    from lightcube.projection.stacked import StackedBeams, is_stacked
+
+    views = rig if isinstance(rig, Views) else rig.views
+    return StackedBeams(grid, views, heard) if is_stacked(grid, views) else Rays(grid, views, heard)
 
 
 def _product(multiply: Callable[[Floats], Floats], x: Floats) -> Floats:

@@ -10,6 +10,7 @@ from lightcube.optics.arrays import Floats, Images, Reals
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.projection.projector import Projector
 
 #: Views that are computed together at least: enough for all threads; and pixels at most, to bound memory.
@@ -43,9 +44,11 @@ def shadows(
     begun = None
     for batch in _batches(rig):
         own = picture[batch]
-        matrix = Projector(grid, rig.views.take(batch), None if all_inside else rig.inside[own])
+        lit = rig.of_views(batch) if isinstance(grid, Stack) else rig.views.take(batch)
+        matrix = Projector(grid, lit, None if all_inside else rig.inside[own])
         absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
-        light = shown_light(Mixture.of(rig, channels, colours, rows, batch), powers[batch], absorbance, shape)
+        mixture = Mixture.of(rig, channels, colours, rows, batch).in_parts(matrix.parts, matrix.areas)
+        light = shown_light(mixture, powers[batch].repeat(matrix.parts, axis=0), absorbance, shape)
         if begun is not None:
             light[0] += begun
         if batch.stop < len(picture) and picture[batch.stop] == own[-1]:  # more views of the same picture follow
@@ -58,6 +61,8 @@ def shadows(
 def _batches(rig: Rig) -> Iterator[slice]:
     """A few views at a time: whole pictures, as many as are small enough together, or parts of one that is not."""
     most, first = max(_BATCH, _PIXELS // math.prod(rig.picture_shape)), 0
+    if np.any(rig.sums.square):  # of which each is many
+        most = 1
     for start, end in pairwise(rig.starts.tolist()):
         if first < start and end - first > most:
             yield slice(first, start)

@@ -7,6 +7,7 @@ import numpy as np
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.solids.shape import Shape
 
 
@@ -49,6 +50,15 @@ def shape_facts(shape: Shape) -> dict[str, Any]:
 def _block(grid: Grid) -> dict[str, Any]:
     """A block of voxels, by name."""
     nz, ny, nx = grid.shape
+    if isinstance(grid, Stack):
+        return {
+            "films": nz,
+            "cells": f"{ny} x {nx} (y, x)",
+            "size_mm": " x ".join(f"{length:g}" for length in grid.size_mm),
+            "cell_mm": grid.voxel_mm,
+            "heights_mm": list(grid.heights_mm),
+            "index": grid.index,
+        }
     return {
         "voxels": f"{nz} x {ny} x {nx} (z, y, x)",
         "size_mm": " x ".join(f"{length:g}" for length in grid.size_mm),

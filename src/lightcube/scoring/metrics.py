@@ -18,7 +18,7 @@ from lightcube.forward.casting import cast, screens
 from lightcube.optics.arrays import Images, Reals
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
-from lightcube.optics.light import judged_one_by_one
+from lightcube.optics.light import is_exact, judged_one_by_one
 from lightcube.optics.transfer import Transfer, encode
 from lightcube.pictures.fitting import targets_of
 from lightcube.pictures.targets import Targets
@@ -182,6 +182,8 @@ class Seen:
                 for total, value in zip(sums, (picture, display, display.astype(np.float64) ** 2), strict=True):
                     total[index] += value
         light, display, squares = sums / len(rigs)
+        if is_exact(cube.rig, cube.grid):
+            light = np.stack(list(cast(cube)))
         return cls(light.astype(np.float32), display, squares)
 
     def errors(self, wanted: Display, weight: Display) -> Reals:

@@ -142,7 +142,7 @@ def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, f
     n = max(options.voxels)
     rows, columns = cuts[0].coverage.shape
     wide, high = max(1, round(n * min(1.0, columns / rows))), max(1, round(n * min(1.0, rows / columns)))
-    grid = Grid((high, wide, wide), options.size_mm / n)
+    grid = Grid((high, wide, wide), options.longest_mm / n)
     return _standing(cuts, options.turntable.rig(pictures, grid), grid, fit)
 
 
@@ -161,7 +161,7 @@ def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Want
     if placement == "best":
         top = best(placements(cuts))
         placed, cuts = on_which_wall(top, cuts), top.of(cuts)
-    grid, stretched = block(cuts, max(options.voxels), options.size_mm)
+    grid, stretched = block(cuts, max(options.voxels), options.longest_mm)
     made = _with_room(_standing([one.trimmed() for one in cuts], walls(grid).rig(), grid, "stretch"))
     return replace(made, cuts=cuts, stretched=stretched, placed=placed)
 

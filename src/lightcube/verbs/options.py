@@ -8,6 +8,7 @@ import numpy as np
 from lightcube.backward.mat import TONES, Mat
 from lightcube.backward.recipe import Powers, Quality, Recipe
 from lightcube.errors import InputError
+from lightcube.optics.attenuator import Films
 from lightcube.optics.light import Beams, Light
 from lightcube.optics.material import Material
 from lightcube.optics.tables import power_bounds
@@ -21,9 +22,17 @@ from lightcube.solvers import METHODS
 Surround = Literal["dark", "grey", "light", "none"]
 #: Voxels along the longest side of a cube, unless something else is said.
 DEFAULT_N = 128
+#: The longest side of a cube, mm, unless something else is said.
+SIZE_MM = 100.0
 #: Pictures that are taken of a film, at most, unless something else is said.
 FILM_MOST = 32
 
+
+#: What is said of cubes, and not of films.
+_NOT_OF_FILMS = (
+    *("shape", "slices_tall", "picture_width", "hold_deg", "order", "shift", "mat", "elevation_deg", "span_deg"),
+    *("angles_deg", "paper", "lamp_deg", "screen_mm", "grain"),
+)
 
 #: What options are about, in the order in which people are told of them.
 Group = Literal["Pictures", "Geometry", "Lamp", "Material", "Quality"]
@@ -98,7 +107,17 @@ class Options:
         Option("Pictures", "What values of pictures mean: srgb, as screens and cameras do, or linear light itself."),
     ] = "srgb"
     n: Annotated[int | None, Option("Geometry", "Voxels along the cube's longest side.  [default: 128]")] = None
-    size_mm: Annotated[float, Option("Geometry", "Longest side of the cube, in mm.")] = 100.0
+    size_mm: Annotated[
+        float | None,
+        Option("Geometry", "Longest side of the cube, or of pictures of films, in mm.  [default: 100, films 160]"),
+    ] = None
+    films: Annotated[
+        int | None,
+        Option("Geometry", "A stack of so many printed films instead of a cube; --n counts cells along a picture.", 1),
+    ] = None
+    gap_mm: Annotated[
+        float | None, Option("Geometry", "With --films: mm from one film to the next.  [default: 12]")
+    ] = None
     elevation_deg: Annotated[
         float | None,
         Option("Geometry", "How high the lamp stands over the horizon, in degrees; 0 is level.  [default: 35]"),
@@ -123,6 +142,11 @@ class Options:
         bool,
         Option("Geometry", "The paper's set-up: level lamp of power 1, half a turn, pictures of full width."),
     ] = False
+    assembly_mm: Annotated[
+        float | None,
+        Option("Geometry", "With --films: mm by which films may lie off, so that pictures stand it.  [default: 0]"),
+    ] = None
+    seed: Annotated[int, Option("Quality", "Of the random films that a stack starts from.", 0)] = 0
     lamp_max: Annotated[
         float | None,
         Option(
@@ -201,9 +225,37 @@ class Options:
         nz, ny, nx = self.shape or (DEFAULT_N if self.n is None else self.n,) * 3
         if min(nz, ny, nx) < 1:
             raise InputError(f"--n {self.n}: a cube needs at least 1 voxel a side")
-        if not (np.isfinite(self.size_mm) and self.size_mm > 0):
-            raise InputError(f"--size-mm {self.size_mm}: give a positive number of millimetres")
+        self._check_size()
         return nz, ny, nx
+
+    @property
+    def longest_mm(self) -> float:
+        """Longest side of a cube, mm."""
+        return SIZE_MM if self.size_mm is None else self.size_mm
+
+    def _check_size(self) -> None:
+        """Raise `InputError` where a size is none."""
+        if self.size_mm is not None and not (np.isfinite(self.size_mm) and self.size_mm > 0):
+            raise InputError(f"--size-mm {self.size_mm}: give a positive number of millimetres")
+
+    @property
+    def stack(self) -> Films | None:
+        """The films that are asked for, if any; `InputError` where options contradict them."""
+        if self.films is None:
+            if self.gap_mm is not None:
+                raise InputError("--gap-mm is for a stack of films: say how many with --films")
+            return None
+        nothing = Options()
+        for name in _NOT_OF_FILMS:
+            if getattr(self, name) != getattr(nothing, name):
+                raise InputError(f"--{name.replace('_', '-')} is for cubes, not for --films: leave one of the two out")
+        self._check_size()
+        cells, pixel = 64 if self.n is None else self.n, 2 if self.pixel == 1 else self.pixel
+        if cells < pixel or cells % pixel:
+            raise InputError(f"--n {cells} cells do not make whole pixels of {pixel}: give a multiple of that")
+        said = {"gap_mm": self.gap_mm, "size_mm": self.size_mm}
+        given = {name: value for name, value in said.items() if value is not None}
+        return Films(self.films, pixels=cells // pixel, cells_a_pixel=pixel, **given)  # type: ignore[arg-type]
 
     @property
     def middle(self) -> tuple[float, float]:
@@ -299,6 +351,8 @@ class Options:
             "light": self._beams,
             "mat": Mat(TONES[self.mat]) if self.mat in TONES else None,
             "passes": self.iterations,
+            "seed": self.seed,
+            "assembly_mm": self.assembly_mm,
         }
         said = {name: value for name, value in said.items() if value is not None}
         fast = self.iterations is None and self.method == "display"

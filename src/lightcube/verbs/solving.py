@@ -19,6 +19,7 @@ from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.events import Tell
 from lightcube.jobs.partial import begun_units
+from lightcube.optics.attenuator import Films, attenuator
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.planning.plan import Plan, plan, plan_stage
@@ -35,18 +36,9 @@ _QUICK = 40
 
 #: Options that a stage file leaves no room for.
 _SAID_BY_STAGE = (
-    *("n", "shape", "size_mm", "slices_tall", "picture_width", "pixel", "fit", "focus", "angles_deg", "span_deg"),
-    *(
-        "elevation_deg",
-        "paper",
-        "order",
-        "shift",
-        "lamp_power",
-        "lamp_max",
-        "black",
-        "lamp_deg",
-        "screen_mm",
-    ),
+    *("n", "shape", "size_mm", "films", "gap_mm", "slices_tall", "picture_width", "pixel", "fit", "focus"),
+    *("angles_deg", "span_deg", "elevation_deg", "paper", "order", "shift", "lamp_power", "lamp_max", "black"),
+    *("lamp_deg", "screen_mm"),
 )
 
 
@@ -72,7 +64,13 @@ def read(source: str, options: Options, *, told: bool = True) -> Planning:
     InputError
         For all that is said and cannot be; planning, too, for what is found only then.
     """
-    planning = _read_stage(source, options) if io.is_stage(source) else _read_pictures(source, options)
+    films = options.stack
+    if io.is_stage(source):
+        planning = _read_stage(source, options)
+    elif films is not None:
+        planning = _read_films(source, options, films)
+    else:
+        planning = _read_pictures(source, options)
     return lambda small: planning(rehearsals=small, told=told)
 
 
@@ -83,6 +81,24 @@ def _read_stage(source: str, options: Options) -> Callable[..., Plan]:
     smooth = options.grain is None and not recipe.beams.is_thin
     stage, pictures, ways = io.read_stage(source, transfer=options.transfer)
     return partial(plan_stage, stage, pictures, ways, recipe, smooth=smooth)
+
+
+def _read_films(source: str, options: Options, films: Films) -> Callable[..., Plan]:
+    """Read pictures for a stack of films, each of which has a lamp of its own."""
+    focus = options.middle
+    pictures = io.read_pictures(source, transfer=options.transfer, **part(source, options))
+    rows, columns = pictures.images[0].shape[:2]
+    stage = attenuator(pictures.names, films, columns / rows)
+    black, most = options.black, options.lamp_max
+    stage = replace(
+        stage,
+        lamps=tuple(
+            replace(lamp, power=options.lamp_power, power_max=lamp.power_max if most is None else most)
+            for lamp in stage.lamps
+        ),
+        screens=tuple(replace(screen, black=screen.black if black is None else black) for screen in stage.screens),
+    )
+    return partial(plan_stage, stage, replace(pictures, focus=focus), options.fit, options.recipe)
 
 
 def refuse_beside_stage(source: str, options: Options) -> None:
@@ -109,7 +125,7 @@ def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
         replace(pictures, focus=focus),
         max(shape),
         recipe,
-        size_mm=options.size_mm,
+        size_mm=options.longest_mm,
         shape=options.shape,
         tall=float(options.slices_tall),
         picture_width=options.picture_width,
