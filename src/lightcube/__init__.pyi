@@ -11,11 +11,14 @@ from lightcube.forward.casting import cast, play, player
 from lightcube.io import read_pictures, read_relief, read_scene, read_shape, read_stage, read_stage_targets, save
 from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import load
+from lightcube.optics.attenuator import Films, attenuator
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
+from lightcube.optics.moves import Move
 from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.stack import Stack
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import Views, spread_angles
 from lightcube.pictures.fitting import fit
@@ -55,6 +58,7 @@ from lightcube.viewer.page import page
 __all__ = [
     "METHODS",
     "Cube",
+    "Films",
     "Grid",
     "InputError",
     "Label",
@@ -63,6 +67,7 @@ __all__ = [
     "Mat",
     "Material",
     "Mesh",
+    "Move",
     "Pictures",
     "Plan",
     "Prediction",
@@ -80,12 +85,14 @@ __all__ = [
     "Shot",
     "Silhouettes",
     "Solution",
+    "Stack",
     "Stage",
     "Targets",
     "Turntable",
     "Views",
     "Warped",
     "as_cube",
+    "attenuator",
     "best_order",
     "carve",
     "cast",

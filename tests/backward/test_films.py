@@ -1,6 +1,7 @@
 """Solving stacks of films: at random from a seed, for exact means, for films that lie off, no darker than ink."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,14 +14,15 @@ from lightcube.optics.attenuator import Films, attenuator
 from lightcube.optics.material import Material
 from lightcube.optics.moves import Move, misplaced
 from lightcube.optics.stack import Stack
-from lightcube.scoring.metrics import score, score_pictures, targets_of
+from lightcube.pictures.fitting import targets_of
+from lightcube.scoring.metrics import score, score_pictures
 
 NAMES = ["one", "two"]
 #: Three films before two pictures of 4 x 6 pixels.
 FILMS = Films(3, 8.0, size_mm=30.0, pixels=6)
 
 
-def wanted(films: Films = FILMS, count: int = 2, **more: object) -> tuple[lc.Targets, Stack]:
+def wanted(films: Films = FILMS, count: int = 2, **more: Any) -> tuple[lc.Targets, Stack]:
     """Random pictures of a stack."""
     names = [f"p{number}" for number in range(count)]
     stage = attenuator(names, films, 1.5, **more)
@@ -122,7 +124,7 @@ def test_cubes_have_no_films_that_lie_off() -> None:
         lc.solve(targets, grid, lc.Recipe(passes=2, assembly_mm=0.1))
 
 
-@pytest.mark.parametrize(("field", "wrong"), [("seed", -1), ("assembly_mm", -0.1), ("assembly_mm", 1e308)])
-def test_recipes_of_films_are_bounded(field: str, wrong: float) -> None:
+@pytest.mark.parametrize("wrong", [{"seed": -1}, {"assembly_mm": -0.1}, {"assembly_mm": 1e308}])
+def test_recipes_of_films_are_bounded(wrong: dict[str, Any]) -> None:
     with pytest.raises(InputError):
-        lc.Recipe(**{field: wrong})
+        lc.Recipe(**wrong)

@@ -8,15 +8,21 @@ from lightcube.optics.stack import Stack
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 
 
+def stack_of(stage: Stage) -> Stack:
+    """The films of a stage."""
+    assert isinstance(stage.grid, Stack)
+    return stage.grid
+
+
 def room(stack: Stack, *, near: bool = False, low_mm: float = 0.0) -> Rig:
     """Two lamps, a screen below or in the middle, of 4 x 3 pixels of two cells, off the middle."""
-    one, other = {"position_mm": (30.0, 10.0, 200.0)}, {"position_mm": (-60.0, 20.0, 150.0)}
-    if not near:
-        one, other = {"direction": (0.3, 0.2, -1.0)}, {"direction": (-0.25, 0.41, -1.0)}
+    lamps = Lamp("a", direction=(0.3, 0.2, -1.0)), Lamp("b", direction=(-0.25, 0.41, -1.0))
+    if near:
+        lamps = Lamp("a", position_mm=(30.0, 10.0, 200.0)), Lamp("b", position_mm=(-60.0, 20.0, 150.0))
     pixel = 2 * stack.voxel_mm
     screen = Screen("w", (1.0, 0.5, low_mm), (4 * pixel, 3 * pixel), pixel, normal=(0, 0, 1), up=(0, 1, 0))
     shots = Shot("p", "w", ("a",)), Shot("q", "w", ("b",))
-    return Stage(stack, (Lamp("a", **one), Lamp("b", **other)), (screen,), shots).rig()
+    return Stage(stack, lamps, (screen,), shots).rig()
 
 
 def cast(cube: Cube, rig: Rig, beams: int) -> np.ndarray:

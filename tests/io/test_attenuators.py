@@ -8,7 +8,7 @@ from PIL import Image
 
 import lightcube as lc
 from lightcube.errors import InputError
-from lightcube.optics.stack import Stack
+from tests.helpers import films as plain
 
 STACK = "[stack]\nfilms = 3\ngap_mm = 8\nsize_mm = 40\npixels = 8\n"
 TWO = '[[picture]]\nfile = "a.png"\n[[picture]]\nfile = "b.png"\n'
@@ -29,8 +29,7 @@ def read(folder: Path, text: str) -> tuple[lc.Stage, lc.Pictures, tuple[str, ...
 
 def test_a_stack_needs_no_more_than_its_pictures(folder: Path) -> None:
     stage, pictures, ways = read(folder, STACK + TWO)
-    assert isinstance(stage.grid, Stack)
-    assert stage.grid.heights_mm == (-8, 0, 8)
+    assert plain.stack_of(stage).heights_mm == (-8, 0, 8)
     assert stage.screen("wall").pixels == (5, 8)
     assert [shot.name for shot in stage.shots] == list(pictures.names) == ["a", "b"]
     assert [shot.lamps for shot in stage.shots] == [("lamp 1",), ("lamp 2",)]
@@ -65,11 +64,8 @@ def test_films_move_as_they_are_said_to(folder: Path) -> None:
     moves = '[[move]]\nname = "slid"\nfilm = 2\nshift_mm = [5, 0]\n[[move]]\nname = "turned"\nturn_deg = [0, 90, 0]\n'
     lit = TWO.replace('"a.png"\n', '"a.png"\nmove = "slid"\n').replace('"b.png"\n', '"b.png"\nmove = "turned"\n')
     stage, _, _ = read(folder, STACK + moves + lit)
-    one, two = (shot.move for shot in stage.shots)
-    assert one is not None
-    assert two is not None
-    assert one.shift_mm == ((0, 0), (5, 0), (0, 0))
-    assert two.turn_deg == (0, 90, 0)
+    moved = [(shot.move.shift_mm, shot.move.turn_deg) for shot in stage.shots if shot.move is not None]
+    assert moved == [(((0, 0), (5, 0), (0, 0)), (0, 0, 0)), ((), (0, 90, 0))]
     assert len(stage.lamps) == 1
 
 
@@ -77,7 +73,7 @@ def test_ink_and_medium_bound_what_is_solved(folder: Path) -> None:
     stage, _, _ = read(folder, STACK + 'max_density = 1.2\nmedium = "acrylic"\nscreen_mm = 30\n' + TWO)
     assert stage.material is not None
     assert stage.material.most(stage.grid) * stage.grid.voxel_mm == pytest.approx(1.2 * np.log(10))
-    assert stage.grid.index == 1.49
+    assert plain.stack_of(stage).index == 1.49
     assert stage.screen("wall").centre_mm[2] == -38
 
 

@@ -1,6 +1,7 @@
 """What a stack of films is, where its lamps and films stand, the sun, and light that is reflected twice."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from lightcube.optics.moves import Move, misplaced, moved, places_of
 from lightcube.optics.stack import Stack
 from lightcube.optics.sun import sunlight
 from lightcube.projection.projector import Projector
+from tests.helpers import films as plain
 
 NAMES = ["spring", "summer", "autumn", "winter"]
 #: Lamps that stand anywhere.
@@ -41,7 +43,7 @@ def test_a_stack_is_a_block_of_films_at_heights() -> None:
         ({"index": 0.9}, "between 1 and 3"),
     ],
 )
-def test_stacks_that_cannot_be_are_refused(wrong: dict, said: str) -> None:
+def test_stacks_that_cannot_be_are_refused(wrong: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):
         Stack((3, 4, 6), **wrong)
 
@@ -133,17 +135,19 @@ def test_pictures_that_would_be_the_same_are_refused() -> None:
         ({"lamps": (lc.Lamp("level", direction=(1, 0, 0)), *ANY[1:])}, "runs along the films"),
     ],
 )
-def test_rooms_of_films_that_cannot_be_are_refused(wrong: dict, said: str) -> None:
+def test_rooms_of_films_that_cannot_be_are_refused(wrong: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):
         attenuator(NAMES, **wrong)
 
 
 @pytest.mark.parametrize("name", ["count", "gap_mm", "size_mm", "pixels", "cells_a_pixel", "screen_mm"])
 def test_numbers_of_films_are_bounded(name: str) -> None:
+    few: dict[str, Any] = {name: -1}
+    many: dict[str, Any] = {name: 10**9 if name in ("count", "pixels", "cells_a_pixel") else 1e308}
     with pytest.raises(InputError):
-        Films(**{name: -1})
+        replace(Films(), **few)
     with pytest.raises(InputError):
-        Films(**{name: 10**9 if name in ("count", "pixels", "cells_a_pixel") else 1e308})
+        replace(Films(), **many)
 
 
 def test_cubes_have_no_films_to_move() -> None:
@@ -175,10 +179,10 @@ def test_films_lie_in_the_order_that_is_said() -> None:
 
 def test_misplaced_films_are_off_by_so_much_in_the_room() -> None:
     stage = attenuator(NAMES[:2], Films(2), moves=[None, Move("m", turn_deg=(0, 90), shift_mm=((3, 1), (0, 0)))])
-    rig, off = stage.rig(), np.array([[0.5, -0.25, 0.0], [1.0, 2.0, 3.0]])
-    before, after = (paths(stage.grid, each).lines for each in (rig, misplaced(rig, stage.grid, off)))
+    stack, rig, off = plain.stack_of(stage), stage.rig(), np.array([[0.5, -0.25, 0.0], [1.0, 2.0, 3.0]])
+    before, after = (paths(stack, each).lines for each in (rig, misplaced(rig, stack, off)))
     for picture, (first, second) in enumerate(zip(before, after, strict=True)):
-        turn = places_of(stage.grid, rig)[picture, :, :4].reshape(2, 2, 2)
+        turn = places_of(stack, rig)[picture, :, :4].reshape(2, 2, 2)
         slope = np.array([-lamp for lamp in rig.views.lamps[picture, :2]]) / rig.views.lamps[picture, 2] * -1
         seen = -(turn @ off[:, :2, None])[..., 0] + (turn @ slope) * off[:, 2:]
         np.testing.assert_allclose(second[..., 2] - first[..., 2], seen, atol=1e-12)
@@ -186,7 +190,7 @@ def test_misplaced_films_are_off_by_so_much_in_the_room() -> None:
 
 def test_places_are_of_as_many_films_as_the_stack_has() -> None:
     stage = attenuator(NAMES)
-    rig = moved(stage.rig(), stage.grid, [Move("m"), None, None, None])
+    rig = moved(stage.rig(), plain.stack_of(stage), [Move("m"), None, None, None])
     with pytest.raises(InputError, match="places of 5 films do not fit a stack of 3"):
         places_of(Stack((3, 2, 2)), rig)
 
@@ -225,7 +229,7 @@ def test_the_sun_rises_in_the_east_and_windows_face_where_they_are_said_to() -> 
         ((50.0, "06-21", 12.0, 180.0, 91.0), "tilt_deg"),
     ],
 )
-def test_suns_that_do_not_shine_are_refused(given_: tuple, said: str) -> None:
+def test_suns_that_do_not_shine_are_refused(given_: tuple[Any, ...], said: str) -> None:
     with pytest.raises(InputError, match=said):
         sunlight(*given_)
 

@@ -71,6 +71,7 @@ class Films:
             "cells_a_pixel": (self.cells_a_pixel, 1, _MOST_A_PIXEL),
             "gap_mm": (self.gap_mm, 0, 1e5),
             "size_mm": (self.size_mm, 1e-3, 1e5),
+            "index": (self.index, 1, 3),
             "screen_mm": (self.screen_mm or 0.0, 0, 1e5),
         }
         for name, (value, least, most) in bounds.items():

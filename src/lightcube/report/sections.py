@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lightcube.drawing import charts
 from lightcube.drawing.stage import drawing
 from lightcube.optics.cube import Cube
-from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.disturbance import SAID
 from lightcube.optics.told import remembered
 from lightcube.planning.feasibility import facts
 from lightcube.planning.prediction import MOST_DB
@@ -265,13 +265,17 @@ def disturbances(found: Findings) -> str:
     """What is left of the pictures in a set-up that is not perfect."""
     best = found.robust["undisturbed"]["psnr_mean"]
     rows = [
-        (str(DISTURBANCES[name]), number(left["psnr_mean"]), number(left["psnr_min"]), number(best - left["psnr_mean"]))
+        (SAID[name], number(left["psnr_mean"]), number(left["psnr_min"]), number(best - left["psnr_mean"]))
         for name, left in found.robust.items()
     ]
     heads = ("what is off", "mean PSNR, dB", "worst, dB", "costs, dB")
     parts = [table("What is left of the pictures", heads, rows, "figures")]
     darkest = float(found.cube.extinction.max()) * found.cube.grid.voxel_mm
-    if found.robust["extinction"]["psnr_mean"] < best - _COARSE_DB and darkest > 1.1 * _DARK:
+    if (
+        "extinction" in found.robust
+        and found.robust["extinction"]["psnr_mean"] < best - _COARSE_DB
+        and darkest > 1.1 * _DARK
+    ):
         bound = number(_DARK / found.cube.grid.voxel_mm)
         parts.append(
             element(
