@@ -104,8 +104,8 @@ def sizes() -> None:
         told(f"4 pictures, 5 films, density {density:g}", lc.attenuator(pictures(4), FILMS), density=density)
     told("4 pictures, 5 films, 80 mm", lc.attenuator(pictures(4), lc.Films(5, 12.0, size_mm=80)))
     for cells in (1, 4):
-        films = lc.Films(5, 12.0, cells_a_pixel=cells)
-        told(f"4 pictures, 5 films, {cells} cells a pixel", lc.attenuator(pictures(4), films))
+        fine = lc.Films(5, 12.0, cells_a_pixel=cells)
+        told(f"4 pictures, 5 films, {cells} cells a pixel", lc.attenuator(pictures(4), fine))
     for count, many, gap in (
         *((1, 3, 12.0), (2, 2, 12.0), (2, 3, 12.0), (4, 5, 6.0), (6, 6, 12.0)),
         *((9, 5, 12.0), (9, 8, 12.0), (9, 8, 24.0), (16, 8, 24.0)),
@@ -117,19 +117,19 @@ def moved() -> None:
     """Films that are slid, or put into another order, under one lamp; 80 mm."""
     for films, count in ((2, 2), (2, 4), (3, 4)):
         touching = lc.Films(films, 0.0, size_mm=80)
-        apart = [5 * (k - (films - 1) / 2) for k in range(films)]
+        apart = [20 * (k - (films - 1) / 2) for k in range(films)]
         moves = [
             lc.Move(f"slid {n}", shift_mm=tuple((mm * right, mm * up) for mm in apart))
             for n, (right, up) in enumerate([(0, 0), (1, 0), (0, 1), (1, 1)][:count])
         ]
         stage = lc.attenuator(pictures(count), touching, moves=moves)
-        told(f"{count} places of {films} films that touch", stage, density=2.0)
-    lamp = (lc.Lamp("lamp", direction=(5 / 12, 0.0, -1.0)),)
+        told(f"{count} places of {films} films that touch, 20 mm apart", stage, density=2.0, passes=120)
+    lamp = (lc.Lamp("lamp", direction=(10 / 12, 5 / 12, -1.0)),)
     for films, step in ((3, 1), (4, 4)):
         orders = list(itertools.permutations(range(1, films + 1)))[::step][:6]
         moves = [lc.Move(f"order {n}", order=order) for n, order in enumerate(orders)]
         stage = lc.attenuator(pictures(6), lc.Films(films, 12.0, size_mm=80), lamps=lamp, moves=moves)
-        told(f"6 orders of {films} films, a lamp aslant", stage, density=2.0)
+        told(f"6 orders of {films} films, a lamp aslant", stage, density=2.0, passes=120)
 
 
 CASES: dict[str, Callable[[], None]] = {"anywhere": anywhere, "held": held, "sizes": sizes, "moved": moved}

@@ -182,7 +182,7 @@ def _usual_lamps(films: Films, count: int, aspect: float, moves: Sequence[Move |
     """Lamps of which nothing is said: one for each picture, or one for all where films are moved."""
     if any(moves):
         aslant = any(move is not None and move.order for move in moves)
-        return (Lamp(ONLY, direction=(0.42 if aslant else 0.0, 0.0, -1.0)),)
+        return (Lamp(ONLY, direction=(0.83, 0.42, -1.0) if aslant else (0.0, 0.0, -1.0)),)
     return tuple(
         Lamp(f"lamp {number}", direction=(float(x), float(y), -1.0))
         for number, (x, y) in enumerate(outside(lattice(films, count, aspect), films.index), 1)
