@@ -52,9 +52,7 @@ KEEP = typer.Option(help="A picture, by its name, that stays as it is if it can.
 WALL = typer.Option(
     help="How thick walls are at least, mm, where pictures are bent or a shell is made.", rich_help_panel="Material"
 )
-CARVE = typer.Option(
-    help="Take out what no shadow needs: shell or lace.  [default: nothing]", rich_help_panel="Material"
-)
+CARVE = typer.Option(help="Take out what no shadow needs: shell or lace.", rich_help_panel="Material")
 DEEP = typer.Option(help="Voxels that a lace keeps on each ray of light.", min=1, rich_help_panel="Material")
 DRAIN = typer.Option(help="Width of the holes of a shell, mm; 0 = none.", rich_help_panel="Material")
 OVERLAY = typer.Option(help="Draw what is cast over what was given (PNG).", rich_help_panel="Output")
@@ -86,7 +84,7 @@ def hull(
     repair: Annotated[Way, REPAIR] = "auto",
     keep: Annotated[list[str] | None, KEEP] = None,
     wall: Annotated[float, WALL] = 1.2,
-    carve: Annotated[Carving | None, CARVE] = None,
+    carve: Annotated[Carving, CARVE] = "none",
     keep_deep: Annotated[int, DEEP] = 3,
     drain: Annotated[float, DRAIN] = 3.0,
     overlay: Annotated[str | None, OVERLAY] = None,

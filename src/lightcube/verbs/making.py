@@ -30,13 +30,13 @@ class Making:
     wall_mm
         How thick walls are to be.
     carving, deep, drain_mm
-        What is taken out, as `lightcube.carve` takes it; None = nothing.
+        What is taken out, as `lightcube.carve` takes it.
     """
 
     way: Way = "auto"
     keep: Sequence[str] = ()
     wall_mm: float = 1.2
-    carving: Carving | None = None
+    carving: Carving = "none"
     deep: int = 3
     drain_mm: float = 3.0
 
@@ -48,7 +48,7 @@ def make(wanted: Wanted, how: Making, told: Callable[[int, int], None] | None = 
     held, wall_px = _held(wanted, how.keep), _wall_px(wanted, how.wall_mm)
     found = repair(wanted.silhouettes, wanted.grid, how.way, wall_px=wall_px, held=held, told=told)
     shape = found.shape
-    if how.carving is not None:
+    if how.carving != "none":
         shape = carve(shape, how.carving, wall_mm=how.wall_mm, drain_mm=how.drain_mm, deep=how.deep)
     cuts = {name: fact for name, fact in wanted.facts.items() if name in ("pictures", "stretched")}
     made = {"command": "hull", **cuts, "repair": facts(found), "carving": how.carving}
