@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from lightcube.io import read_shape
+from lightcube.solids.silhouettes import FINE
 from tests.cli.test_cli import run
 from tests.solids.test_warp import BARS
 
@@ -81,9 +82,39 @@ def test_a_picture_is_kept(run: Any, word: list[Path], tmp_path: Path) -> None:
     assert overlaps[1] > 0.9
 
 
+@pytest.mark.parametrize("placed", [(), ("--placement", "best")])
+def test_a_part_of_a_picture_is_kept(run: Any, word: list[Path], tmp_path: Path, placed: tuple[str, ...]) -> None:
+    """The left half of the H, wherever it stands, by a mask that is white there and twice as large, or opaque there."""
+    levels = np.zeros((100, 100, 4), np.uint8)
+    levels[:, :50, :3] = levels[:, :50, 3] = 255
+    Image.fromarray(levels).convert("RGB").save(tmp_path / "white.png")
+    levels[..., :3] = 255
+    Image.fromarray(levels).save(tmp_path / "clear.png")
+    base = ("hull", *word, "--walls", "--n", 24, "--wall", 0, *placed)
+    assert run(*base, "-o", tmp_path / "given.shape.zarr", "--repair", "none").code == 0
+    drawn = read_shape(tmp_path / "given.shape.zarr")
+    own = drawn.names.index("front")
+    high, wide = FINE * drawn.rig.stops.window[own]
+    changed = []
+    for mask in ("", "=white.png", "=clear.png"):
+        made = tmp_path / "made.shape.zarr"
+        more = ("--keep", f"front={tmp_path / mask[1:]}") if mask else ()
+        assert run(*base, "-o", made, "--repair", "warp", "--overwrite", *more).code == 0
+        apart = read_shape(made).silhouettes.inside[own] != drawn.silhouettes.inside[own]
+        changed.append((int(apart[:high, : wide // 2].sum()), int(apart[:high, wide // 2 : wide].sum())))
+    free, white, clear = changed
+    assert white == clear
+    if not placed:  # there it hardly has to move
+        assert white[0] < 0.4 * free[0]
+        assert white[1] > 2 * white[0]
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
+        (("--keep", "front=none.png"), "none.png"),
+        (("--keep", "back=a.png"), "--keep back=a.png: there is no such picture: name one of front, side, top"),
+        (("--keep", "front=wide.png"), "wide.png has 20 x 50 pixels and its picture 50 x 50"),
         (("--keep", "back"), "--keep back: there is no such picture: name one of front, side, top"),
         (("--wall", "-1"), "--wall is how thick walls are, 0 mm or more, not -1"),
         (("--carve", "holes"), "holes"),
@@ -93,8 +124,15 @@ def test_a_picture_is_kept(run: Any, word: list[Path], tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_is_one_sentence(
-    run: Any, word: list[Path], tmp_path: Path, given: tuple[str, ...], said: str
+    run: Any,
+    word: list[Path],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    given: tuple[str, ...],
+    said: str,
 ) -> None:
+    monkeypatch.chdir(tmp_path)
+    Image.fromarray(np.full((20, 50), 255, np.uint8)).save("wide.png")
     done = run("hull", *word, "--walls", "--n", 16, "-o", tmp_path / "a.stl", *given)
     assert done.code == 2
     assert said in done.err

@@ -48,7 +48,11 @@ REPAIR = typer.Option(
     "none of it; auto trims what hardly shows, else bends.",
     rich_help_panel="Pictures",
 )
-KEEP = typer.Option(help="A picture, by its name, that stays as it is if it can.", rich_help_panel="Pictures")
+KEEP = typer.Option(
+    help="NAME or NAME=MASK: a picture that stays as it is if it can, or the part of it that is light in a mask. "
+    "It may be said several times.",
+    rich_help_panel="Pictures",
+)
 WALL = typer.Option(
     help="How thick walls are at least, mm, where pictures are bent or a shell is made.", rich_help_panel="Material"
 )
@@ -108,7 +112,7 @@ def hull(
     overlay_file = None if overlay is None else io.Output(overlay, "picture", overwrite)
     if overlay_file is not None:
         overlay_file.check()
-    how = making.Making(repair, keep or (), wall, carve, keep_deep, drain)
+    how = making.Making(repair, wall, carve, keep_deep, drain)
     angles = None if angles_deg is None else arguments.numbers(angles_deg, "--angles-deg")
     said: dict[str, Any] = {"most": most, "every": every, "n": n, "size_mm": size_mm, "span_deg": span_deg}
     options = Options(**said, elevation_deg=elevation_deg, angles_deg=angles)
@@ -118,7 +122,7 @@ def hull(
         tell(Progress(_READ + (_MADE - _READ) * done // of, _STEPS))
 
     with telling("hull", as_json=as_json) as tell:
-        wanted = hulls.read(pictures, options, hulls.Cutting(threshold, invert, walls, fit, placement))
+        wanted = hulls.read(pictures, options, hulls.Cutting(threshold, invert, walls, fit, placement, keep or ()))
         doubts = hulls.doubts(wanted)
         if not as_json:
             for line in [*hulls.in_short(wanted), *(f"note: {each}" for each in doubts)]:

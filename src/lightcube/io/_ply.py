@@ -65,7 +65,10 @@ def read_ply(data: bytes) -> tuple[list[NDArray[np.float64]], str]:
                 raise ValueError("its vertices have no x, y and z")
             corners = np.column_stack([np.concatenate(values[axis]) for axis in "xyz"]).astype(np.float64)
         if name == "face":
-            lists = [each.astype(np.int64) for each in values.get(_CORNERS[0], values.get(_CORNERS[1], []))]
+            alike: dict[int, list[NDArray[Any]]] = {}
+            for each in values.get(_CORNERS[0], values.get(_CORNERS[1], [])):
+                alike.setdefault(each.shape[1], []).append(each)
+            lists = [np.concatenate(each).astype(np.int64) for each in alike.values()]
     if corners is None or not lists:
         raise ValueError("it has no vertices, or no faces that name them")
     if min(int(each.min(initial=0)) for each in lists) < 0 or max(int(each.max(initial=0)) for each in lists) >= len(

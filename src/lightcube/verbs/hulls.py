@@ -8,14 +8,15 @@ from pathlib import PurePath
 from typing import Any, Literal, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Counts, locked
+from lightcube.optics.arrays import Counts, Flags, Images, locked
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
-from lightcube.optics.transfer import Transfer
-from lightcube.pictures.fitting import Fit
+from lightcube.optics.transfer import Transfer, encode
+from lightcube.pictures.fitting import Fit, fill
 from lightcube.pictures.pictures import Pictures
 from lightcube.solids.certificate import Certificate, certify
 from lightcube.solids.cutting import Cut, cut, plain_ground
@@ -25,7 +26,7 @@ from lightcube.solids.printing import stands
 from lightcube.solids.reach import thin_part
 from lightcube.solids.shape import Shape
 from lightcube.solids.silhouettes import FINE, Silhouettes
-from lightcube.solids.standing import silhouettes
+from lightcube.solids.standing import held, silhouettes
 from lightcube.solids.walls import WALLS, block, walls
 from lightcube.verbs import solving
 from lightcube.verbs.options import Options
@@ -49,13 +50,17 @@ Read = TypeVar("Read")
 
 @dataclass(frozen=True)
 class Cutting:
-    """How shapes are cut out of pictures, as `lightcube.cut` takes it, and if they stand on walls or are fitted."""
+    """How shapes are cut out of pictures, as `lightcube.cut` takes it, and if they stand on walls or are fitted.
+
+    `keep` names pictures that are not to be bent, or ``NAME=MASK``, a picture that is light where it is not to be.
+    """
 
     threshold: float | None = None
     invert: bool | None = None
     is_walls: bool = False
     fit: Fit | None = None
     placement: Place = "given"
+    keep: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -72,6 +77,8 @@ class Wanted:
         By which part pictures on three walls were stretched, at most.
     placed
         Which picture stands on which of three walls, in words, where that was chosen.
+    held
+        ``(picture, row, column)``: what is to stay where it is when pictures are bent; None = nothing.
     """
 
     silhouettes: Silhouettes
@@ -79,6 +86,7 @@ class Wanted:
     cuts: tuple[Cut, ...]
     stretched: float = 0.0
     placed: str = ""
+    held: Flags | None = None
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -117,7 +125,7 @@ def read(sources: Sequence[str], options: Options, how: Cutting) -> Wanted:
     if stages:
         return _of_stage(stages[0], options, how)
     pictures = _pictures(sources, options)
-    cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
+    cuts = _kept(cut(pictures, threshold=how.threshold, invert=how.invert), how.keep)
     if how.is_walls and how.fit is not None:
         raise InputError("--fit is for a turntable, and pictures for --walls are stretched to a block: leave out --fit")
     if how.placement != "given" and not how.is_walls:
@@ -133,8 +141,47 @@ def _of_stage(source: str, options: Options, how: Cutting) -> Wanted:
     """The silhouettes of a stage file."""
     solving.refuse_beside_stage(source, options)
     stage, pictures, ways = _on_white(lambda: io.read_stage(source, transfer=options.transfer))
-    cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
+    cuts = _kept(cut(pictures, threshold=how.threshold, invert=how.invert), how.keep)
     return _standing(cuts, stage.rig(), stage.grid, ways)
+
+
+def _kept(cuts: tuple[Cut, ...], keep: Sequence[str]) -> tuple[Cut, ...]:
+    """Shapes with what is to be kept of each: all of those that are named, of others what is light in a mask."""
+    kept: dict[str, Images] = {}
+    by_name = {one.name: one for one in cuts}
+    for said in keep:
+        name, _, mask = (said, "", "") if said in by_name else said.partition("=")
+        if name not in by_name:
+            raise InputError(f"--keep {said}: there is no such picture: name one of {', '.join(by_name)}")
+        of = by_name[name].coverage.shape
+        found = _mask(mask, of) if mask else np.ones(of, np.float32)
+        kept[name] = np.maximum(kept[name], found) if name in kept else found
+    return tuple(replace(one, kept=locked(kept[one.name])) if one.name in kept else one for one in cuts)
+
+
+def _mask(path: str, of: tuple[int, ...]) -> NDArray[np.float32]:
+    """How light each pixel of a mask is, in display values, 0 where it is transparent; made as large as its picture."""
+    read = _read_one(path, "srgb")
+    if len(read) != 1:
+        raise InputError(f"--keep: {path} holds {len(read)} pictures: give one mask")
+    (image,), (rows, columns) = read.images, of
+    own = image.shape[:2]
+    if abs(own[0] * columns - own[1] * rows) > max(own[0], own[1], rows, columns):
+        raise InputError(
+            f"--keep: {path} has {own[0]} x {own[1]} pixels and its picture {rows} x {columns}: give a mask in its "
+            "proportions"
+        )
+    grey = encode(np.clip(image, 0, 1), "srgb").mean(axis=2)
+    grey *= 1 if read.opacities is None or read.opacities[0] is None else read.opacities[0]
+    area = np.zeros((rows, columns, 1), np.float32)
+    fill(
+        area,
+        np.zeros((rows, columns), np.float32),
+        np.ascontiguousarray(grey[..., None], np.float32),
+        "stretch",
+        (0.5, 0.5),
+    )
+    return area[..., 0]
 
 
 def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, fit: Fit) -> Wanted:
@@ -184,16 +231,21 @@ def _with_room(wanted: Wanted) -> Wanted:
     rows, columns = (FINE * side for side in rig.picture_shape)
     inside = np.zeros((len(given), rows, columns), np.bool_)
     room = FINE * more
+    held = None if wanted.held is None else np.zeros((len(given), *rig.picture_shape), np.bool_)
     for picture, shape, (high, wide) in zip(inside, given.inside, FINE * given.rig.stops.window, strict=True):
         picture[room : room + high, room : room + wide] = shape[:high, :wide]
-    return Wanted(Silhouettes(locked(inside), rig, given.names), grid, wanted.cuts)
+    if held is not None and wanted.held is not None:
+        for picture, kept, (high, wide) in zip(held, wanted.held, given.rig.stops.window, strict=True):
+            around = np.pad(kept[:high, :wide], more, mode="edge")
+            picture[: around.shape[0], : around.shape[1]] = around
+    return Wanted(Silhouettes(locked(inside), rig, given.names), grid, wanted.cuts, held=held)
 
 
 def _standing(cuts: Sequence[Cut], rig: Rig, grid: Grid, ways: Fit | Sequence[Fit]) -> Wanted:
     """Shapes put onto a rig; `InputError` where that, or the block, does not fit into the memory."""
     small = len(rig) * math.prod(rig.picture_shape) * FINE**2
     solving.check_memory(_VOXEL_BYTES * math.prod(grid.shape) + _SMALL_BYTES * small)
-    return Wanted(silhouettes(cuts, rig, ways), grid, tuple(cuts))
+    return Wanted(silhouettes(cuts, rig, ways), grid, tuple(cuts), held=held(cuts, rig, ways))
 
 
 def _pictures(sources: Sequence[str], options: Options) -> Pictures:

@@ -1,13 +1,12 @@
 """What `hull` makes of silhouettes: bent, trimmed or added to where they contradict each other, then carved."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Flags
 from lightcube.solids import projections
 from lightcube.solids.carving import Carving, carve
 from lightcube.solids.repair import MOST_BENT, Repaired, Way, repair
@@ -25,8 +24,8 @@ class Making:
 
     Parameters
     ----------
-    way, keep
-        How they are made to agree, and the names of pictures that stay as they are if they can.
+    way
+        How they are made to agree.
     wall_mm
         How thick walls are to be.
     carving, deep, drain_mm
@@ -34,7 +33,6 @@ class Making:
     """
 
     way: Way = "auto"
-    keep: Sequence[str] = ()
     wall_mm: float = 1.2
     carving: Carving = "none"
     deep: int = 3
@@ -45,8 +43,8 @@ def make(wanted: Wanted, how: Making, told: Callable[[int, int], None] | None = 
     """The solid that casts what is wanted, or what that had to become."""
     if not how.wall_mm >= 0:
         raise InputError(f"--wall is how thick walls are, 0 mm or more, not {how.wall_mm:g}")
-    held, wall_px = _held(wanted, how.keep), _wall_px(wanted, how.wall_mm)
-    found = repair(wanted.silhouettes, wanted.grid, how.way, wall_px=wall_px, held=held, told=told)
+    wall_px = _wall_px(wanted, how.wall_mm)
+    found = repair(wanted.silhouettes, wanted.grid, how.way, wall_px=wall_px, held=wanted.held, told=told)
     shape = found.shape
     if how.carving != "none":
         shape = carve(shape, how.carving, wall_mm=how.wall_mm, drain_mm=how.drain_mm, deep=how.deep)
@@ -61,19 +59,6 @@ def _wall_px(wanted: Wanted, wall_mm: float) -> float:
         return 0.0
     pixel_mm = wanted.grid.voxel_mm * float(np.mean(projections.voxels_a_pixel(wanted.silhouettes.rig, wanted.grid)))
     return wall_mm / 2 / pixel_mm + 0.5
-
-
-def _held(wanted: Wanted, keep: Sequence[str]) -> Flags | None:
-    """The pictures that stay as they are."""
-    names = wanted.silhouettes.names
-    for name in keep:
-        if name not in names:
-            raise InputError(f"--keep {name}: there is no such picture: name one of {', '.join(names)}")
-    if not keep:
-        return None
-    held = np.zeros((len(names), *wanted.silhouettes.rig.picture_shape), np.bool_)
-    held[[name in keep for name in names]] = True
-    return held
 
 
 def facts(found: Repaired) -> dict[str, Any]:
