@@ -74,7 +74,7 @@ def hull(
     placement: Annotated[
         hulls.Place,
         typer.Option(
-            help="With --walls: pictures as given, or on other walls or mirrored, as most of them can be cast.",
+            help="With --walls: pictures as given, or another one on top, turned, as most of them can be cast.",
             rich_help_panel="Pictures",
         ),
     ] = "given",

@@ -86,7 +86,8 @@ class Building:
             "placements": [
                 {
                     "order": [self.wanted.cuts[number].name for number in one.order],
-                    "mirrored": list(one.mirrored),
+                    "top_mirrored": one.is_mirrored,
+                    "top_turned_deg": 90 * one.quarters,
                     "unreachable": one.share,
                     "one_piece": one.is_one_piece,
                 }

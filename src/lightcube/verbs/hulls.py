@@ -20,6 +20,7 @@ from lightcube.pictures.fitting import Fit, fill
 from lightcube.pictures.pictures import Pictures
 from lightcube.solids.certificate import Certificate, certify
 from lightcube.solids.cutting import Cut, cut, plain_ground
+from lightcube.solids.likeness import is_along_one_axis, pairs
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.placement import Placement, best, placements
 from lightcube.solids.printing import stands
@@ -40,6 +41,8 @@ _ROOM = 0.08
 _STRETCHED = 0.005
 #: Parts of pictures that are worth a word: near the threshold, in strokes that are too thin, not cast.
 _MANY_NEAR, _MANY_THIN, _SOME = 0.02, 0.01, 0.0005
+#: Pictures along the same lines agree where they share so much: edges are of less than a pixel.
+_ALIKE = 0.95
 
 
 #: Whether pictures stand on three walls as they are given, or as least of them is lost.
@@ -214,11 +217,12 @@ def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Want
 
 
 def on_which_wall(placed: Placement, cuts: Sequence[Cut]) -> str:
-    """Which picture stands on which of three walls, and whether it is mirrored."""
-    return ", ".join(
-        f"{wall} = {cuts[number].name}{' mirrored' if way else ''}"
-        for wall, number, way in zip(WALLS, placed.order, placed.mirrored, strict=True)
-    )
+    """Which picture stands on which of three walls, and how the one on top is turned."""
+    said = ", ".join(f"{wall} = {cuts[number].name}" for wall, number in zip(WALLS, placed.order, strict=True))
+    ways = [" mirrored"] if placed.is_mirrored else []
+    if placed.quarters:
+        ways.append(("", " turned left by 90°", " turned by 180°", " turned right by 90°")[placed.quarters])
+    return said + " and".join(ways)
 
 
 def _with_room(wanted: Wanted) -> Wanted:
@@ -309,7 +313,27 @@ def doubts(wanted: Wanted) -> list[str]:
             said.append(f"{name}: {counted(one.specks, 'speck')} removed")
         if thin > _MANY_THIN:
             said.append(f"{name}: {thin:.0%} of its shape is thinner than two voxels, and may be lost: take more (--n)")
-    return [*said, *_emptied(wanted)]
+    return [*said, *_emptied(wanted), *_alike(wanted)]
+
+
+def _alike(wanted: Wanted) -> list[str]:
+    """Pictures that are seen along the same lines and are not what each other asks for, or all along one."""
+    given = wanted.silhouettes
+    said = []
+    for pair in pairs(given, wanted.grid):
+        if pair.overlap < _ALIKE:
+            one, other = given.names[pair.first], given.names[pair.second]
+            side, must = ("opposite sides", "mirror images") if pair.is_opposite else ("the same side", "alike")
+            said.append(
+                f"{one} and {other} are seen from {side}, and must be {must}, but share {pair.overlap:.0%}: "
+                "give one of them another side, or leave it out"
+            )
+    if is_along_one_axis(given):
+        said.append(
+            "all pictures are seen along one line, and none says how deep the object is, so it fills the block: "
+            "add one from another side"
+        )
+    return said
 
 
 def _emptied(wanted: Wanted) -> list[str]:
