@@ -138,6 +138,47 @@ def test_widening_what_is_in_the_way_by_the_depth_mends_a_pixel(seed: int, count
     assert alone.depth[picture, row, column] <= depth
 
 
+@settings(max_examples=5 if INTERPRETED else 40, deadline=None)
+@given(seed=st.integers(0, 10**6), count=st.integers(3, 4))
+def test_widening_the_culprit_alone_mends_a_pixel_where_it_alone_lacks(seed: int, count: int) -> None:
+    """There; where others lack too they have to be widened as well, as by the depth or less (the test above)."""
+    grid = Grid((12, 10, 11))
+    given_ = blobs(around(grid, count), seed, full=0.45)
+    found = reach(given_, grid)
+    onto = projections.of_voxels(projections.matrices(given_.rig), grid)
+    widths = projections.voxels_a_pixel(given_.rig, grid)
+    for picture, row, column in np.argwhere(found.unreachable & np.isfinite(found.depth))[:: 1 + seed % 7]:
+        depth, place = float(found.depth[picture, row, column]), found.places[picture, row, column]
+        who = int(found.culprit[picture, row, column])
+        landed = onto @ np.append(place, 1)
+        places = landed[:, [1, 0]] / landed[:, 2:]
+        pixels = np.rint(places).astype(int)
+        if np.any(pixels < 1) or np.any(pixels >= np.array(given_.rig.picture_shape) - 1):
+            continue
+        near = [found.given[each, i - 1 : i + 2, j - 1 : j + 2].all() for each, (i, j) in enumerate(pixels)]
+        if not all(near[each] for each in range(count) if each not in (picture, who)):
+            continue
+        there, across = places[who]
+        mended = widened(given_, who, there, across, np.ceil(depth / widths[who]) + 1)
+        assert not reach(mended, grid).unreachable[picture, row, column]
+        return
+
+
+def test_where_two_lack_the_culprit_alone_is_not_enough() -> None:
+    """Side and top leave each other nothing; however wide the side is made, the top still lacks at that place."""
+    n = 12
+    grid, full, top = Grid((n, n, n)), np.ones((n, n), bool), np.ones((n, n), bool)
+    side = full.copy()
+    side[:, 4:] = False
+    top[:5] = False  # y from 7 on is wanting
+    top[5:, 4:] = False  # and all that is to the right
+    found = reach(of_pixels(walls(grid).rig(), full, side, top), grid)
+    assert found.depth[0, 6, 11] > 7
+    assert found.culprit[0, 6, 11] == 2
+    wider = side | True
+    assert reach(of_pixels(walls(grid).rig(), full, wider, top), grid).unreachable[0, 6, 11]
+
+
 def test_the_culprit_is_the_picture_that_lacks_most_where_all_lack_least() -> None:
     """Side and top that leave each other nothing, by half a voxel; a front that has nothing on the left."""
     n = 12
@@ -186,6 +227,26 @@ def test_pieces_that_do_not_cast_all_are_told_with_the_gap_between_them() -> Non
     joined = reach(of_pixels(walls(grid).rig(), *seen(body)), grid)
     assert joined.is_one_piece
     assert joined.gap == 0
+
+
+@pytest.mark.parametrize("thin", range(3))
+def test_the_picture_that_keeps_pieces_apart_is_named(thin: int) -> None:
+    """Two blocks on a bar that is cut in one picture by a strip, two pixels wide, which it alone lacks."""
+    n = 14
+    body = np.zeros((n, n, n), bool)
+    body[2:12, 2:12, 2:12] = True
+    pictures = [picture.copy() for picture in seen(body)]
+    whole = of_pixels(walls(Grid((n, n, n))).rig(), *pictures)
+    assert reach(whole, Grid((n, n, n))).parting == -1
+    for number, picture in enumerate(pictures):
+        if number == thin:
+            picture[:, 6:8] = False
+        else:  # what the others show there too, elsewhere
+            picture[3:5, 6:8] = False
+    found = reach(of_pixels(walls(Grid((n, n, n))).rig(), *pictures), Grid((n, n, n)))
+    assert not found.is_one_piece
+    assert found.parting == thin
+    assert found.gap == pytest.approx(1, abs=0.6)
 
 
 def test_a_speck_beside_a_piece_that_casts_all_does_no_harm() -> None:
