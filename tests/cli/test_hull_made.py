@@ -61,6 +61,38 @@ def test_the_way_can_be_chosen(run: Any, word: list[Path], tmp_path: Path, way: 
     assert np.all(np.array(said["repair"]["overlap"]) <= 1)
 
 
+@pytest.fixture
+def leaning(tmp_path: Path) -> list[Path]:
+    """A wide top on a leg at its corner: from the front and the side a seven, from above a square."""
+    paths = []
+    for name in ("front", "side", "top"):
+        levels = np.full((50, 50), 255, np.uint8)
+        levels[5:15, 5:45] = 0
+        levels[5:45, 5 : 45 if name == "top" else 14] = 0
+        paths.append(tmp_path / f"{name}.png")
+        Image.fromarray(levels).save(paths[-1])
+    return paths
+
+
+def test_what_would_tip_over_gets_a_base_unless_told_otherwise(run: Any, leaning: list[Path], tmp_path: Path) -> None:
+    made = {}
+    for base in ("auto", "none", "5"):
+        out = tmp_path / f"{base}.shape.zarr"
+        done = run("hull", *leaning, "--walls", "--n", 32, "-o", out, "--base", base, "--json")
+        assert done.code == 0
+        made[base] = told(done.out)
+    assert [made[base]["stands"] for base in made] == [True, False, True]
+    assert made["none"]["base_mm"] == 0
+    assert made["auto"]["base_mm"] == pytest.approx(2 * 100 / 32)
+    assert made["5"]["base_mm"] == 5
+    assert min(each["overlap_min"] for each in made.values()) > 0.97
+    said = run("hull", *leaning, "--walls", "--n", 32, "-o", tmp_path / "a.stl")
+    assert "it stands on a base of 6.2 mm, below its pictures' lowest row and in none of them" in said.out
+    assert "it tips over" not in said.out
+    assert "it tips over" in run("hull", *leaning, "--walls", "--n", 32, "-o", tmp_path / "b.stl", "--base", "none").out
+    assert run("view", tmp_path / "auto.shape.zarr", "-o", tmp_path / "a.html").code == 0
+
+
 @pytest.mark.parametrize("carving", ["shell", "lace"])
 def test_material_is_taken_out(run: Any, word: list[Path], tmp_path: Path, carving: str) -> None:
     volumes = []
@@ -119,6 +151,9 @@ def test_a_part_of_a_picture_is_kept(run: Any, word: list[Path], tmp_path: Path,
         (("--wall", "-1"), "--wall is how thick walls are, 0 mm or more, not -1"),
         (("--carve", "holes"), "holes"),
         (("--keep-deep", "0"), "keep-deep"),
+        (("--base", "thick"), "--base thick"),
+        (("--base", "-3"), "--base -3: give how thick it is in mm, auto or none"),
+        (("--base", "1000"), "a base is thicker than 0 mm and at most"),
         (("--carve", "shell", "--drain", "-2"), "a drain 0 mm or more"),
         (("--repair", "mend"), "mend"),
     ],

@@ -59,6 +59,11 @@ WALL = typer.Option(
 CARVE = typer.Option(help="Take out what no shadow needs: shell or lace.", rich_help_panel="Material")
 DEEP = typer.Option(help="Voxels that a lace keeps on each ray of light.", min=1, rich_help_panel="Material")
 DRAIN = typer.Option(help="Width of the holes of a shell, mm; 0 = none.", rich_help_panel="Material")
+BASE = typer.Option(
+    help="A base below the pictures' lowest row, which none of them shows: its thickness, mm; none; or auto, where it "
+    "would tip over.",
+    rich_help_panel="Material",
+)
 OVERLAY = typer.Option(help="Draw what is cast over what was given (PNG).", rich_help_panel="Output")
 #: Steps that are told of: to have read, to have made, to have written.
 _READ, _MADE, _WRITTEN, _STEPS = 1, 17, 19, 20
@@ -91,6 +96,7 @@ def hull(
     carve: Annotated[Carving, CARVE] = "none",
     keep_deep: Annotated[int, DEEP] = 3,
     drain: Annotated[float, DRAIN] = 3.0,
+    base: Annotated[str, BASE] = "auto",
     overlay: Annotated[str | None, OVERLAY] = None,
     most: Annotated[int | None, flag("most")] = None,
     every: Annotated[int | None, flag("every")] = None,
@@ -112,7 +118,7 @@ def hull(
     overlay_file = None if overlay is None else io.Output(overlay, "picture", overwrite)
     if overlay_file is not None:
         overlay_file.check()
-    how = making.Making(repair, wall, carve, keep_deep, drain)
+    how = making.Making(repair, wall, carve, keep_deep, drain, arguments.base_mm(base))
     angles = None if angles_deg is None else arguments.numbers(angles_deg, "--angles-deg")
     said: dict[str, Any] = {"most": most, "every": every, "n": n, "size_mm": size_mm, "span_deg": span_deg}
     options = Options(**said, elevation_deg=elevation_deg, angles_deg=angles)
@@ -146,7 +152,12 @@ def hull(
     if as_json:
         mesh = shape.mesh
         facts: dict[str, Any] = {"volume_mm3": mesh.volume_mm3, "faces": len(mesh), "bad_edges": mesh.bad_edges}
-        facts |= {"pieces": pieces, "stands": stands(mesh), "repair": making.facts(made)}
+        facts |= {
+            "pieces": pieces,
+            "stands": stands(mesh),
+            "base_mm": shape.provenance["base_mm"],
+            "repair": making.facts(made),
+        }
         json_line(
             "result",
             out=outputs[0],

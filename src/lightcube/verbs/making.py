@@ -2,20 +2,28 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.solids import projections
+from lightcube.solids.base import with_base
 from lightcube.solids.carving import Carving, carve
+from lightcube.solids.printing import stands
 from lightcube.solids.repair import MOST_BENT, Repaired, Way, repair
+from lightcube.solids.shape import Shape
 from lightcube.solids.walls import WALLS
 from lightcube.verbs.hulls import Wanted
 from lightcube.wording import counted
 
 #: What is left out of silhouettes is worth a word above this part of one, and advice above that.
 _SOME, _MUCH = 0.0005, 0.05
+#: How thick a base is where nobody says so, in longest sides of the block.
+_BASE = 0.03
+
+#: How thick a base is, in mm, or whether there is none, or one where a solid would tip over.
+Base = float | Literal["auto", "none"]
 
 
 @dataclass(frozen=True)
@@ -30,6 +38,8 @@ class Making:
         How thick walls are to be.
     carving, deep, drain_mm
         What is taken out, as `lightcube.carve` takes it.
+    base_mm
+        How thick a base is on which it stands; "auto" where it would tip over.
     """
 
     way: Way = "auto"
@@ -37,6 +47,7 @@ class Making:
     carving: Carving = "none"
     deep: int = 3
     drain_mm: float = 3.0
+    base_mm: Base = "auto"
 
 
 def make(wanted: Wanted, how: Making, told: Callable[[int, int], None] | None = None) -> Repaired:
@@ -48,9 +59,25 @@ def make(wanted: Wanted, how: Making, told: Callable[[int, int], None] | None = 
     shape = found.shape
     if how.carving != "none":
         shape = carve(shape, how.carving, wall_mm=how.wall_mm, drain_mm=how.drain_mm, deep=how.deep)
+    shape, base_mm = _standing(shape, how.base_mm)
     cuts = {name: fact for name, fact in wanted.facts.items() if name in ("pictures", "stretched")}
-    made = {"command": "hull", **cuts, "repair": facts(found), "carving": how.carving}
+    made = {"command": "hull", **cuts, "repair": facts(found), "carving": how.carving, "base_mm": base_mm}
     return replace(found, shape=replace(shape, provenance=made))
+
+
+def _standing(shape: Shape, base_mm: Base) -> tuple[Shape, float]:
+    """A solid with a base, where one is asked for or it would tip over and one helps, and how thick that is."""
+    if base_mm == "none":
+        return shape, 0.0
+    if base_mm != "auto":
+        return with_base(shape, base_mm), base_mm
+    if stands(shape.mesh):
+        return shape, 0.0
+    thick_mm = max(_BASE * shape.grid.longest * shape.grid.voxel_mm, 2 * float(shape.grid.sides_mm[2]))
+    try:
+        return with_base(shape, thick_mm), thick_mm
+    except InputError:  # what stands on nothing that is hidden is left as it is, and told to tip over
+        return shape, 0.0
 
 
 def _wall_px(wanted: Wanted, wall_mm: float) -> float:
@@ -94,6 +121,8 @@ def in_words(found: Repaired, *, is_placed: bool) -> list[str]:
         said.append(f"what no object casts is left out: of what was drawn it casts {each}")
     if said and changed:
         said.append(f"as drawn, {', '.join(changed)} had other parts or holes: look at it (--overlay)")
+    if thick_mm := found.shape.provenance.get("base_mm"):
+        said.append(f"it stands on a base of {thick_mm:.2g} mm, below its pictures' lowest row and in none of them")
     if found.way == "trim" and 1 - worst > _MUCH and len(names) > MOST_BENT:
         many = counted(len(names), "picture")
         said.append(
