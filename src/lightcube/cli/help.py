@@ -66,6 +66,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube score cube.zarr", "how near each picture comes"),
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
         ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
+        ("lightcube score word.stl front.png side.png top.png --walls", "what any mesh casts beside pictures"),
     ],
     "relief": [
         ("lightcube relief a.jpg b.jpg c.jpg d.jpg -o plate.stl --sheet sheet.png", "four photographs in one plate"),

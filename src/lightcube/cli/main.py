@@ -20,7 +20,7 @@ COMMANDS: Mapping[str, str] = {
     "carve": "Take material out of a finished shape, all over or where a brush or a ray says; its shadows stay.",
     "relief": "Make one relief that shows a picture under each of up to four low lamps.",
     "play": "Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.",
-    "score": "Compare what a cube, a shape or a relief really casts with what was wanted.",
+    "score": "Compare what a cube, a shape, a relief or a mesh really casts with what was wanted.",
     "view": "Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail.",
     "report": (
         "Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, how it was made."
