@@ -61,6 +61,20 @@ def test_the_way_can_be_chosen(run: Any, word: list[Path], tmp_path: Path, way: 
     assert np.all(np.array(said["repair"]["overlap"]) <= 1)
 
 
+def test_what_is_thinner_than_walls_is_listed(run: Any, word: list[Path], tmp_path: Path) -> None:
+    """Bars of 8 pixels of 40 are 20 mm thick; a lace of them is not."""
+    base = ("hull", *word, "--walls", "--n", 32, "--repair", "grow", "--overwrite", "-o", tmp_path / "a.stl")
+    fine = told(run(*base, "--wall", 4, "--json").out)
+    assert fine["thin"]["share"] < 0.005
+    assert "thinner than" not in run(*base, "--wall", 4).out
+    lace = (*base, "--wall", 12, "--carve", "lace", "--keep-deep", 1)
+    found = told(run(*lace, "--json").out)["thin"]
+    assert found["share"] > 0.5
+    assert 0 < len(found["places"]) <= 5
+    assert "of it is thinner than 12 mm, most of that around (" in run(*lace).out
+    assert told(run(*base, "--wall", 0, "--json").out)["thin"] is None
+
+
 @pytest.fixture
 def leaning(tmp_path: Path) -> list[Path]:
     """A wide top on a leg at its corner: from the front and the side a seven, from above a square."""

@@ -17,7 +17,8 @@ from lightcube.solids.carving import Carving
 from lightcube.solids.printing import stands
 from lightcube.solids.reach import count_pieces
 from lightcube.solids.repair import Way
-from lightcube.verbs import hulls, making, words
+from lightcube.solids.shape import Shape
+from lightcube.verbs import hull_words, hulls, making, words
 from lightcube.verbs.options import Options
 
 SOURCES = Annotated[
@@ -129,9 +130,9 @@ def hull(
 
     with telling("hull", as_json=as_json) as tell:
         wanted = hulls.read(pictures, options, hulls.Cutting(threshold, invert, walls, fit, placement, keep or ()))
-        doubts = hulls.doubts(wanted)
+        doubts = hull_words.doubts(wanted)
         if not as_json:
-            for line in [*hulls.in_short(wanted), *(f"note: {each}" for each in doubts)]:
+            for line in [*hull_words.in_short(wanted), *(f"note: {each}" for each in doubts)]:
                 err.print(line)
         if not dry_run:
             tell(Progress(_READ, _STEPS))
@@ -157,6 +158,7 @@ def hull(
             "stands": stands(mesh),
             "base_mm": shape.provenance["base_mm"],
             "repair": making.facts(made),
+            "thin": _thin(shape),
         }
         json_line(
             "result",
@@ -170,8 +172,16 @@ def hull(
         )
         return
     out.print(f"{' and '.join(outputs)} {'is' if len(outputs) == 1 else 'are'} ready after {words.duration(seconds)}")
-    for line in [*making.in_words(made, is_placed=bool(wanted.placed)), *hulls.results(shape, found, pieces)]:
+    for line in [*making.in_words(made, is_placed=bool(wanted.placed)), *hull_words.results(shape, found, pieces)]:
         out.print(line)
     kept = next((output for output in outputs if io.is_shape(output)), None)
     look = "add -o NAME.shape.zarr, and lightcube view" if kept is None else f"lightcube view {kept}"
     out.print(f"to look at it between its walls: {look}" + ("" if kept else " shows that"))
+
+
+def _thin(shape: Shape) -> dict[str, Any] | None:
+    """Where a shape is thinner than its walls are to be, for JSON."""
+    found = hull_words.thin_of(shape)
+    if found is None:
+        return None
+    return {"share": found.share, "places": [{"at_mm": at, "volume_mm3": volume} for at, volume in found.places_mm]}

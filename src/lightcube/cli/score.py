@@ -18,7 +18,7 @@ from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
 from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.reach import count_pieces
-from lightcube.verbs import hulls, meshes, reliefs, scoring
+from lightcube.verbs import hull_words, hulls, meshes, reliefs, scoring
 from lightcube.verbs.options import Options
 from lightcube.verbs.refitting import wanted_of
 
@@ -125,7 +125,7 @@ def _score_shape(path: str, *, as_json: bool) -> None:
     if as_json:
         json_document({"pieces": pieces, "bad_edges": shape.mesh.bad_edges, **found.facts})
         return
-    for line in hulls.results(shape, found, pieces):
+    for line in hull_words.results(shape, found, pieces):
         out.print(line)
 
 

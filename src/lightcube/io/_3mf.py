@@ -10,17 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.solids.mesh import Mesh
+from lightcube.solids.portrait import portrait
 
-_MODEL = "3D/3dmodel.model"
+_MODEL, _PICTURE = "3D/3dmodel.model", "Metadata/thumbnail.png"
+_THUMBNAIL = "http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"
+#: Pixels along a side of the picture that lists of files show.
+_SIDE = 256
 _TYPES = """<?xml version="1.0" encoding="UTF-8"?>
 <Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
 <Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
 <Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
+<Default Extension="png" ContentType="image/png"/>
 </Types>
 """
 _RELATIONS = f"""<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">
 <Relationship Id="rel0" Target="/{_MODEL}" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+<Relationship Id="rel1" Target="/{_PICTURE}" Type="{_THUMBNAIL}"/>
 </Relationships>
 """
 _OPENING = """<?xml version="1.0" encoding="UTF-8"?>
@@ -60,11 +66,21 @@ def write_3mf(mesh: Mesh) -> bytes:
     model.append(_CLOSING)
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED, compresslevel=4) as archive:
-        for name, text in (("[Content_Types].xml", _TYPES), ("_rels/.rels", _RELATIONS), (_MODEL, "".join(model))):
+        parts = (("[Content_Types].xml", _TYPES), ("_rels/.rels", _RELATIONS), (_MODEL, "".join(model)))
+        for name, text in (*parts, (_PICTURE, _picture(mesh))):
             entry = zipfile.ZipInfo(name)  # of no date
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, text)
     return made.getvalue()
+
+
+def _picture(mesh: Mesh) -> bytes:
+    """A PNG of a mesh."""
+    from PIL import Image  # here: who asks whether a name is a mesh's waits for none of it
+
+    encoded = io.BytesIO()
+    Image.fromarray(portrait(mesh, _SIDE)).save(encoded, "PNG")
+    return encoded.getvalue()
 
 
 def read_3mf(data: bytes) -> tuple[list[NDArray[np.float64]], str]:

@@ -62,6 +62,7 @@ def make(wanted: Wanted, how: Making, told: Callable[[int, int], None] | None = 
     shape, base_mm = _standing(shape, how.base_mm)
     cuts = {name: fact for name, fact in wanted.facts.items() if name in ("pictures", "stretched")}
     made = {"command": "hull", **cuts, "repair": facts(found), "carving": how.carving, "base_mm": base_mm}
+    made["wall_mm"] = how.wall_mm
     return replace(found, shape=replace(shape, provenance=made))
 
 
