@@ -30,8 +30,8 @@ SOURCES = Annotated[
 OUTS = typer.Option(
     "-o",
     "--out",
-    help="Where to write: a mesh to print (.stl, .3mf, .obj, .ply), or all of the shape (.shape.zarr). It may be said "
-    "several times.",
+    help="Where to write: a mesh to print (.stl, .3mf, .obj, .ply), or all of the shape (.shape.zarr; in one file "
+    ".shape.zarr.zip). It may be said several times.",
     rich_help_panel="Output",
 )
 WALLS = typer.Option("--walls", help="Three pictures: front, side and top.", rich_help_panel="Pictures")
