@@ -65,7 +65,7 @@ class Reach:
         if self.gap is not None and not 0 <= self.gap <= _MOST_GAP:
             raise InputError(f"a gap between pieces is a number of voxels from 0 to 8, not {self.gap:g}")
         if not -1 <= self.parting < len(self.given):
-            raise InputError(f"what parts pieces is one of {len(self.given)} pictures, or -1, not {self.parting}")
+            raise InputError(f"pieces are parted by a picture below {len(self.given)}, or -1, not {self.parting}")
         keep(self, given=np.bool_, depth=np.float32, culprit=np.intp, places=np.float32)
 
     def __repr__(self) -> str:

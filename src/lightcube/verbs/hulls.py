@@ -29,6 +29,7 @@ from lightcube.solids.standing import held, silhouettes
 from lightcube.solids.walls import WALLS, block, walls
 from lightcube.verbs import solving
 from lightcube.verbs.options import Options
+from lightcube.wording import counted
 
 #: Bytes that a voxel takes at most (measured at 160 voxels: field, pieces, distances to the surface, the mesh and its
 #: file), and a small pixel of a silhouette: silhouettes and their distances.
@@ -156,7 +157,7 @@ def _mask(path: str, of: tuple[int, ...]) -> NDArray[np.float32]:
     """How light each pixel of a mask is, in display values, 0 where it is transparent; made as large as its picture."""
     read = _read_one(path, "srgb")
     if len(read) != 1:
-        raise InputError(f"--keep: {path} holds {len(read)} pictures: give one mask")
+        raise InputError(f"--keep: {path} holds {counted(len(read), 'picture')}: give one mask")
     (image,), (rows, columns) = read.images, of
     own = image.shape[:2]
     if abs(own[0] * columns - own[1] * rows) > max(own[0], own[1], rows, columns):
