@@ -86,6 +86,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "Warped": {"given": SILHOUETTES, "nodes": np.zeros((len(SILHOUETTES), 2, 11, 11)), "weight": 1.0},
     "as_cube": {"shape": SHAPE},
     "carve": {"shape": SHAPE, "how": "lace"},
+    "with_base": {"shape": SHAPE, "thick_mm": 0.5},
     "repair": {"silhouettes": SILHOUETTES, "grid": GRID, "way": "warp"},
     "warp": {"silhouettes": SILHOUETTES, "grid": GRID},
     "attenuator": {"names": ["a", "b"]},

@@ -67,6 +67,7 @@ __getattr__, __dir__, __all__ = when_used(
         "Shape": "solids.shape",
         "as_cube": "solids.shape",
         "carve": "solids.carving",
+        "with_base": "solids.base",
         "Repaired": "solids.repair",
         "repair": "solids.repair",
         "Warped": "solids.warp",

@@ -34,6 +34,7 @@ from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.scoring.metrics import score
 from lightcube.scoring.reliefs import score_relief
+from lightcube.solids.base import with_base
 from lightcube.solids.carving import carve
 from lightcube.solids.certificate import certify
 from lightcube.solids.cutting import cut
@@ -134,4 +135,5 @@ __all__ = [
     "turntable",
     "walls",
     "warp",
+    "with_base",
 ]

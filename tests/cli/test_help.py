@@ -74,7 +74,7 @@ def test_where_a_word_lacks_an_example_has_it(name: str, capsys: pytest.CaptureF
 
 def test_commands_that_write_say_where_to() -> None:
     needing = [name for name in main.COMMANDS if any(each.required for each in options(name))]
-    assert needing == ["trace", "solve", "hull", "relief", "play", "draw"]
+    assert needing == ["trace", "solve", "hull", "carve", "relief", "play", "draw"]
 
 
 @pytest.mark.parametrize(("name", "typed"), [(name, typed) for name, all_ in EXAMPLES.items() for typed, _ in all_])

@@ -45,6 +45,15 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ),
         ("lightcube hull room.toml -o a.shape.zarr", "any lamps and screens, kept with its silhouettes"),
     ],
+    "carve": [
+        ("lightcube carve word.shape.zarr -o lace.stl --carve lace", "a lace of what was made as a whole"),
+        (
+            "lightcube carve word.shape.zarr -o less.shape.zarr --carve lace --where ball.stl",
+            "only where a mesh of yours lies over it",
+        ),
+        ("lightcube carve word.shape.zarr -o less.stl --ray front,40,52", "what one ray of light does not need"),
+        ("lightcube carve less.shape.zarr -o word.stl --undo-to hull", "the whole of it again"),
+    ],
     "trace": [
         ("lightcube trace carousel -o pictures", "a scene that comes with lightcube, as a folder of PNGs"),
         ("lightcube trace scene.toml -o film.mp4 --count 64", "a scene of your own, as a movie"),
@@ -57,6 +66,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube score cube.zarr", "how near each picture comes"),
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
         ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
+        ("lightcube score word.stl front.png side.png top.png --walls", "what any mesh casts beside pictures"),
     ],
     "relief": [
         ("lightcube relief a.jpg b.jpg c.jpg d.jpg -o plate.stl --sheet sheet.png", "four photographs in one plate"),

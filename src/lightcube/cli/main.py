@@ -17,9 +17,10 @@ COMMANDS: Mapping[str, str] = {
     ),
     "solve": "Compute the cube whose shadows are the pictures; what was stopped or killed goes on where it was.",
     "hull": "Carve the largest solid whose shadows stay within silhouettes: a mesh to print, or a shape, by suffix.",
+    "carve": "Take material out of a finished shape, all over or where a brush or a ray says; its shadows stay.",
     "relief": "Make one relief that shows a picture under each of up to four low lamps.",
     "play": "Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.",
-    "score": "Compare what a cube, a shape or a relief really casts with what was wanted.",
+    "score": "Compare what a cube, a shape, a relief or a mesh really casts with what was wanted.",
     "view": "Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail.",
     "report": (
         "Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, how it was made."

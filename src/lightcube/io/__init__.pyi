@@ -3,6 +3,8 @@
 from lightcube.io._zarr import HollowCube
 from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
+from lightcube.io.masks import read_mask
+from lightcube.io.meshes import is_mesh, read_solid
 from lightcube.io.movies import ClippedPictures
 from lightcube.io.outputs import Output, save, write_together
 from lightcube.io.pictures import (
@@ -31,14 +33,17 @@ __all__ = [
     "bare_name",
     "free_memory",
     "is_film",
+    "is_mesh",
     "is_relief",
     "is_shape",
     "is_stage",
     "read_cube",
+    "read_mask",
     "read_pictures",
     "read_relief",
     "read_scene",
     "read_shape",
+    "read_solid",
     "read_stage",
     "read_stage_targets",
     "save",
