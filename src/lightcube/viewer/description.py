@@ -16,6 +16,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.light import discs_sampled
 from lightcube.optics.rig import Rig
 from lightcube.scoring import metrics
+from lightcube.scoring.overlap import overlaps
 from lightcube.solids.shape import is_opaque
 from lightcube.viewer.label import Label
 from lightcube.viewer.packing import Packed, lost
@@ -102,7 +103,7 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
     own = len(cube.names)
     scores = cube.scores.get("pictures", [])
     if is_opaque(cube):  # a decibel says little of black and white
-        scores = own * [{"psnr": None}]
+        scores = [{"psnr": None, "overlap": each} for each in (overlaps(cube) if wanted else own * [None])]
     elif len(scores) != own:
         scores = metrics.score(cube)["pictures"] if wanted else own * [{"psnr": None}]
     return [
@@ -114,6 +115,7 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
             "wanted": i % own if wanted else None,
             "mirrored": i >= own,
             "psnr": scores[i % own]["psnr"],
+            "overlap": scores[i % own].get("overlap"),
         }
         for i, name in enumerate(names)
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import re
+from collections.abc import Sequence
 from hashlib import sha256
 from typing import Any
 
@@ -48,11 +49,29 @@ def page(cube: Cube, label: str | Label, *, full: bool = False, callback: Watchi
 
 def page_of(label: Label, description: dict[str, Any], voxels: bytes) -> str:
     """The same of what `contents` returns."""
+    what = "A solid stands in the light" if description["solid"] else "Light falls through a block of coloured glass"
+    names = [picture["name"] for picture in description["pictures"] if not picture["mirrored"]]
+    return put_together(label, description, voxels, f"{what}, and its shadows are pictures", names, "page.js")
+
+
+def put_together(
+    label: Label, description: dict[str, Any], voxels: bytes, what: str, names: Sequence[str], program: str
+) -> str:
+    """The text of a page.
+
+    Parameters
+    ----------
+    what
+        Is to be seen, in words that its pictures' `names` can follow.
+    program
+        Path of the module that opens it.
+    """
     parts = {
         "title": html.escape(description["title"]),
-        "sharing": _sharing(label, description),
+        "sharing": _sharing(label, description["title"], what, names),
+        "what": html.escape(f"{what}."),
         "style": source("style.css"),
-        "code": joined("page.js"),
+        "code": joined(program),
         "scene": base64.b64encode(zipped(description)).decode(),
         "voxels": base64.b64encode(voxels).decode(),
     }
@@ -62,13 +81,11 @@ def page_of(label: Label, description: dict[str, Any], voxels: bytes) -> str:
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)
 
 
-def _sharing(label: Label, description: dict[str, Any]) -> str:
+def _sharing(label: Label, title: str, what: str, names: Sequence[str]) -> str:
     """What is shown of the page where its address is shared (https://ogp.me)."""
-    names = [picture["name"] for picture in description["pictures"] if not picture["mirrored"]]
     shown = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
-    what = "A solid stands in the light" if description["solid"] else "Light falls through a block of coloured glass"
-    said = f"{what}, and its shadows are pictures: {shown}."
-    told = {"og:type": "website", "og:title": description["title"], "og:description": said, "og:image": label.picture}
+    said = f"{what}: {shown}."
+    told = {"og:type": "website", "og:title": title, "og:description": said, "og:image": label.picture}
     lines = [f'<meta name="description" content="{html.escape(said)}">']
     lines += [f'<meta property="{name}" content="{html.escape(text)}">' for name, text in told.items() if text]
     return "\n".join(lines)

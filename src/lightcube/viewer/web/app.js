@@ -4,12 +4,12 @@ import { lessonOf } from "./model/lesson.js";
 import { momentOf } from "./model/moment.js";
 import { stops } from "./model/stage.js";
 import { nearestOf, neighbourOf, Turning } from "./model/turning.js";
+import { wordsOf } from "./model/words.js";
+import { controlsAround, headerAround, helpAround, hintAround } from "./parts/around.js";
 import { createCompare } from "./parts/compare.js";
-import { createControls } from "./parts/controls.js";
 import { createFilmstrip } from "./parts/filmstrip.js";
 import { listenToGestures } from "./parts/gestures.js";
-import { createHeader, createQuietLine } from "./parts/header.js";
-import { createHelp, createHint } from "./parts/help.js";
+import { createQuietLine } from "./parts/header.js";
 import { listenToKeys } from "./parts/keys.js";
 import { createLoop } from "./parts/loop.js";
 import { createScanline } from "./parts/scanline.js";
@@ -17,7 +17,7 @@ import { followTheme } from "./parts/theme.js";
 import { createTour } from "./parts/tour.js";
 import { createWall } from "./parts/wall.js";
 import { RoomView } from "./room/roomview.js";
-import { clampTo, degreesText, element, qualityOf } from "./tools/elements.js";
+import { clampTo, degreesText, element, overlapText, qualityOf } from "./tools/elements.js";
 
 /** Degrees by which a pixel of a drag turns the cube. */
 const TURN_SPEED = 0.35;
@@ -181,7 +181,7 @@ function actionsOf(app) {
     },
   };
   const useless = scene.turns ? [] : ["turn", "release", "neighbour", "nearest", "first", "play", "snap"];
-  if (scene.solid) useless.push("tour");
+  if (scene.solid) useless.push("tour", "thin", "point");
   for (const name of useless) all[name] = () => false;
   return Object.fromEntries(Object.entries(all).map(([name, does]) => [name, (...given) => {
     const done = does(...given);
@@ -249,6 +249,7 @@ function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
     turn: scene.turns ? (pixels) => does.turn(TURN_SPEED * pixels) : null,
     release: (pixelsPerSecond) => does.release(TURN_SPEED * pixelsPerSecond),
     point(x, y) {
+      if (scene.solid) return; // it has no scan-lines
       const found = view.pointed(x, y);
       view.canvas.classList.toggle("pointing", found !== null);
       if (found === null) does.point(chosen.row, null);
@@ -264,16 +265,16 @@ function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
 
 function createParts({ scene, turning, view, does }, cube, compact) {
   return {
-    header: createHeader(scene, does, compact),
+    header: headerAround(scene, does, compact),
     wall: compact ? null : createWall(scene),
     quiet: createQuietLine(scene, view.note, compact),
-    hint: createHint(scene),
-    help: createHelp(scene),
-    controls: scene.turns ? createControls(scene, turning.stops, does) : null,
+    hint: hintAround(scene),
+    help: helpAround(scene),
+    controls: scene.turns ? controlsAround(scene, turning.stops, does) : null,
     filmstrip: createFilmstrip(scene, does.picture),
     tour: compact ? null : createTour(does),
     compare: compact ? null : createCompare(scene, does),
-    scanline: compact ? null : createScanline(scene, cube, does.point),
+    scanline: compact || scene.solid ? null : createScanline(scene, cube, does.point),
     room: view.canvas,
     said: element("p", { class: "unseen", "aria-live": "polite" }),
   };
@@ -287,7 +288,7 @@ function layoutOf(parts, compact) {
     dock.append(...(parts.quiet === null ? [] : [parts.quiet]));
     return [stage, dock, ...rest];
   }
-  const cards = [parts.compare.element, parts.scanline.element, parts.quiet];
+  const cards = [parts.compare.element, ...(parts.scanline === null ? [] : [parts.scanline.element]), parts.quiet];
   const details = element("div", { class: "details" }, ...cards);
   return [stage, dock, element("aside", { class: "side", "aria-label": "The wall" }, parts.wall.element, details), parts.wall.threads, ...rest];
 }
@@ -308,7 +309,7 @@ function showing(app) {
     parts.tour?.update(now);
     parts.controls?.update(now);
     parts.wall?.tie(now, view);
-    parts.filmstrip.update(now);
+    parts.filmstrip.update(now.exposures[place].picture);
     if (!still && performance.now() - copied > COPY_EVERY) showCards(now);
     if (told !== turning.angle) {
       told = turning.angle;
@@ -331,8 +332,8 @@ function showing(app) {
     app.root.dataset.drawn = "";
     const now = momentOf(scene, turning, view.exposures, chosen);
     showCards(now);
-    view.canvas.setAttribute("aria-label", `The cube in its room, turned by ${degreesText(now.angle)}`);
-    const scores = now.pictures.map((number) => qualityOf(scene.pictures[number].psnr));
+    view.canvas.setAttribute("aria-label", `The ${wordsOf(scene).name} in its room, turned by ${degreesText(now.angle)}`);
+    const scores = now.pictures.map((number) => qualityOf(scene.pictures[number].psnr) || overlapText(scene.pictures[number].overlap));
     parts.said.textContent = [now.name, degreesText(now.angle), ...scores].filter(Boolean).join(", ");
   }
 

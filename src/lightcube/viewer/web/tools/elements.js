@@ -123,6 +123,11 @@ export function scoreText(psnr) {
   return psnr === null ? "" : `${oneDecimal(psnr)} dB`;
 }
 
+/** How far the shadow of a shape is the silhouette: 0.9953 is "overlap 99.5 %"; empty where that is not known. */
+export function overlapText(overlap) {
+  return typeof overlap === "number" ? `overlap ${oneDecimal(100 * overlap)} %` : "";
+}
+
 /** In a word how well a picture came out, by the light that the wall shows; empty where nothing was wanted. */
 export function qualityOf(psnr) {
   if (psnr === null) return "";
