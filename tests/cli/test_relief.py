@@ -182,6 +182,19 @@ def test_scores_and_what_is_in_the_file(run, kept: Path, tmp_path: Path) -> None
 
 
 def test_a_relief_is_no_cube(run, kept: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    for words in (("view", kept, "-o", tmp_path / "a.html"), ("report", kept, "-o", tmp_path / "a.html")):
-        done = run(*words)
-        assert (done.code, "is a relief, no cube" in done.err) == (2, True)
+    done = run("report", kept, "-o", tmp_path / "a.html")
+    assert (done.code, "is a relief, no cube" in done.err) == (2, True)
+
+
+def test_view_writes_a_page_and_a_picture_of_it(run, kept: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    page, picture = tmp_path / "plate.html", tmp_path / "plate.png"
+    done = run("view", kept, "-o", page, "--preview", "--title", "Three", "--json")
+    assert done.code == 0, done.err
+    assert json.loads(done.out)["shape"] == [12, 12]
+    assert "<title>Three</title>" in page.read_text(encoding="utf-8")
+    with Image.open(picture) as drawn:
+        assert drawn.size == (1200, 630)
+    page.unlink()
+    refused = run("view", kept, "-o", page, "--full")
+    assert (refused.code, page.exists()) == (2, False)
+    assert "leave out --full" in refused.err

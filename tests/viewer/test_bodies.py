@@ -55,7 +55,7 @@ def test_a_ray_meets_a_ball_where_it_is(evaluate: Evaluate) -> None:
     assert [each["far"] for each in met] == pytest.approx(20 * [30 - radius], abs=0.5)
     for each, way in zip(met, ways, strict=True):
         assert -way @ each["normal"] > 0.97
-    aside = (middle + [0, radius + 1.5, -40]).tolist()
+    aside = np.add(middle, (0, radius + 1.5, -40)).tolist()
     assert asked(evaluate, ball(shape, radius), "meets(body, argument.start, [0, 0, 1])", start=aside) is None
 
 

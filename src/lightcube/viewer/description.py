@@ -51,6 +51,7 @@ def describe(cube: Cube, packed: Packed, label: str | Label) -> dict[str, Any]:
     wanted = _wanted(cube)
     return {
         "format": FORMAT,
+        "kind": "cube",
         "title": label.title if cube.status == "complete" else f"{label.title} (unfinished)",
         "by": label.by,
         "note": label.note,
@@ -161,13 +162,14 @@ def _wanted(cube: Cube) -> list[str]:
         images.append(Image.fromarray(np.dstack([colours, np.where(picture[..., -1:] > 0, 255, 0).astype(np.uint8)])))
     exact: list[str] = []
     for image in images:
-        exact.append(_encoded(image, "png", optimize=True))
+        exact.append(encoded(image, "png", optimize=True))
         if sum(map(len, exact)) > _EXACT:
-            return [_encoded(each, "webp", quality=_QUALITY) for each in images]
+            return [encoded(each, "webp", quality=_QUALITY) for each in images]
     return exact
 
 
-def _encoded(image: Image.Image, kind: str, **options: Any) -> str:
+def encoded(image: Image.Image, kind: str, **options: Any) -> str:
+    """A picture as a data URI."""
     stream = BytesIO()
     image.save(stream, kind, **options)
     return f"data:image/{kind};base64,{base64.b64encode(stream.getvalue()).decode()}"

@@ -12,11 +12,13 @@ from typing import Any
 from lightcube.backward.pieces import Watching
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.solids.relief import Relief
 from lightcube.solids.shape import is_opaque
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.label import Label
 from lightcube.viewer.modules import joined, source
 from lightcube.viewer.packing import pack
+from lightcube.viewer.plate import WHAT, describe_relief, heights_data
 from lightcube.viewer.smaller import in_cubes, smaller
 
 #: What is run of the page's scripts: its policy knows them by their digests, and a browser runs no other.
@@ -26,8 +28,8 @@ _NAMED = 6
 
 
 @checked
-def page(cube: Cube, label: str | Label, *, full: bool = False, callback: Watching | None = None) -> str:
-    """The text of a page that shows a cube, in any browser, from a file, without a network.
+def page(cube: Cube | Relief, label: str | Label, *, full: bool = False, callback: Watching | None = None) -> str:
+    """The text of a page that shows a cube or a relief, in any browser, from a file, without a network.
 
     Parameters
     ----------
@@ -44,36 +46,35 @@ def page(cube: Cube, label: str | Label, *, full: bool = False, callback: Watchi
         Where the cube has other than 1 or 3 colours, more voxels than a browser takes, slices that are no whole voxels
         tall, or lamps at several elevations.
     """
+    if isinstance(cube, Relief):
+        return relief_page(cube, Label.of(label))
     return page_of(Label.of(label), *contents(cube, label, full=full, callback=callback))
+
+
+def relief_page(relief: Relief, label: Label) -> str:
+    """The page in which the lamp goes round a relief."""
+    description = describe_relief(relief, label)
+    names = [picture["name"] for picture in description["pictures"]]
+    return _put_together(label, description, heights_data(relief), WHAT, names)
 
 
 def page_of(label: Label, description: dict[str, Any], voxels: bytes) -> str:
     """The same of what `contents` returns."""
     what = "A solid stands in the light" if description["solid"] else "Light falls through a block of coloured glass"
     names = [picture["name"] for picture in description["pictures"] if not picture["mirrored"]]
-    return put_together(label, description, voxels, f"{what}, and its shadows are pictures", names, "page.js")
+    return _put_together(label, description, voxels, f"{what}, and its shadows are pictures", names)
 
 
-def put_together(
-    label: Label, description: dict[str, Any], voxels: bytes, what: str, names: Sequence[str], program: str
-) -> str:
-    """The text of a page.
-
-    Parameters
-    ----------
-    what
-        Is to be seen, in words that its pictures' `names` can follow.
-    program
-        Path of the module that opens it.
-    """
+def _put_together(label: Label, description: dict[str, Any], data: bytes, what: str, names: Sequence[str]) -> str:
+    """The text of a page of a description and voxels or heights; `what` is to be seen, before its pictures' `names`."""
     parts = {
         "title": html.escape(description["title"]),
         "sharing": _sharing(label, description["title"], what, names),
         "what": html.escape(f"{what}."),
         "style": source("style.css"),
-        "code": joined(program),
+        "code": joined("page.js"),
         "scene": base64.b64encode(zipped(description)).decode(),
-        "voxels": base64.b64encode(voxels).decode(),
+        "voxels": base64.b64encode(data).decode(),
     }
     template = source("page.html")
     run = (each.replace("{{code}}", parts["code"]) for each in _RUN.findall(template))

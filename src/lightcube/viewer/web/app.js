@@ -6,6 +6,7 @@ import { stops } from "./model/stage.js";
 import { nearestOf, neighbourOf, Turning } from "./model/turning.js";
 import { wordsOf } from "./model/words.js";
 import { controlsAround, headerAround, helpAround, hintAround } from "./parts/around.js";
+import { createBeckoning } from "./parts/beckoning.js";
 import { createCompare } from "./parts/compare.js";
 import { createFilmstrip } from "./parts/filmstrip.js";
 import { listenToGestures } from "./parts/gestures.js";
@@ -17,17 +18,12 @@ import { followTheme } from "./parts/theme.js";
 import { createTour } from "./parts/tour.js";
 import { createWall } from "./parts/wall.js";
 import { RoomView } from "./room/roomview.js";
-import { clampTo, degreesText, element, overlapText, qualityOf } from "./tools/elements.js";
+import { clampTo, degreesText, element, overlapText, qualityOf, toggleFullScreen } from "./tools/elements.js";
 
 /** Degrees by which a pixel of a drag turns the cube. */
 const TURN_SPEED = 0.35;
 /** Milliseconds between two copies of the shadow into the cards while it changes. */
 const COPY_EVERY = 80;
-/** Milliseconds after which the cube turns to its next stop, once, if nobody has touched anything. */
-const BECKONS_AFTER = 3500;
-/** Seconds that it takes for it. */
-const BECKONING = 2.4;
-
 /**
  * Build the page in an element.
  *
@@ -49,8 +45,9 @@ export function mount(root, scene, cube, { compact = false } = {}) {
   app.loop = createLoop(show, rested);
   if (!compact) view.head = () => app.parts.header.element.offsetHeight / Math.max(1, view.canvas.clientHeight);
   view.aim(turning.angle, app.chosen, false);
+  app.beckoning = compact ? null : createBeckoning(root, turning, app.loop.ask);
   const ends = [
-    compact ? () => {} : beckoning(app),
+    () => app.beckoning?.end(),
     listenToTheme(app, compact),
     listenToKeys(compact ? root : document, app.does),
     listenToRoom(app, compact),
@@ -87,32 +84,6 @@ export function mount(root, scene, cube, { compact = false } = {}) {
 
 function nothingChosen() {
   return { place: 0, row: null, column: null, whole: false, thin: false, lampsEye: false, details: false, big: false, dark: null, lesson: null };
-}
-
-/**
- * Turn to the next stop, once, some time after all was drawn, so that one sees what this is; whoever touches anything
- * before is not disturbed. Returns what ends it.
- */
-function beckoning(app) {
-  const { root, turning } = app;
-  const touches = ["pointerdown", "wheel"];
-  let timer = 0;
-  const go = () => {
-    end();
-    if (turning.calm || turning.moving || turning.stops.length < 2 || turning.angle !== turning.stops[0]) return;
-    turning.glideTo(turning.stops[1], BECKONING);
-    app.loop.ask();
-  };
-  app.drawn = () => (timer = setTimeout(go, BECKONS_AFTER));
-  function end() {
-    app.drawn = null;
-    clearTimeout(timer);
-    for (const touch of touches) root.removeEventListener(touch, end, true);
-    document.removeEventListener("keydown", end, true);
-  }
-  for (const touch of touches) root.addEventListener(touch, end, true);
-  document.addEventListener("keydown", end, true); // which need not have its focus in here
-  return end;
 }
 
 /** What can be done, each ending with a new drawing. */
@@ -211,11 +182,6 @@ function goTo(app, number) {
 /** The pixel that is pointed at, or null. */
 function chosenPixel({ place, row, column }) {
   return column === null ? null : { screen: place, row, column };
-}
-
-function toggleFullScreen(root) {
-  if (document.fullscreenElement) document.exitFullscreen();
-  else root.requestFullscreen?.().catch(() => {}); // a person's browser may refuse it
 }
 
 function setTheme(app, dark) {
@@ -327,8 +293,7 @@ function showing(app) {
   }
 
   function rested() {
-    app.drawn?.();
-    app.drawn = null;
+    app.beckoning?.drawn();
     app.root.dataset.drawn = "";
     const now = momentOf(scene, turning, view.exposures, chosen);
     showCards(now);

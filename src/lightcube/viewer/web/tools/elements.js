@@ -16,6 +16,7 @@ const ICONS = {
   screen: "M9 4H4v5M15 4h5v5M20 15v5h-5M9 20H4v-5",
   theme: "M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16",
   tour: "M4 19V6a2 2 0 0 1 2-2h13v12H6a2 2 0 0 0-2 2 2 2 0 0 0 2 2h13M9 8h6M9 11.500h4",
+  far: "M12 4a8 8 0 1 0 0 16 8 8 0 0 0 0-16zM12 9a3 3 0 1 0 0 6 3 3 0 0 0 0-6",
   details: "M4 6h16M4 12h16M4 18h10",
   eye: "M2.5 12s3.5-6 9.5-6 9.5 6 9.5 6-3.5 6-9.5 6-9.5-6-9.5-6zM12 9.5a2.5 2.5 0 1 0 0 5 2.5 2.5 0 0 0 0-5",
   help: "M9 9a3 3 0 1 1 4.2 2.8c-.8.4-1.2 1-1.2 2.2M12 17.5v.5",
@@ -87,6 +88,12 @@ export function wordButton(name, text, title, pressed) {
 /** Say of such a button whether it is on. */
 export function setPressed(button, on) {
   button.setAttribute("aria-pressed", String(on));
+}
+
+/** Let an element fill the screen, or not any more; a person's browser may refuse it. */
+export function toggleFullScreen(root) {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else root.requestFullscreen?.().catch(() => {});
 }
 
 /** Give a canvas as many pixels as it covers on the screen. */
