@@ -181,11 +181,6 @@ def test_scores_and_what_is_in_the_file(run, kept: Path, tmp_path: Path) -> None
     assert "on the right" in run("info", kept).out
 
 
-def test_a_relief_is_no_cube(run, kept: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    done = run("report", kept, "-o", tmp_path / "a.html")
-    assert (done.code, "is a relief, no cube" in done.err) == (2, True)
-
-
 def test_view_writes_a_page_and_a_picture_of_it(run, kept: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     page, picture = tmp_path / "plate.html", tmp_path / "plate.png"
     done = run("view", kept, "-o", page, "--preview", "--title", "Three", "--json")
