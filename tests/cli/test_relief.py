@@ -193,3 +193,28 @@ def test_view_writes_a_page_and_a_picture_of_it(run, kept: Path, tmp_path: Path)
     refused = run("view", kept, "-o", page, "--full")
     assert (refused.code, page.exists()) == (2, False)
     assert "leave out --full" in refused.err
+
+
+def test_a_dry_run_says_what_is_to_be_expected_and_writes_nothing(run, photos: list[Path], tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    wish = (*photos[:2], "--columns", 16, "--relief", 4, "--sweeps", 60)
+    done = run("relief", *wish, "--dry-run", "--json")
+    assert done.code == 0, done.err
+    told = json.loads(done.out)
+    made = run("relief", *wish, "-o", tmp_path / "a.relief.zarr", "--json")
+    came = json.loads(made.out.splitlines()[-1])["scores"]
+    assert told["sweeps"] == 6
+    assert came["psnr_mean"] - 8 < told["psnr_mean"] < came["psnr_mean"]
+    assert told["seconds"] > 0
+    said = run("relief", *wish, "--dry-run", "-o", tmp_path / "b.stl")
+    assert "with 6 sweeps already" in said.out
+    assert "nothing is written" in said.out
+    assert not (tmp_path / "b.stl").exists()
+    refused = run("relief", *wish)
+    assert (refused.code, "say where the relief goes" in refused.err) == (2, True)
+
+
+def test_bounce_is_kept(run, photos: list[Path], tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    place = tmp_path / "plate.relief.zarr"
+    assert run("relief", *photos[:2], "-o", place, *SMALL, "--bounce", 0.1).code == 0
+    assert read_relief(place).recipe.bounce == 0.1
+    assert json.loads(run("info", place, "--json").out)["bounce"] == 0.1

@@ -28,7 +28,7 @@ def plate(*, cell: int = 1, is_colour: bool = False) -> Relief:
     random = np.random.default_rng(5)
     heights = random.uniform(0, 6, (13 * cell, 11 * cell + (cell > 1)))
     wanted = random.uniform(0.2, 1, (3, 13, 11))
-    recipe = ReliefRecipe(black=0.5, elevation_deg=40.0, frame_mm=3.0)
+    recipe = ReliefRecipe(black=0.5, elevation_deg=40.0, frame_mm=3.0, bounce=0.15)
     names = ("sky red", "sky green", "sky blue") if is_colour else NAMES
     return Relief(heights, wanted, recipe, names, is_colour, cell=cell)
 

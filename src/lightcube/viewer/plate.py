@@ -34,6 +34,7 @@ def describe_relief(relief: Relief, label: str | Label) -> dict[str, Any]:
         "cell": relief.cell,
         "colours": relief.azimuths_deg if relief.is_colour else None,
         "elevation_deg": recipe.elevation_deg,
+        "bounce": recipe.bounce,
         "pitch_mm": recipe.pitch_mm,
         "px_mm": recipe.px_mm,
         "base_mm": recipe.base_mm,

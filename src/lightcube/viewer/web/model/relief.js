@@ -23,7 +23,7 @@ export function heightsOf(bytes, { columns: [rows, columns] }) {
 }
 
 /**
- * The lit share of every column, the mean over points of it.
+ * The light of every column, the mean over points of it, with what the plate throws into its own shadows.
  * @param {object} scene
  * @param {Float64Array} heights
  * @param {number} azimuth degrees from the right, against the clock from above
@@ -31,7 +31,7 @@ export function heightsOf(bytes, { columns: [rows, columns] }) {
  * @param {boolean} judged at all points, or at some
  * @returns {Float64Array} rows * columns
  */
-export function columnsLit({ columns: [rows, columns], elevation_deg }, heights, azimuth, elevation, judged = true) {
+export function columnsLit({ columns: [rows, columns], elevation_deg, bounce }, heights, azimuth, elevation, judged = true) {
   const radians = (degrees) => (degrees * Math.PI) / 180;
   const exact = (value) => (Math.abs(value) < NONE ? 0 : value);
   const [down, right] = [-exact(Math.sin(radians(azimuth))), exact(Math.cos(radians(azimuth)))];
@@ -48,7 +48,8 @@ export function columnsLit({ columns: [rows, columns], elevation_deg }, heights,
       lit[row * columns + column] = sum / count;
     }
   }
-  return lit;
+  const thrown = (bounce * lit.reduce((sum, each) => sum + each, 0)) / lit.length;
+  return lit.map((each) => each + thrown * (1 - each));
 }
 
 /** Whether nothing stands between a point on a column's top and the lamp: from column to column, as the ray goes. */
