@@ -1,4 +1,4 @@
-"""What a cube's file says besides its two arrays: one JSON document, checked when it is read."""
+"""What a cube's file says besides its arrays: one JSON document, checked when it is read."""
 
 import math
 from collections.abc import Mapping
@@ -15,6 +15,7 @@ from lightcube.io import _older
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube, Status
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.transfer import Transfer
 
@@ -47,6 +48,7 @@ class _CubeJson(BaseModel):
     transfer: Transfer
     status: Status
     hold_deg: Annotated[_Number, Field(ge=0, le=180)] = 0.0
+    dyes: dict[str, Any] | None = None
     scores: dict[str, Any]
     provenance: dict[str, Any]
 
@@ -65,6 +67,7 @@ def to_json(cube: Cube) -> dict[str, Any]:
         "transfer": cube.transfer,
         "status": cube.status,
         "hold_deg": float(cube.hold_deg),
+        **({} if cube.dyes is None else {"dyes": cube.dyes.plain()}),
         "scores": plain(cube.scores),
         "provenance": plain(cube.provenance),
     }
@@ -83,7 +86,13 @@ def plain(value: Any) -> Any:
     return value if value is None or isinstance(value, bool | int) else encodable(str(value))
 
 
-def from_json(path: Path, document: object, extinction: NDArray[Any], targets: NDArray[Any] | None) -> Cube:
+def from_json(
+    path: Path,
+    document: object,
+    extinction: NDArray[Any],
+    targets: NDArray[Any] | None,
+    amounts: NDArray[Any] | None = None,
+) -> Cube:
     """Build the cube again; `InputError` naming `path` and the key where the document cannot be right.
 
     Arrays may be of wider types than they were written as: other programs rewrite them so.
@@ -101,6 +110,8 @@ def from_json(path: Path, document: object, extinction: NDArray[Any], targets: N
     if extinction.ndim != 4:
         raise damaged(path, f"extinction has {extinction.ndim} axes, not 4")
     extinction = _narrowed(path, "extinction", extinction, np.dtype(np.float32))
+    if amounts is not None:
+        amounts = _narrowed(path, "amounts", amounts, np.dtype(np.float32))
     try:
         _, nz, ny, nx = extinction.shape
         return Cube(
@@ -115,6 +126,8 @@ def from_json(path: Path, document: object, extinction: NDArray[Any], targets: N
             said.provenance,
             said.status,
             said.hold_deg,
+            amounts,
+            None if said.dyes is None else Dyes(**said.dyes),
         )
     except Exception as error:  # InputError among them, and whatever NumPy makes of numbers that no array holds
         raise damaged(path, str(error)) from error
