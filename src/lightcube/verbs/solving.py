@@ -214,7 +214,16 @@ def _speed(made: Job) -> Speed:
     from lightcube.kernels.tasks import threads  # here: the compiler comes with it
 
     kind = made.recipe.method if isinstance(made.recipe.method, str) else ""
-    asked = [version("lightcube"), platform.node(), threads(), kind, made.recipe.dtype, made.level, made.channels]
+    asked = [
+        version("lightcube"),
+        platform.node(),
+        threads(),
+        kind,
+        made.recipe.dtype,
+        made.level,
+        made.channels,
+        made.kinds,
+    ]
     known, name = io.Remembered(), sha256(json.dumps(["speed", *asked]).encode()).hexdigest()
     if kind and name in known:
         with suppress(TypeError, ValueError):
