@@ -68,6 +68,11 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube materials", "those that come along"),
         ("lightcube materials show polyjet", "what its resins absorb, and which colours they make"),
     ],
+    "calibrate": [
+        ("lightcube calibrate wedge -o wedge.png", "a page to print"),
+        ("lightcube calibrate fit photo.jpg -o inkjet.toml", "its photograph, and what the inks are"),
+        ("lightcube calibrate fit densities.csv -o inkjet.toml", "the same of densities that were typed"),
+    ],
     "draw": [
         ("lightcube draw cube.zarr -o room.png", "the room, at the cube's first stop"),
         ("lightcube draw room.toml -o room.svg", "a stage from above and from the side"),
