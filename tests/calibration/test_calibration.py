@@ -142,5 +142,5 @@ def test_inks_that_do_not_add_up_are_told() -> None:
 
 
 def test_the_wrong_page_is_told() -> None:
-    with pytest.raises(InputError, match="absorbs nothing in what was read: is the page that of --inks"):
+    with pytest.raises(InputError, match=r"is the page that of --inks( and --steps)?\?"):
         fit_inks(read_wedge(photograph(usual()), Wedge(CMYK.names, 32)))

@@ -55,7 +55,7 @@ def test_a_photographs_file_does_too(run, tmp_path: Path) -> None:  # type: igno
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("cyan,0.5,0.1,0.2", "line 163 says 'cyan,0.5,0.1,0.2': give ink, coverage"),
+        ("cyan,0.5,0.1,0.2", "line 187 says 'cyan,0.5,0.1,0.2': give ink, coverage"),
         ("cyan,2,0.1,0.2,0.3", "coverage from 0 to 1"),
         ("cyan,0.5,-1,0.2,0.3", "three densities from 0 to 10"),
         ("cyan,0.5,nan,0.2,0.3", "three densities from 0 to 10"),

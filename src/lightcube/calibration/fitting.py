@@ -15,6 +15,8 @@ from lightcube.optics.gamut import colours
 
 #: Two copies of a patch that differ by more than this part of the light of bare film are not both clean.
 _APART = 0.06
+#: So many patches of an ink may be dirty.
+_FEW = 4
 #: Inks over each other do not add up where the density is off by so much, and by so large a part.
 _OFF, _PART = 0.1, 0.1
 #: Darker places a photograph does not tell apart, by density.
@@ -59,6 +61,11 @@ def fit_inks(readings: Readings) -> Fitted:
         covered = 1 - light[-1]
         if not len(light) or coverages[-1] < 1 or covered.max() < 0.05:
             raise InputError(f"full {inks[ink]} absorbs nothing in what was read: is the page that of --inks?")
+        if len(left_out) > _FEW:
+            raise InputError(
+                f"{len(left_out)} patches of {inks[ink]} are unlike their copies: is the page that of --inks and "
+                "--steps?"
+            )
         shares = (1 - light) @ covered / (covered @ covered)
         curve = _rising(coverages, shares)
         printed = np.interp(coverages, *monotone(curve))

@@ -93,6 +93,8 @@ class Wedge:
             for first in range(0, self.steps, _ACROSS)
         ]
         several = self._several()
+        free = -len(several) % _ACROSS or _ACROSS * (not several)
+        several += [self._only(place % len(self.inks), 1.0) for place in range(free)]  # what matters most, once more
         rows = single + [several[first : first + _ACROSS] for first in range(0, len(several), _ACROSS)]
         again = [row[::-1] for row in reversed(rows)]
         return [
