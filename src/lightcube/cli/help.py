@@ -67,6 +67,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     "materials": [
         ("lightcube materials", "those that come along"),
         ("lightcube materials show polyjet", "what its resins absorb, and which colours they make"),
+        ("lightcube materials import pixestl:palette.json -o pla.toml --only Cyan,Magenta,Yellow", "filaments"),
     ],
     "calibrate": [
         ("lightcube calibrate wedge -o wedge.png", "a page to print"),
