@@ -9,6 +9,7 @@ from lightcube.cli import arguments
 from lightcube.cli.console import done, err, json_document, out
 from lightcube.cli.options import JSON, OVERWRITE
 from lightcube.errors import InputError
+from lightcube.io.materials import read_material
 from lightcube.io.palettes import read_palette
 from lightcube.verbs import materials as verb
 
@@ -62,7 +63,7 @@ def _show(name: str | None, *, as_json: bool) -> None:
     if name is None:
         raise InputError("lightcube materials show takes the name or the file of a material, as in show polyjet")
     dyes = io.read_dyes(name)
-    known = verb.facts(dyes)
+    known = verb.facts(dyes) | read_material(name).measured
     if as_json:
         json_document(known)
         return
