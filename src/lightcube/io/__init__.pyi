@@ -4,6 +4,7 @@ from lightcube.io._zarr import HollowCube
 from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
 from lightcube.io.masks import read_mask
+from lightcube.io.materials import material_names, read_dyes
 from lightcube.io.meshes import is_mesh, read_solid
 from lightcube.io.movies import ClippedPictures
 from lightcube.io.outputs import Output, save, write_together
@@ -37,7 +38,9 @@ __all__ = [
     "is_relief",
     "is_shape",
     "is_stage",
+    "material_names",
     "read_cube",
+    "read_dyes",
     "read_mask",
     "read_pictures",
     "read_relief",

@@ -21,6 +21,7 @@ from lightcube.planning.measured import is_measured
 from lightcube.planning.plan import Plan, narrower
 from lightcube.planning.rehearsals import Rehearsals
 from lightcube.scoring.metrics import FAIR_DB, grain_word, nearness
+from lightcube.verbs import materials
 from lightcube.wording import counted, in_ev
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ def in_short(planned: Plan, order: "Order | None") -> list[str]:
         f"{block(planned.grid)}{held}",
         *expected(planned),
         *gain(planned, order),
+        *([] if planned.recipe.dyes is None else materials.in_words(planned.recipe.dyes)),
         *(f"doubtful: {sentence}" for sentence in planned.doubtful),
         *unsampled(rig, "thin" if planned.recipe.beams.is_thin else "area"),
     ]
@@ -248,8 +250,9 @@ def solved(solution: Solution) -> list[str]:
             f"lamp: at most {power:.3g} times as strong as one that makes the bare wall white ({in_ev(power)})"
         )
     if isinstance(cube.grid, Stack):
-        return [*lines, "from close up, pixels fall into coloured cells, whose light adds up further back"]
-    return [*lines, from_near(scores["grain_rms"], recipe_of(cube).beams)]
+        near = "from close up, pixels fall into coloured cells, whose light adds up further back"
+        return [*lines, *materials.held(cube), near]
+    return [*lines, *materials.held(cube), from_near(scores["grain_rms"], recipe_of(cube).beams)]
 
 
 def from_near(grain_rms: float, light: Light) -> str:
