@@ -13,6 +13,7 @@ from lightcube.kernels.layout import clear_volume
 from lightcube.optics.arrays import Bytes, Floats, Reals, Volume, keep
 from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import Grid
+from lightcube.optics.stack import Stack
 from lightcube.wording import counted
 
 #: What absorbs: ink on a film, a resin that is cured drop by drop, a filament.
@@ -147,7 +148,8 @@ class Dyes:
         """The same dyes by their extinction, 1/mm, in a grid's voxels: inks lie on films, one for each slice."""
         if self.kind != "ink":
             return self
-        extinction, base = self.extinction / grid.slice_mm, self.base / grid.slice_mm
+        film_mm = grid.voxel_mm if isinstance(grid, Stack) else grid.slice_mm
+        extinction, base = self.extinction / film_mm, self.base / film_mm
         return replace(self, extinction=extinction, base=base, kind="resin")
 
     def mixed(self, amounts: Floats) -> Volume:
