@@ -70,10 +70,9 @@ def export(
     }
     options = {name: value for name, value in given.items() if value is not None}
     at = place(output)
-    with telling("reading", as_json=as_json) as tell:
-        loaded = exporting.opened(cube, tell=tell)
+    fabrication.check(at, kind, overwrite=overwrite)
+    loaded = exporting.opened(cube)
     planned = fabrication.plan(loaded, at, kind, options)
-    fabrication.check(at, planned, overwrite=overwrite)
     if dry_run:
         _tell(output, {**planned.facts, "notes": list(planned.notes)}, as_json=as_json, verb="would be written")
         return

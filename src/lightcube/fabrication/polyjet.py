@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from lightcube.fabrication.points import check_seed
 from lightcube.fabrication.printers import MODES, Mode, Printing
 from lightcube.fabrication.resins import Mixed, mixed
 from lightcube.fabrication.slices import Held, Look, palette_of, write_slices
-from lightcube.io._files import suffix_entry
+from lightcube.io._files import Replaceable
 from lightcube.io._places import Place
 from lightcube.optics.arrays import Volume
 from lightcube.optics.checks import check_fields
@@ -29,6 +29,15 @@ from lightcube.wording import counted
 CLEAR = "clear"
 #: Names of slices have four digits.
 _MOST_SLICES = 10_000
+
+
+def is_slices_folder(at: Place) -> bool:
+    """Whether a folder holds slices, and may therefore be replaced by others."""
+    try:
+        said = sidecar.read(sidecar.place_of(at, is_folder=True))
+    except (InputError, OSError):
+        return False
+    return said is not None and said.kind == "polyjet"
 
 
 @dataclass(frozen=True)
@@ -56,6 +65,10 @@ class PolyJet:
     flips: str = ""
     prefix: str = "slice"
 
+    called: ClassVar[str] = "a folder of slices"
+    suffixes: ClassVar[tuple[str, ...]] = ("", ".slices")
+    replaceable: ClassVar[Replaceable] = staticmethod(is_slices_folder)
+
     def __post_init__(self) -> None:
         check_fields(self)
         check_seed(self.seed)
@@ -66,7 +79,6 @@ class PolyJet:
 
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written."""
-        suffix_entry(at, {"": True, ".slices": True}, "a folder of slices")
         printing, made = MODES[self.mode], mixed(cube, self.resins)
         droplets = Droplets(made.amounts, cube.grid, printing.sides_mm, made.order, self.seed)
         _check(made, droplets, printing, self.mode)
@@ -85,15 +97,6 @@ class PolyJet:
         files = (File(at, write, is_slices_folder),)
         facts = _facts(made, droplets, printing, self, palette)
         return Planned(files, facts, tuple(made.dyes.doubts), held, is_relit=bool(made.facts))
-
-
-def is_slices_folder(at: Place) -> bool:
-    """Whether a folder holds slices, and may therefore be replaced by others."""
-    try:
-        said = sidecar.read(sidecar.place_of(at, is_folder=True))
-    except (InputError, OSError):
-        return False
-    return said is not None and said.kind == "polyjet"
 
 
 def held_of(folder: Path, said: sidecar.Sidecar) -> Held:

@@ -133,4 +133,4 @@ def _lost(facts: Mapping[str, Any]) -> str:
     if "worst_wanted" in facts:
         wanted, found = (" ".join(f"{each:.2g}" for each in facts[f"worst_{name}"]) for name in ("wanted", "nearest"))
         told += f", the worst wants {wanted} per mm and gets {found}"
-    return f"{told}; solve it in them (lightcube solve --dyes) for a better one"
+    return f"{told}; solve it in them for a better one (lightcube solve --material)"

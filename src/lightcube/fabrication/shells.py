@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from lightcube.errors import InputError
 from lightcube.fabrication.planned import AXES, Advance, File, Planned, named
 from lightcube.fabrication.points import PLY_HEAD, check_matter, luminance
 from lightcube.io._3mf import write_parts_3mf
-from lightcube.io._files import suffix_entry
+from lightcube.io._files import Replaceable
 from lightcube.io._places import Place, beside, name_of
 from lightcube.io._stl import write_stl
 from lightcube.optics.arrays import Volume
@@ -64,6 +65,10 @@ class Shells:
 
     levels: int = 3
 
+    called: ClassVar[str] = "a shell"
+    suffixes: ClassVar[tuple[str, ...]] = (".3mf", ".ply")
+    replaceable: ClassVar[Replaceable] = None
+
     def __post_init__(self) -> None:
         check_fields(self)
         if not 1 <= self.levels <= MOST:
@@ -71,7 +76,7 @@ class Shells:
 
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written: parts in one file, and for slicers that cannot keep those together one STL each."""
-        is_3mf = suffix_entry(at, {".3mf": True, ".ply": False}, "a shell")
+        is_3mf = name_of(at).lower().endswith(".3mf")
         made = shells(cube, self.levels)
         parts = [(f"shell {number}", shell.mesh, shell.colour) for number, shell in enumerate(made, 1)]
 
