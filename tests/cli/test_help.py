@@ -57,7 +57,7 @@ def test_groups_stand_in_their_order_and_help_comes_last(capsys: pytest.CaptureF
 def test_options_in_no_group_stand_together_with_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main.run(["info", "--help"]) == 0
     told = capsys.readouterr().out
-    assert re.findall(r"^(\w+):$", told, re.MULTILINE) == ["Arguments", "Output"]
+    assert re.findall(r"^(\w+):$", told, re.MULTILINE) == ["Arguments", "Output", "Material"]
     assert told.index("--json") < told.index("--help")
 
 

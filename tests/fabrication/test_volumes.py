@@ -66,14 +66,13 @@ def by_pynrrd(path: Path) -> Found:
 
 def by_vtk(path: Path) -> Found:
     vtk = pytest.importorskip("vtk", reason="vtk is of the extra readers")
-    from vtk.util.numpy_support import vtk_to_numpy
-
+    support = pytest.importorskip("vtk.util.numpy_support")
     reader = vtk.vtkXMLImageDataReader()
     reader.SetFileName(str(path))
     reader.Update()
     image = reader.GetOutput()
     nx, ny, nz = (count - 1 for count in image.GetDimensions())
-    numbers = vtk_to_numpy(image.GetCellData().GetArray("extinction")).reshape(nz, ny, nx, -1)
+    numbers = support.vtk_to_numpy(image.GetCellData().GetArray("extinction")).reshape(nz, ny, nx, -1)
     sides = np.array(image.GetSpacing())
     return numbers.transpose(3, 0, 1, 2), np.array(image.GetOrigin()) + sides / 2, sides
 
@@ -138,8 +137,8 @@ def test_a_vdb_in_metres_is_the_same_block(tmp_path: Path) -> None:
     data = (tmp_path / "a.vdb").read_bytes()
     at = data.index(b"ScaleTranslateMap") + 17
     np.testing.assert_allclose(struct.unpack_from("<3d", data, at + 24), cube.grid.sides_mm / 1000)
-    with pytest.raises(InputError, match="only a .vdb does not: leave --unit m out"):
-        lc.export(cube, tmp_path / "a.nrrd", "volume", unit="m")
+    with pytest.raises(InputError, match=r"only a .vdb does not: leave --unit m out"):
+        lc.export(cube, tmp_path / "b.nrrd", "volume", unit="m")
 
 
 @every_suffix
@@ -188,7 +187,7 @@ def test_without_a_sidecar_the_cube_says_what_lamps_there_are(tmp_path: Path) ->
     for suffix in FORMATS:
         path = tmp_path / f"a{suffix}"
         lc.export(cube, path, "volume", score=False)
-        (tmp_path / "a.json").unlink()
+        (tmp_path / "a.json").unlink()  # it stands in the way of the next, too
         with pytest.raises(InputError, match=r"there is no a.json beside it: name the cube"):
             lc.read_export(path)
         found = lc.read_export(path, like=cube)
@@ -207,7 +206,7 @@ def test_a_sidecar_says_what_it_is_of_and_none_of_another_is_taken(tmp_path: Pat
     assert said["made_from_sha256"] == sidecar.digest_of(cube)
     shutil.copy(tmp_path / "a.vdb", tmp_path / "b.vdb")
     (tmp_path / "b.json").write_text((tmp_path / "a.json").read_text())
-    with pytest.raises(InputError, match="there is no b.json beside it"):  # it is that of a.vdb
+    with pytest.raises(InputError, match=r"there is no b.json beside it"):  # it is that of a.vdb
         lc.read_export(tmp_path / "b.vdb")
     for harmed in ("", "{}", "[]", '{"format": "lightcube export 9"}', json.dumps({**said, "kind": "cake"})):
         (tmp_path / "a.json").write_text(harmed)

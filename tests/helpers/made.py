@@ -40,4 +40,4 @@ def in_dyes(shape: tuple[int, int, int] = (8, 12, 14), voxel_mm: float = 0.25, s
     """A cube of dyes."""
     cube, dyes = a_cube(shape, voxel_mm), some_dyes()
     amounts = (np.random.default_rng(seed).random((3, *shape)) ** 4 * 0.3).astype(np.float32)
-    return with_own_targets(replace(cube, extinction=dyes.mixed(amounts, cube.grid), amounts=amounts, dyes=dyes))
+    return with_own_targets(replace(cube, extinction=dyes.mixed(amounts), amounts=amounts, dyes=dyes))

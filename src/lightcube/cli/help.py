@@ -19,6 +19,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube solve photos -o cube.zarr", "a folder of photographs, all else is chosen"),
         ("lightcube solve photos -o cube.zarr --n 64 --quality draft", "smaller and quicker, to try"),
         ("lightcube solve photos -o cube.zarr --size-mm 60 --lamp-max 4", "60 mm wide, for a weaker lamp"),
+        ("lightcube solve photos -o cube.zarr --material polyjet", "of resins that a printer mixes"),
         ("lightcube solve photos -o cube.zarr --dry-run", "how much memory and time it takes"),
     ],
     "check": [
@@ -62,6 +63,10 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube relief a.jpg b.jpg c.jpg d.jpg -o plate.stl --sheet sheet.png", "four photographs in one plate"),
         ("lightcube relief photo.jpg -o plate.3mf --colour", "one photograph in colour, by three coloured lamps"),
         ("lightcube relief a.png b.png -o plate.stl --layer-mm 0.2", "heights that the printer makes exactly"),
+    ],
+    "materials": [
+        ("lightcube materials", "those that come along"),
+        ("lightcube materials show polyjet", "what its resins absorb, and which colours they make"),
     ],
     "draw": [
         ("lightcube draw cube.zarr -o room.png", "the room, at the cube's first stop"),

@@ -27,6 +27,8 @@ from lightcube.solids.surface import surface
 MOST = 8
 #: Marching cubes make faces of no size nearer to 0.
 _CLEAR_OF_0 = 1 / 256
+#: And where it changes faster than this at a face, what stands there would stand out of the block.
+_STEEPEST = np.float32(0.5)
 #: What such a thing is.
 _NOTE = "shells are decorative: printed in opaque parts they cast none of the cube's pictures"
 
@@ -137,12 +139,12 @@ def _shell(cube: Cube, dark: Volume, level: float) -> Shell:
     """The shell around what is darker than a level."""
     inside = dark >= level
     field = ((level - dark) / max(level, float(np.finfo(np.float32).tiny))).astype(np.float32)
-    field = np.where(inside, np.minimum(field, -_CLEAR_OF_0), np.maximum(field, _CLEAR_OF_0)).astype(np.float32)
+    low, high = np.clip(field, -_STEEPEST, -_CLEAR_OF_0), np.clip(field, _CLEAR_OF_0, _STEEPEST)
     mean = cube.extinction[:, inside].mean(axis=1, dtype=np.float64)
     light = np.exp(-mean / max(float(mean.mean()), 1e-12))
     red, green, blue = to_uint8(np.broadcast_to(light, 3) if len(light) != 3 else light).tolist()
     holds = float(cube.extinction[:, inside].sum(dtype=np.float64) / cube.extinction.sum(dtype=np.float64))
-    return Shell(surface(field, cube.grid), (red, green, blue), level, holds)
+    return Shell(surface(np.where(inside, low, high), cube.grid), (red, green, blue), level, holds)
 
 
 def ply(made: Sequence[Shell]) -> bytes:

@@ -150,7 +150,7 @@ class Dyes:
         extinction, base = self.extinction / grid.slice_mm, self.base / grid.slice_mm
         return replace(self, extinction=extinction, base=base, kind="resin")
 
-    def mixed(self, amounts: Volume) -> Volume:
+    def mixed(self, amounts: Floats) -> Volume:
         """Extinction ``(channel, z, y, x)`` of amounts ``(dye, z, y, x)``: 1/mm, or of inks the films' absorbance."""
         full, clear = self.extinction.astype(np.float32), self.base.astype(np.float32)
         nz, ny, nx = amounts.shape[1:]

@@ -139,6 +139,9 @@ def told(document: Mapping[str, Any]) -> list[str]:
     if "round_s" in document:
         lines.append(f"{counted(document['stops'], 'stop')}, once round takes {document['round_s']:.0f} s")
     lines += _cast(document.get("predicted") or {})
+    blocks = document.get("cast_in", {})
+    if "predicted" in document and any(count > 1 for count in blocks.values()):
+        lines.append(f"cast in blocks of {_along(blocks)} droplets, which are too many one by one: up to 2 dB too low")
     white = document.get("one_white_lamp")
     if white:
         lines.append(f"one constant white lamp instead, of power {white['power']:.3g}: {_mean(white)}")
