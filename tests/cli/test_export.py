@@ -131,6 +131,10 @@ def test_what_does_not_belong_together_is_refused_and_nothing_is_written(run, cu
     (tmp_path / "out").mkdir()
     at = tmp_path / "out"
     for words, said in (
+        (
+            ("cake", cube, "-o", at / "a.vdb"),
+            "cake is nothing that is made of a cube: give one of volume, ",
+        ),
         (("volume", cube, "-o", at / "a.vdb", "--levels", 3), "volume takes unit, not levels: leave it out"),
         (("schedule", cube, "-o", at / "a.csv", "--seed", 3), "schedule takes no options, not seed"),
         (("volume", cube, "-o", at / "a.ply"), "has no suffix that a volume can have: use one of .vdb, .nrrd"),

@@ -211,7 +211,7 @@ def test_what_no_printer_prints_is_refused_before_anything_is_written(tmp_path: 
     film = Dyes(("c", "m"), np.array([[2.0, 0.1, 0], [0.1, 2, 0.1]]), kind="ink")
     assert cube.amounts is not None
     none = cube.amounts
-    many = np.concatenate([none, none]) / np.float32(2)
+    many = np.concatenate([none, none]).astype(np.float32) / np.float32(2)
     of_six = replace(cube, amounts=many, dyes=six, extinction=six.mixed(many))
     refused: list[tuple[lc.Cube, dict[str, Any], str]] = [
         (a_cube(), {}, "was not solved in dyes: name the resins"),

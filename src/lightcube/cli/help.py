@@ -57,6 +57,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     "score": [
         ("lightcube score cube.zarr", "how near each picture comes"),
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
+        ("lightcube score print cube.zarr", "what a folder of exported slices would cast"),
         ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
     ],
     "relief": [
@@ -67,6 +68,14 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     "materials": [
         ("lightcube materials", "those that come along"),
         ("lightcube materials show polyjet", "what its resins absorb, and which colours they make"),
+    ],
+    "export": [
+        ("lightcube export volume cube.zarr -o cube.vdb --unit m", "for Blender, whose unit is a metre"),
+        (
+            "lightcube export polyjet cube.zarr -o print --resins polyjet --dry-run",
+            "what slices would be",
+        ),
+        ("lightcube export schedule cube.zarr -o show.csv", "when the table turns, and how bright lamps are"),
     ],
     "draw": [
         ("lightcube draw cube.zarr -o room.png", "the room, at the cube's first stop"),

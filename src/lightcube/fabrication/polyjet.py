@@ -105,7 +105,7 @@ class PolyJet:
         facts["palette"] = [facts["palette"][material] for material in used]
         left_out = [name for name, is_so in zip(made.dyes.names, unused, strict=True) if is_so]
         notes = [f"nothing of the cube is of {', '.join(left_out)}, which printers refuse: left out"] * bool(left_out)
-        return Planned(files, facts, (*notes, *made.dyes.doubts), held, is_relit=bool(made.facts))
+        return Planned(files, facts, (*notes, *made.dyes.doubts), held, is_relit=True)
 
 
 def held_of(folder: Path, said: sidecar.Sidecar) -> Held:
