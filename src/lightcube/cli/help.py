@@ -68,6 +68,12 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     "materials": [
         ("lightcube materials", "those that come along"),
         ("lightcube materials show polyjet", "what its resins absorb, and which colours they make"),
+        ("lightcube materials import pixestl:palette.json -o pla.toml --only Cyan,Magenta,Yellow", "filaments"),
+    ],
+    "calibrate": [
+        ("lightcube calibrate wedge -o wedge.png", "a page to print"),
+        ("lightcube calibrate fit photo.jpg -o inkjet.toml", "its photograph, and what the inks are"),
+        ("lightcube calibrate fit densities.csv -o inkjet.toml", "the same of densities that were typed"),
     ],
     "export": [
         ("lightcube export volume cube.zarr -o cube.vdb --unit m", "for Blender, whose unit is a metre"),

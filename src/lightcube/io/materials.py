@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
+import re
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
@@ -151,7 +152,7 @@ def as_toml(dyes: Dyes, **said: str) -> str:
     lines += [f"{name} = {_quoted(value)}" for name, value in said.items()]
     lines += [f"base = {{ {key} = {_numbers(dyes.base / unit)} }}"] if np.any(dyes.base) else []
     for number, name in enumerate(dyes.names):
-        lines += ["", f"[ink.{_quoted(name)}]", f"{key} = {_numbers(dyes.extinction[number] / unit)}"]
+        lines += ["", f"[ink.{_key(name)}]", f"{key} = {_numbers(dyes.extinction[number] / unit)}"]
         curve = dyes.gain[number]
         lines += [] if curve is None else [f"dot_gain = [{', '.join(map(_numbers, curve))}]"]
         lines += [] if dyes.limit[number] == 1 else [f"limit = {dyes.limit[number]:.6g}"]
@@ -162,6 +163,10 @@ def as_toml(dyes: Dyes, **said: str) -> str:
 
 def _numbers(numbers: Reals) -> str:
     return f"[{', '.join(f'{number:.6g}' for number in numbers)}]"
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _quoted(name)
 
 
 def _quoted(text: str) -> str:
