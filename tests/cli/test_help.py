@@ -66,7 +66,8 @@ def test_where_a_word_lacks_an_example_has_it(name: str, capsys: pytest.CaptureF
     needed = [each.opts[0] for each in options(name) if each.required]
     if needed:
         example = EXAMPLES[name][0][0]
-        assert main.run([name, example.split()[2]]) == 2
+        arguments = [each for each in command(name).params if each.param_type_name == "argument" and each.required]
+        assert main.run([name, *example.split()[2 : 2 + len(arguments)]]) == 2
         said = capsys.readouterr().err
         assert said == f"lightcube: Missing option '-o' / '--out': give it, as in {example}\n"
         assert set(needed) <= set(example.split())
@@ -74,7 +75,7 @@ def test_where_a_word_lacks_an_example_has_it(name: str, capsys: pytest.CaptureF
 
 def test_commands_that_write_say_where_to() -> None:
     needing = [name for name in main.COMMANDS if any(each.required for each in options(name))]
-    assert needing == ["trace", "solve", "hull", "carve", "relief", "play", "draw", "calibrate"]
+    assert needing == ["trace", "solve", "hull", "carve", "relief", "play", "draw", "export", "calibrate"]
 
 
 @pytest.mark.parametrize(("name", "typed"), [(name, typed) for name, all_ in EXAMPLES.items() for typed, _ in all_])

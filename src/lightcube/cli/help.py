@@ -66,6 +66,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     "score": [
         ("lightcube score cube.zarr", "how near each picture comes"),
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
+        ("lightcube score print cube.zarr", "what a folder of exported slices would cast"),
         ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
         ("lightcube score word.stl front.png side.png top.png --walls", "what any mesh casts beside pictures"),
     ],
@@ -83,6 +84,14 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube calibrate wedge -o wedge.png", "a page to print"),
         ("lightcube calibrate fit photo.jpg -o inkjet.toml", "its photograph, and what the inks are"),
         ("lightcube calibrate fit densities.csv -o inkjet.toml", "the same of densities that were typed"),
+    ],
+    "export": [
+        ("lightcube export volume cube.zarr -o cube.vdb --unit m", "for Blender, whose unit is a metre"),
+        (
+            "lightcube export polyjet cube.zarr -o print --resins polyjet --dry-run",
+            "what slices would be",
+        ),
+        ("lightcube export schedule cube.zarr -o show.csv", "when the table turns, and how bright lamps are"),
     ],
     "draw": [
         ("lightcube draw cube.zarr -o room.png", "the room, at the cube's first stop"),

@@ -29,6 +29,7 @@ COMMANDS: Mapping[str, str] = {
     ),
     "draw": "Draw a stage from above and from the side, with its beams, or the room of a cube in perspective.",
     "info": "Say what is in the file of a cube, a shape or a relief.",
+    "export": "Write a cube for printers, lasers and other programs, with all that is to be known beside it.",
     "materials": (
         "Say what inks, resins and filaments there are, and what each absorbs; import those of other programs."
     ),

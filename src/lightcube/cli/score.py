@@ -14,23 +14,29 @@ from lightcube.cli.hull import INVERT, THRESHOLD, WALLS
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.drawing.relief_sheet import relief_sheet
 from lightcube.errors import InputError
+from lightcube.fabrication.reading import is_exported
 from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
 from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.reach import count_pieces
-from lightcube.verbs import hull_words, hulls, meshes, reliefs, scoring
+from lightcube.verbs import exporting, hull_words, hulls, meshes, reliefs, scoring
 from lightcube.verbs.options import Options
 from lightcube.verbs.refitting import wanted_of
 
 
 @threaded
 def score(
-    cube: Annotated[str, typer.Argument(help="A cube, a shape, a relief, or a mesh (.stl, .3mf, .obj, .ply).")],
+    cube: Annotated[
+        str,
+        typer.Argument(
+            help="A cube, a shape, a relief, a mesh (.stl, .3mf, .obj, .ply), or an exported volume or folder of slices.",
+        ),
+    ],
     pictures: Annotated[
         list[str] | None,
         typer.Argument(
-            help="The pictures it was made from; default its own targets. A mesh has none: give what hull takes, or a "
-            "shape.",
+            help="The pictures it was made from; default its own targets. Of an export, or its cube. A mesh has none: "
+            "give what hull takes, or a shape.",
         ),
     ] = None,
     walls: Annotated[bool, WALLS] = False,
@@ -47,6 +53,9 @@ def score(
     ] = False,
     robust: Annotated[bool, typer.Option("--robust", help="Add what a set-up that is a little off costs.")] = False,
     plot: Annotated[str | None, typer.Option(help="Draw PSNR against the angle (PNG or SVG); --between.")] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Take exported files that were changed since for what they are now.")
+    ] = False,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
@@ -82,8 +91,14 @@ def score(
     if io.is_relief(cube):
         _score_relief(cube, sheet_file, off=robust, refused=bool(pictures or plot or between_pictures), as_json=as_json)
         return
-    loaded = load(cube)
-    wanted = wanted_of(loaded, pictures[0] if pictures else None)
+    is_file, given = is_exported(cube), pictures[0] if pictures else None
+    if force and not is_file:
+        raise InputError("--force is for files that lightcube export wrote: leave it out")
+    if is_file:
+        loaded, wanted = exporting.measured(cube, given, force=force)
+    else:
+        loaded = load(cube)
+        wanted = wanted_of(loaded, given)
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
         found = scoring.score(loaded, wanted, tell, between=between_pictures or plot is not None, off=robust)
     drawn: list[tuple[io.Output, Thing]] = []
@@ -92,10 +107,14 @@ def score(
     if sheet_file is not None:
         drawn.append((sheet_file, scoring.sheet(loaded, wanted, found, io.bare_name(cube))))
     io.write_together(*drawn)
+    other = exporting.turned(loaded, wanted, found.scores["psnr_mean"]) if is_file else None
     if as_json:
-        json_document(found.scores)
-    else:
-        printing.scored(found.scores, loaded.rig)
+        turned = {} if other is None else {"other_way_round": {"flip": other.axes, "psnr_mean": other.psnr_mean}}
+        json_document({**found.scores, **turned})
+        return
+    printing.scored(found.scores, loaded.rig)
+    for line in exporting.said_of_score(cube, other, found.scores["psnr_mean"]) if is_file else ():
+        out.print(line)
 
 
 def _refuse(path: str, what: str, given: Mapping[str, object]) -> None:
