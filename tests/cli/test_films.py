@@ -108,7 +108,8 @@ def test_a_photograph_of_the_real_thing_is_compared_with_what_was_promised(run: 
     assert found["exposure_ev"] == pytest.approx([np.log2(0.7)] * 3, abs=0.05)
     said = run("score", "stack.zarr", "--photo", "wall.png", "--stop", "2", "--sheet", "sheet.png")
     assert "beside what was promised" in said.out
-    assert Image.open("sheet.png").size[0] > 300
+    with Image.open("sheet.png") as sheet:
+        assert sheet.size[0] > 300
     for more, what in (
         (("--photo", "wall.png"), "belong together"),
         (("--stop", "2"), "belong together"),
