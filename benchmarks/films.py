@@ -1,6 +1,6 @@
 """Stacks of films: how good pictures become, and what is left where they lie off.
 
-    python benchmarks/films.py [anywhere|held|sizes|moved ...]
+    python benchmarks/films.py [anywhere|held|sizes|moved|inks ...]
 
 Photographs of scikit-image, 32 x 32 pixels of 5 mm, cells of 2.5 mm, a density of 1.5 at most, 60 passes, unless said.
 PSNR in dB, mean / worst, of exact means over pixels; then with every film 0.1 and 0.2 mm off (root of the mean square
@@ -12,16 +12,19 @@ import math
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 import lightcube as lc
 from lightcube.optics.attenuator import snapped
+from lightcube.optics.gamut import nearest
 from lightcube.optics.moves import misplaced
 from lightcube.optics.stack import Stack
 from lightcube.optics.sun import sunlight
 from lightcube.pictures.fitting import targets_of
 from lightcube.pictures.samples import photographs
+from lightcube.scoring.films import exposed
 from lightcube.scoring.metrics import score_pictures
 
 #: Draws of films that lie off.
@@ -132,7 +135,31 @@ def moved() -> None:
         told(f"6 orders of {films} films, a lamp aslant", stage, density=2.0, passes=120)
 
 
-CASES: dict[str, Callable[[], None]] = {"anywhere": anywhere, "held": held, "sizes": sizes, "moved": moved}
+def inks() -> None:
+    """Solved for amounts of inks, or for colours and converted to the nearest amounts; 200 passes."""
+    stage = lc.attenuator(pictures(4), FILMS)
+    targets = lc.fit(photographs(4), stage.rig())
+    free = solved(stage, passes=200)
+    print(f"{'any colours':48s} {psnr(free)[0]:5.1f} / {psnr(free)[1]:4.1f}")
+    for name in ("cmyk-film", "cmy-film"):
+        dyes = replace(lc.read_dyes(name), base=np.zeros(3))
+        block = dyes.in_block(stage.grid)
+        converted = replace(free, extinction=block.mixed(nearest(free.extinction, block)))
+        made = lc.solve(targets, stage.grid, lc.Recipe(passes=200, material=lc.Material(dyes=dyes))).cube
+        for what, cube in ((f"converted to {name}", converted), (f"solved for {name}", made)):
+            shown = list(lc.cast(cube))
+            mean, worst = psnr(cube)
+            anew = score_pictures(exposed(shown, targets), targets)["psnr_mean"]
+            print(f"{what:48s} {mean:5.1f} / {worst:4.1f} | lamps found anew {anew:4.1f}", flush=True)
+
+
+CASES: dict[str, Callable[[], None]] = {
+    "anywhere": anywhere,
+    "held": held,
+    "sizes": sizes,
+    "moved": moved,
+    "inks": inks,
+}
 
 
 if __name__ == "__main__":

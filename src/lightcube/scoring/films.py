@@ -46,7 +46,7 @@ def robust(cube: Cube, targets: Targets, callback: Callable[[int, int], None] | 
         for seed in range(_draws(off)):
             shown = list(disturbed(cube, off, seed))
             each.append(_psnr(shown, targets))
-            relit.append(_psnr([_relit(*pair) for pair in zip(shown, _wanted(targets), strict=True)], targets))
+            relit.append(_psnr(exposed(shown, targets), targets))
             done += 1
             if callback is not None:
                 callback(done, of)
@@ -143,7 +143,12 @@ def _wanted(targets: Targets) -> Iterator[tuple[Images, Images, str]]:
     return ((*pair, targets.transfer) for pair in zip(wanted, targets.weight, strict=True))
 
 
-def _relit(shown: Images, picture: tuple[Images, Images, Any]) -> Images:
+def exposed(shown: list[Images], targets: Targets) -> list[Images]:
+    """Pictures in linear light, each colour of each under the exposure that brings it nearest to what is wanted."""
+    return [_exposed(*pair) for pair in zip(shown, _wanted(targets), strict=True)]
+
+
+def _exposed(shown: Images, picture: tuple[Images, Images, Any]) -> Images:
     """A picture under the exposure of each colour that brings it nearest to what is wanted."""
     wanted, weight, transfer = picture
     best = shown.copy()
