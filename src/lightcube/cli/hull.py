@@ -1,6 +1,7 @@
 """The command `lightcube hull`."""
 
 import time
+from collections.abc import Callable
 from typing import Annotated, Any
 
 import typer
@@ -10,13 +11,14 @@ from lightcube.cli import arguments
 from lightcube.cli.console import done, err, json_line, out, telling
 from lightcube.cli.fields import flag
 from lightcube.cli.options import JSON, OVERWRITE, threaded
+from lightcube.drawing.outlines import outlines
 from lightcube.drawing.overlay import overlays
 from lightcube.events import Progress
 from lightcube.pictures.fitting import Fit
 from lightcube.solids.carving import Carving
 from lightcube.solids.printing import stands
 from lightcube.solids.reach import count_pieces
-from lightcube.solids.repair import Way
+from lightcube.solids.repair import Repaired, Way
 from lightcube.solids.shape import Shape
 from lightcube.verbs import hull_words, hulls, making, words
 from lightcube.verbs.options import Options
@@ -99,6 +101,14 @@ def hull(
     drain: Annotated[float, DRAIN] = 3.0,
     base: Annotated[str, BASE] = "auto",
     overlay: Annotated[str | None, OVERLAY] = None,
+    outline: Annotated[
+        str | None,
+        typer.Option(
+            "--outlines",
+            help="Also draw the silhouettes as they are cast, in mm, for cutters (.svg).",
+            rich_help_panel="Output",
+        ),
+    ] = None,
     most: Annotated[int | None, flag("most")] = None,
     every: Annotated[int | None, flag("every")] = None,
     n: Annotated[int | None, flag("n")] = None,
@@ -116,9 +126,7 @@ def hull(
     files = [io.Output(output, "shape", overwrite) for output in dict.fromkeys(outputs)]
     for file in files:
         file.check()
-    overlay_file = None if overlay is None else io.Output(overlay, "picture", overwrite)
-    if overlay_file is not None:
-        overlay_file.check()
+    beside = _beside(overlay, outline, overwrite=overwrite)
     how = making.Making(repair, wall, carve, keep_deep, drain, arguments.base_mm(base))
     angles = None if angles_deg is None else arguments.numbers(angles_deg, "--angles-deg")
     said: dict[str, Any] = {"most": most, "every": every, "n": n, "size_mm": size_mm, "span_deg": span_deg}
@@ -141,8 +149,8 @@ def hull(
             tell(Progress(_MADE, _STEPS))
             for file in files:
                 file.write(shape)
-            if overlay_file is not None:
-                overlay_file.write(overlays(made))
+            for file, drawn in beside:
+                file.write(drawn(made))
             tell(Progress(_WRITTEN, _STEPS))
             found, pieces = hulls.certificate(outputs[0], shape), count_pieces(shape.inside)
             tell(Progress(_STEPS, _STEPS))
@@ -177,6 +185,20 @@ def hull(
     kept = next((output for output in outputs if io.is_shape(output)), None)
     look = "add -o NAME.shape.zarr, and lightcube view" if kept is None else f"lightcube view {kept}"
     out.print(f"to look at it between its walls: {look}" + ("" if kept else " shows that"))
+
+
+def _beside(
+    overlay: str | None, outline: str | None, *, overwrite: bool
+) -> list[tuple[io.Output, Callable[[Repaired], Any]]]:
+    """Where drawings of what is made go, checked, and what makes them."""
+    asked: list[tuple[io.Output, Callable[[Repaired], Any]]] = []
+    if overlay is not None:
+        asked.append((io.Output(overlay, "picture", overwrite), overlays))
+    if outline is not None:
+        asked.append((io.Output(outline, "drawing", overwrite), lambda made: outlines(made.shape.silhouettes)))
+    for file, _ in asked:
+        file.check()
+    return asked
 
 
 def _thin(shape: Shape) -> dict[str, Any] | None:
