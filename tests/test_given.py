@@ -39,6 +39,7 @@ REACH = lc.reach(SILHOUETTES, GRID)
 #: What would do of every public function and class.
 GIVEN: dict[str, dict[str, Any]] = {
     "Cube": {"extinction": CUBE.extinction, "grid": GRID, "rig": RIG},
+    "Dyes": {"names": ("a", "b"), "extinction": np.array([[1.0, 2, 3], [3, 2, 1]])},
     "Grid": {"shape": (3, 5, 7)},
     "Label": {"title": "a"},
     "Lamp": {"name": "sun", "direction": (1, 0, -0.5)},
@@ -101,6 +102,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "player": {"cube": CUBE},
     "predict": {"targets": TARGETS, "grid": GRID},
     "publish": {"partial": "no.zarr.partial"},
+    "read_dyes": {"place_or_name": "polyjet"},
     "read_pictures": {"path": "no.gif"},
     "read_relief": {"path": "no.relief.zarr"},
     "read_scene": {"path_or_name": "gems"},

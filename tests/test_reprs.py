@@ -18,7 +18,14 @@ def of_everything() -> dict[str, object]:
     stage, *_ = lc.read_stage(str(ROOT / "examples" / "stages" / "two-screens.toml"))
     alike = lc.Pictures((np.ones((2, 3, 3), np.float32), np.ones((2, 3, 3), np.float32)), ("a", "b"))
     values = [pictures, alike, plan, plan.targets, plan.targets.rig, plan.prediction, solution, solution.cube, stage]
-    values += [lc.Grid((5, 7, 6)), lc.Recipe(), lc.Material(), lc.METHODS, lc.Projector(plan.grid, plan.targets.rig)]
+    values += [
+        lc.Grid((5, 7, 6)),
+        lc.Recipe(),
+        lc.Material(),
+        lc.read_dyes("polyjet"),
+        lc.METHODS,
+        lc.Projector(plan.grid, plan.targets.rig),
+    ]
     values += [lc.Mesh(np.eye(4, 3), np.array([[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]))]
     square = np.pad(np.zeros((4, 4, 3), np.float32), ((2, 2), (2, 2), (0, 0)), constant_values=1)
     drawn = lc.Pictures((square,) * 3, ("a", "b", "c"))

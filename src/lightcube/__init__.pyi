@@ -8,10 +8,20 @@ from lightcube.cores import threads
 from lightcube.drawing.films import film
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast, play, player
-from lightcube.io import read_pictures, read_relief, read_scene, read_shape, read_stage, read_stage_targets, save
+from lightcube.io import (
+    read_dyes,
+    read_pictures,
+    read_relief,
+    read_scene,
+    read_shape,
+    read_stage,
+    read_stage_targets,
+    save,
+)
 from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
@@ -55,6 +65,7 @@ from lightcube.viewer.page import page
 __all__ = [
     "METHODS",
     "Cube",
+    "Dyes",
     "Grid",
     "InputError",
     "Label",
@@ -104,6 +115,7 @@ __all__ = [
     "predict",
     "publish",
     "reach",
+    "read_dyes",
     "read_pictures",
     "read_relief",
     "read_scene",

@@ -10,7 +10,7 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
 from uuid import uuid4
@@ -22,11 +22,12 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.io import Output, read_pictures, read_relief, read_shape, save
+from lightcube.io import Output, read_dyes, read_pictures, read_relief, read_shape, save
 from lightcube.io.outputs import KINDS, Kind
 from lightcube.io.printable import read_written
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import from_levels, to_uint8
@@ -189,6 +190,16 @@ def is_the_document(document: dict[str, Any], path: Path, suffix: str) -> None:
     assert json.loads(path.read_text(encoding="utf-8")) == document
 
 
+def a_material(number: int, suffix: str) -> Dyes:
+    """With a dot gain of many points: files of two sizes, both larger than two thousand bytes."""
+    gain = tuple(np.stack([at := np.linspace(0, 1, 90), at**0.9], axis=1) for _ in range(4 - number))
+    return replace(read_dyes(("cmyk-film", "cmy-film")[number]), gain=gain)
+
+
+def is_the_material(dyes: Dyes, path: Path, suffix: str) -> None:
+    np.testing.assert_allclose(read_dyes(path).extinction, dyes.extinction, rtol=1e-5)
+
+
 EXAMPLES: Mapping[Kind, Example] = {
     "cube": Example(a_cube, is_the_cube),
     "mesh": Example(a_mesh, is_the_mesh),
@@ -200,6 +211,7 @@ EXAMPLES: Mapping[Kind, Example] = {
     "plot": Example(a_plot, is_the_plot),
     "picture": Example(lambda number, suffix: noise(number, 65, 97 + number), is_the_picture),
     "document": Example(a_document, is_the_document),
+    "material": Example(a_material, is_the_material),
 }
 ROWS = [(kind, suffix) for kind, row in KINDS.items() for suffix in row.writers]
 every_row = pytest.mark.parametrize(("kind", "suffix"), ROWS, ids=[f"{kind}{suffix}" for kind, suffix in ROWS])

@@ -8,6 +8,8 @@ __getattr__, __dir__, __all__ = when_used(
         "bare_name": "cubes",
         "read_cube": "cubes",
         "free_memory": "machine",
+        "material_names": "materials",
+        "read_dyes": "materials",
         "ClippedPictures": "movies",
         "Output": "outputs",
         "save": "outputs",

@@ -3,6 +3,7 @@
 from lightcube.io._zarr import HollowCube
 from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
+from lightcube.io.materials import material_names, read_dyes
 from lightcube.io.movies import ClippedPictures
 from lightcube.io.outputs import Output, save, write_together
 from lightcube.io.pictures import (
@@ -34,7 +35,9 @@ __all__ = [
     "is_relief",
     "is_shape",
     "is_stage",
+    "material_names",
     "read_cube",
+    "read_dyes",
     "read_pictures",
     "read_relief",
     "read_scene",

@@ -1,4 +1,4 @@
-"""What a cube's file says besides its two arrays: one JSON document, checked when it is read."""
+"""What a cube's file says besides its arrays: one JSON document, checked when it is read."""
 
 import math
 from collections.abc import Mapping
@@ -16,6 +16,7 @@ from lightcube.io._blocks import BlockJson, block_to_json
 from lightcube.io._rig import RigJson, rig_to_json
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube, Status
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.transfer import Transfer
 
 #: Of the files that this version writes; earlier ones are told as this one when they are read (`lightcube.io._older`).
@@ -45,6 +46,7 @@ class _CubeJson(BlockJson):
     transfer: Transfer
     status: Status
     hold_deg: Annotated[_Number, Field(ge=0, le=180)] = 0.0
+    dyes: dict[str, Any] | None = None
     scores: dict[str, Any]
     provenance: dict[str, Any]
 
@@ -62,6 +64,7 @@ def to_json(cube: Cube) -> dict[str, Any]:
         "transfer": cube.transfer,
         "status": cube.status,
         "hold_deg": float(cube.hold_deg),
+        **({} if cube.dyes is None else {"dyes": cube.dyes.plain()}),
         "scores": plain(cube.scores),
         "provenance": plain(cube.provenance),
     }
@@ -80,7 +83,13 @@ def plain(value: Any) -> Any:
     return value if value is None or isinstance(value, bool | int) else encodable(str(value))
 
 
-def from_json(path: Path, document: object, extinction: NDArray[Any], targets: NDArray[Any] | None) -> Cube:
+def from_json(
+    path: Path,
+    document: object,
+    extinction: NDArray[Any],
+    targets: NDArray[Any] | None,
+    amounts: NDArray[Any] | None = None,
+) -> Cube:
     """Build the cube again; `InputError` naming `path` and the key where the document cannot be right.
 
     Arrays may be of wider types than they were written as: other programs rewrite them so.
@@ -98,6 +107,8 @@ def from_json(path: Path, document: object, extinction: NDArray[Any], targets: N
     if extinction.ndim != 4:
         raise damaged(path, f"extinction has {extinction.ndim} axes, not 4")
     extinction = _narrowed(path, "extinction", extinction, np.dtype(np.float32))
+    if amounts is not None:
+        amounts = _narrowed(path, "amounts", amounts, np.dtype(np.float32))
     try:
         return Cube(
             extinction,
@@ -111,6 +122,8 @@ def from_json(path: Path, document: object, extinction: NDArray[Any], targets: N
             said.provenance,
             said.status,
             said.hold_deg,
+            amounts,
+            None if said.dyes is None else Dyes(**said.dyes),
         )
     except Exception as error:  # InputError among them, and whatever NumPy makes of numbers that no array holds
         raise damaged(path, str(error)) from error

@@ -27,6 +27,8 @@ def write_npz(path: Path, cube: Cube) -> None:
     arrays: dict[str, Any] = {"extinction": cube.extinction, "lightcube": np.array(text)}
     if cube.targets is not None:
         arrays["targets"] = cube.targets
+    if cube.amounts is not None:
+        arrays["amounts"] = cube.amounts
     with path.open("wb") as file:
         np.savez(file, **arrays)
 
@@ -56,5 +58,5 @@ def read_npz(path: Path) -> Cube:
         if "extinction" not in arrays:
             raise _metadata.damaged(path, "its array 'extinction' is missing")
         extinction = locked(arrays["extinction"])
-        targets = locked(arrays["targets"]) if "targets" in arrays else None
-    return _metadata.from_json(path, document, extinction, targets)
+        targets, amounts = (locked(arrays[name]) if name in arrays else None for name in ("targets", "amounts"))
+    return _metadata.from_json(path, document, extinction, targets, amounts)

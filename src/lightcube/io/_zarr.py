@@ -35,12 +35,14 @@ from lightcube.solids.shape import Shape
 Value = TypeVar("Value")
 #: By an array's name: how many of its chunks are not there, of how many.
 Missing = dict[str, tuple[int, int]]
-Parts = tuple[object, NDArray[Any], NDArray[Any] | None]
+Parts = tuple[object, NDArray[Any], NDArray[Any] | None, NDArray[Any] | None]
 
 
 @dataclass(frozen=True)
 class _Kind:
-    """What a group holds: names and numbers of axes of its two arrays, and what its document must be.
+    """What a group holds: names and numbers of axes of its arrays, the third of which may have no name.
+
+    `check` says what its document must be.
 
     `damaged` makes what is raised where it is not so.
     """
@@ -50,6 +52,7 @@ class _Kind:
     damaged: Callable[[Path, str], InputError]
     first: str = "0"
     axes: tuple[int, int] = (4, 4)
+    third: str = ""
 
 
 #: An array with its name and those of its axes.
@@ -66,11 +69,11 @@ _CHUNK_BYTES = 8 << 20
 _MOST_CHUNKS = 100_000
 _ROOT = "zarr.json"
 _IMAGE, _TARGETS, _SILHOUETTES, _ATTRIBUTE = "0", "targets", "silhouettes", "lightcube"
-_HEIGHTS, _WANTED = "heights", "wanted"
+_HEIGHTS, _WANTED, _AMOUNTS = "heights", "wanted", "amounts"
 #: Where a display's white is, among the voxels that are not empty, in per cent: a twentieth of them or more are as dark
 #: as the material can be, ten times as dark as most, and a display that ends there shows a cube as black.
 _WHITE = 90
-_CUBE = _Kind(_TARGETS, _metadata.check_version, _metadata.damaged)
+_CUBE = _Kind(_TARGETS, _metadata.check_version, _metadata.damaged, third=_AMOUNTS)
 _SHAPE = _Kind(_SILHOUETTES, _shape_json.check_version, _shape_json.damaged)
 _RELIEF = _Kind(_WANTED, _relief_json.check_version, _relief_json.damaged, _HEIGHTS, (2, 3))
 _COLOURS = (("red", "FF0000"), ("green", "00FF00"), ("blue", "0000FF"))
@@ -81,6 +84,8 @@ def write_zarr(folder: Path, cube: Cube) -> None:
     arrays: list[Named] = [(_IMAGE, cube.extinction, ["c", "z", "y", "x"])]
     if cube.targets is not None:
         arrays.append((_TARGETS, cube.targets, ["view", "row", "column", "channel"]))
+    if cube.amounts is not None:
+        arrays.append((_AMOUNTS, cube.amounts, ["dye", "z", "y", "x"]))
     _run(lambda: _write(folder, {"ome": _ome(cube), _ATTRIBUTE: _metadata.to_json(cube)}, arrays))
 
 
@@ -103,7 +108,7 @@ def read_shape(path: Path) -> Shape:
         store, size = _folder(path)
         return await _read(path, store, size, missing, kind=_SHAPE)
 
-    document, field, given = _reading(path, read, _SHAPE)
+    document, field, given, _ = _reading(path, read, _SHAPE)
     if missing:
         raise _shape_json.damaged(path, f"parts of its array {next(iter(missing))!r} are missing")
     return _shape_json.from_json(path, document, field, given)
@@ -126,7 +131,7 @@ def read_relief(path: Path) -> Relief:
         store, size = _folder(path)
         return await _read(path, store, size, missing, kind=_RELIEF)
 
-    document, heights, wanted = _reading(path, read, _RELIEF)
+    document, heights, wanted, _ = _reading(path, read, _RELIEF)
     if missing or wanted is None:
         raise _relief_json.damaged(path, "parts of its arrays are missing")
     return _relief_json.from_json(path, document, heights, wanted)
@@ -230,7 +235,7 @@ async def _write(folder: Path, attributes: dict[str, Any], arrays: Sequence[Name
 
 def _chunks(name: str, values: NDArray[Any]) -> tuple[int, ...]:
     """The shape of an array's chunks: whole slices of a volume, whole pictures of all else."""
-    if name == _IMAGE:
+    if name in (_IMAGE, _AMOUNTS):
         channels, nz, ny, nx = values.shape
         return channels, max(1, min(nz, _CHUNK_BYTES // (4 * channels * ny * nx))), ny, nx
     return max(1, min(len(values), _CHUNK_BYTES // values[0].size)), *values.shape[1:]
@@ -287,7 +292,7 @@ async def _read(
     *,
     kind: _Kind = _CUBE,
 ) -> Parts:
-    """Metadata and the two arrays of the group in a store, or in a folder inside it; and what is `missing`."""
+    """Metadata and arrays of the group in a store, or in a folder inside it; and what is `missing`."""
     store = Guarded(opened, size, partial(kind.damaged, path))
     try:
         group = await zarr.AsyncGroup.open(await StorePath.open(store, inside, mode="r"), zarr_format=3)
@@ -296,7 +301,9 @@ async def _read(
         first = await _array(path, store, group, kind.first, missing, kind)
         if first is None:
             raise kind.damaged(path, f"its array {kind.first!r} is missing")
-        return document, first, await _array(path, store, group, kind.second, missing, kind)
+        second = await _array(path, store, group, kind.second, missing, kind)
+        third = await _array(path, store, group, kind.third, missing, kind) if kind.third else None
+        return document, first, second, third
     finally:
         store.close()
 

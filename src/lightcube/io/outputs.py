@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, Unpack
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.io import cubes, documents, movies, printable, reliefs, shapes
+from lightcube.io import cubes, documents, materials, movies, printable, reliefs, shapes
 from lightcube.io._files import (
     RELIEF_SUFFIX,
     SHAPE_SUFFIX,
@@ -25,6 +25,7 @@ from lightcube.io._files import (
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.optics.dyes import Dyes
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.relief import Relief
 from lightcube.solids.shape import Shape
@@ -35,11 +36,13 @@ if TYPE_CHECKING:
 Given = TypeVar("Given", bound=str | Path)
 
 #: What can be written, by name.
-Kind = Literal["cube", "mesh", "shape", "relief", "pictures", "page", "drawing", "plot", "picture", "document"]
+Kind = Literal[
+    "cube", "mesh", "shape", "relief", "pictures", "page", "drawing", "plot", "picture", "document", "material"
+]
 
 #: Whatever is of one of the kinds.
 Thing: TypeAlias = (
-    "Cube | Mesh | Shape | Relief | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any]"
+    "Cube | Dyes | Mesh | Shape | Relief | str | movies.Picture | Iterable[movies.Frame] | Mapping[str, Any]"
     "| movies.Levels | Figure"
 )
 
@@ -97,6 +100,7 @@ KINDS: Mapping[Kind, Row] = {
     "drawing": Row("a drawing", {".svg": documents.write_text}, lambda thing: isinstance(thing, str)),
     "plot": Row("a plot", documents.PLOTS, lambda thing: hasattr(thing, "savefig")),
     "picture": Row("a picture", documents.PICTURES, _is_picture),
+    "material": Row("a material", materials.WRITERS, lambda thing: isinstance(thing, Dyes)),
     "document": Row("a document", {".json": documents.write_json}, lambda thing: isinstance(thing, Mapping)),
     "pictures": Row(
         "a movie",

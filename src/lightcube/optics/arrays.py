@@ -19,6 +19,8 @@ Integers: TypeAlias = NDArray[np.int64]
 Flags: TypeAlias = NDArray[np.bool_]
 #: Display values from 0 to 255.
 Levels: TypeAlias = NDArray[np.uint16]
+#: Colours of pictures of 8 bits.
+Bytes: TypeAlias = NDArray[np.uint8]
 #: Pictures in linear light.
 Images: TypeAlias = NDArray[np.float32]
 #: Extinction of voxels, 1/mm.

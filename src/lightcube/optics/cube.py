@@ -12,6 +12,7 @@ from lightcube.errors import InputError
 from lightcube.optics import showing
 from lightcube.optics.arrays import Levels, Reals, Volume, copied, keep, owned
 from lightcube.optics.checks import check_fields
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import Transfer
@@ -19,6 +20,8 @@ from lightcube.optics.views import check_pixels, check_reach
 from lightcube.wording import counted
 
 Status = Literal["complete", "interrupted"]
+#: Amounts and what is mixed of them may be off by so much, as numbers of other programs are.
+_ROUNDED = 1.0001
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +52,9 @@ class Cube:
         How the cube was made: method, options, version of this package.
     hold_deg
         Degrees on either side of its stop over which a picture was asked to stand; the lamp does not change there.
+    amounts, dyes
+        ``(dye, z, y, x)`` float32 from 0 to each dye's limit: how much of each dye every voxel holds, and the dyes, of
+        which the extinction is mixed. None where a cube is of no dyes.
     status
         ``"complete"``, or ``"interrupted"`` where the solver was stopped early.
 
@@ -69,6 +75,8 @@ class Cube:
     provenance: Mapping[str, Any] = field(default_factory=dict)
     status: Status = "complete"
     hold_deg: float = 0.0
+    amounts: Volume | None = None
+    dyes: Dyes | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -105,11 +113,29 @@ class Cube:
             )
         if not 0 <= self.hold_deg <= 180:
             raise InputError(f"a cube's hold lies between 0 and 180 degrees, not {self.hold_deg}")
+        self._check_amounts(extinction)
         object.__setattr__(self, "extinction", extinction)
         object.__setattr__(self, "lamp_powers", powers)
         object.__setattr__(self, "names", names)
         for field_name in ("scores", "provenance"):
             object.__setattr__(self, field_name, copied(getattr(self, field_name)))
+
+    def _check_amounts(self, extinction: Volume) -> None:
+        """Keep the amounts of dyes; `InputError` unless the extinction is that of such a mixture."""
+        if self.amounts is None and self.dyes is None:
+            return
+        if self.amounts is None or self.dyes is None:
+            raise InputError("a cube of dyes has their amounts too, and amounts are of dyes: give both, or neither")
+        amounts, dyes = owned(self.amounts, np.float32), self.dyes
+        shape = (len(dyes.names), *self.grid.shape)
+        if amounts.shape != shape or dyes.channels != len(extinction):
+            raise InputError(f"amounts of {dyes!r} have shape {amounts.shape}, not {shape}, or colours differ")
+        if not np.all((amounts >= 0) & (amounts <= _ROUNDED * dyes.limit[:, None, None, None])):
+            raise InputError("amounts of dyes must lie between 0 and the limit of each: mend them")
+        off = np.abs(dyes.in_block(self.grid).mixed(amounts) - extinction)
+        if np.any(off > (_ROUNDED - 1) * float(extinction.max())):
+            raise InputError("the extinction of a cube is not that of its amounts of dyes: mix it by Dyes.mixed")
+        object.__setattr__(self, "amounts", amounts)
 
     @property
     def powers(self) -> Reals:

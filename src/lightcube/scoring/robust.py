@@ -32,7 +32,8 @@ def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float
     shift_mm += disturbance.further * cube.grid.size_mm[1] * _ways(views)
     rig = replace(rig, views=replace(views, origins_mm=views.origins_mm + shift_mm))
     if disturbance.levels:
-        cube = replace(cube, extinction=_rounded(cube.extinction, disturbance.levels))
+        rounded = _rounded(cube.extinction, disturbance.levels)
+        cube = replace(cube, extinction=rounded, amounts=None, dyes=None)
     for picture in cast(cube, rig, cube.powers * (1 + disturbance.lamp)):
         yield picture + np.float32(disturbance.black)
 

@@ -93,7 +93,7 @@ def _rounded(cube: Cube, bits: int) -> Packed:
         if rate > 0:
             codes[channel] = np.rint(np.log1p(given / np.float32(least)) / np.float32(rate))
             extinction[channel] = (least * np.expm1(rate * np.arange(levels + 1))).astype(np.float32)[codes[channel]]
-    rounded = replace(cube, extinction=extinction)
+    rounded = replace(cube, extinction=extinction, amounts=None, dyes=None)
     return Packed(codes, bits, least, rates, rounded, lost(cube, rounded))
 
 

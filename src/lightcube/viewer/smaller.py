@@ -67,7 +67,8 @@ def in_cubes(cube: Cube) -> Cube:
         )
     nz, ny, nx = grid.shape
     extinction = locked(np.repeat(cube.extinction, times, axis=1))
-    return replace(cube, extinction=extinction, grid=Grid((times * nz, ny, nx), grid.voxel_mm))
+    tall = Grid((times * nz, ny, nx), grid.voxel_mm)
+    return replace(cube, extinction=extinction, grid=tall, amounts=None, dyes=None)
 
 
 def shown_coarsely(cube: Cube, small: Cube) -> NDArray[np.float32]:
