@@ -20,7 +20,7 @@ STOREYS = [
     ["pictures", "projection", "solvers"],
     ["scene", "backward", "forward", "solids"],
     ["scoring", "io", "cores"],
-    ["planning", "jobs", "drawing", "bench"],
+    ["planning", "jobs", "drawing", "fabrication", "bench"],
     ["viewer", "report"],
     ["verbs", ""],
     ["cli"],

@@ -13,6 +13,8 @@ __getattr__, __dir__, __all__ = when_used(
         "solve": "backward.solving",
         "threads": "cores",
         "InputError": "errors",
+        "export": "fabrication.exporting",
+        "read_export": "fabrication.reading",
         "cast": "forward.casting",
         "play": "forward.casting",
         "player": "forward.casting",

@@ -7,6 +7,8 @@ from lightcube.backward.solving import solve
 from lightcube.cores import threads
 from lightcube.drawing.films import film
 from lightcube.errors import InputError
+from lightcube.fabrication.exporting import export
+from lightcube.fabrication.reading import read_export
 from lightcube.forward.casting import cast, play, player
 from lightcube.io import (
     read_dyes,
@@ -104,6 +106,7 @@ __all__ = [
     "check",
     "cut",
     "dot_test",
+    "export",
     "film",
     "fit",
     "hull",
@@ -116,6 +119,7 @@ __all__ = [
     "publish",
     "reach",
     "read_dyes",
+    "read_export",
     "read_pictures",
     "read_relief",
     "read_scene",

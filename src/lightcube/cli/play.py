@@ -12,17 +12,19 @@ from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
 from lightcube.drawing import films, shows
 from lightcube.drawing.poster import Format
 from lightcube.errors import InputError
-from lightcube.jobs.reading import load
 from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Beams, check_zoom
 from lightcube.verbs import reliefs, words
+from lightcube.verbs.exporting import opened
 from lightcube.wording import counted
 
 
 @threaded
 def play(
-    cube: Annotated[str, typer.Argument(help="A cube, or a relief: its lamp goes round.")],
+    cube: Annotated[
+        str, typer.Argument(help="A cube, a relief (its lamp goes round), or an exported volume or folder of slices.")
+    ],
     output: Annotated[str, OUT],
     even: Annotated[
         bool, typer.Option("--even", help="Turn evenly under a steady lamp: what flickers, flickers.")
@@ -75,6 +77,9 @@ def play(
         float | None,
         typer.Option(help="Pictures per second of a movie.  [default: 30; 10 in a GIF of a --format]"),
     ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Take exported files that were changed since for what they are now.")
+    ] = False,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
@@ -105,7 +110,7 @@ def play(
     turns = even or [start_deg, end_deg, count] != [None] * 3
     if view == "eye" and turns:
         raise InputError("--view eye stays at an angle: leave out --even, --from-deg, --to-deg and --count")
-    loaded = load(cube)
+    loaded = opened(cube, force=force)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
         raise InputError(f"{cube} has several screens: leave out --target, and see score --sheet")

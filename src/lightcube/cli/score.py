@@ -11,19 +11,21 @@ from lightcube.cli.console import json_document, out, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.drawing.relief_sheet import relief_sheet
 from lightcube.errors import InputError
+from lightcube.fabrication.reading import is_exported
 from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
 from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.reach import count_pieces
-from lightcube.verbs import hulls, reliefs, scoring
+from lightcube.verbs import exporting, hulls, reliefs, scoring
 from lightcube.verbs.refitting import wanted_of
 
 
 @threaded
 def score(
-    cube: Annotated[str, typer.Argument(help="A cube, a shape or a relief.")],
+    cube: Annotated[str, typer.Argument(help="A cube, a shape, a relief, or an exported volume or folder of slices.")],
     pictures: Annotated[
-        str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
+        str | None,
+        typer.Argument(help="The pictures it was made from; default its own targets.  Of an export, or its cube."),
     ] = None,
     sheet: Annotated[
         str | None, typer.Option(help="Draw a contact sheet: shown beside wanted (PNG, WebP or JPEG).")
@@ -33,6 +35,9 @@ def score(
     ] = False,
     robust: Annotated[bool, typer.Option("--robust", help="Add what a set-up that is a little off costs.")] = False,
     plot: Annotated[str | None, typer.Option(help="Draw PSNR against the angle (PNG or SVG); --between.")] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Take exported files that were changed since for what they are now.")
+    ] = False,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
@@ -52,9 +57,15 @@ def score(
     if io.is_relief(cube):
         _score_relief(cube, sheet_file, off=robust, refused=pictures or plot or between_pictures, as_json=as_json)
         return
-    loaded = load(cube)
-    wanted = wanted_of(loaded, pictures)
+    is_file = is_exported(cube)
+    if force and not is_file:
+        raise InputError("--force is for files that lightcube export wrote: leave it out")
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
+        if is_file:
+            loaded, wanted = exporting.measured(cube, pictures, force=force, tell=tell)
+        else:
+            loaded = load(cube)
+            wanted = wanted_of(loaded, pictures)
         found = scoring.score(loaded, wanted, tell, between=between_pictures or plot is not None, off=robust)
     drawn: list[tuple[io.Output, Thing]] = []
     if plot_file is not None and found.curve is not None:
@@ -62,10 +73,14 @@ def score(
     if sheet_file is not None:
         drawn.append((sheet_file, scoring.sheet(loaded, wanted, found, io.bare_name(cube))))
     io.write_together(*drawn)
+    other = exporting.turned(loaded, wanted, found.scores["psnr_mean"]) if is_file else None
     if as_json:
-        json_document(found.scores)
-    else:
-        printing.scored(found.scores, loaded.rig)
+        turned = {} if other is None else {"other_way_round": {"flip": other.axes, "psnr_mean": other.psnr_mean}}
+        json_document({**found.scores, **turned})
+        return
+    printing.scored(found.scores, loaded.rig)
+    for line in exporting.said_of_score(cube, other, found.scores["psnr_mean"]) if is_file else ():
+        out.print(line)
 
 
 def _score_shape(path: str, given: list[str], *, as_json: bool) -> None:

@@ -1,0 +1,100 @@
+"""The command `lightcube export`."""
+
+from typing import Annotated, Any
+
+import typer
+
+from lightcube import io
+from lightcube.cli.console import done, out, telling
+from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
+from lightcube.fabrication import exporting as fabrication
+from lightcube.fabrication.printers import Mode
+from lightcube.fabrication.sidecar import Kind
+from lightcube.io._places import place
+from lightcube.verbs import exporting
+
+
+@threaded
+def export(
+    kind: Annotated[
+        Kind,
+        typer.Argument(
+            help="What is made: a volume (.vdb, .nrrd, .vti, .npy), a shell (.3mf, .ply), points for a glass laser "
+            "(.ply), polyjet slices (a folder), or the schedule of table and lamps (.csv, .json)."
+        ),
+    ],
+    cube: Annotated[str, typer.Argument(help="A cube, or an exported volume or folder of slices.")],
+    output: Annotated[str, OUT],
+    unit: Annotated[
+        str | None, typer.Option(help="Of a .vdb: mm, or m for programs such as Blender.  [default: mm]")
+    ] = None,
+    levels: Annotated[int | None, typer.Option(help="How many shells, 1 to 8.  [default: 3]")] = None,
+    spacing_um: Annotated[
+        float | None, typer.Option(help="How far points are apart at least, micrometres.  [default: 100]")
+    ] = None,
+    resins: Annotated[
+        str | None,
+        typer.Option(
+            help="What slices are printed of: a material's file (TOML), or one that is known, such as polyjet.  "
+            "[default: the dyes that the cube was solved in]",
+            rich_help_panel="Material",
+        ),
+    ] = None,
+    mode: Annotated[
+        Mode | None, typer.Option(help="Of the printer.  [default: high-mix]", rich_help_panel="Material")
+    ] = None,
+    flip: Annotated[
+        str | None, typer.Option(help="Mirror slices along axes, such as y or xz.  [default: none]")
+    ] = None,
+    prefix: Annotated[str | None, typer.Option(help="What names of slices begin with.  [default: slice]")] = None,
+    seed: Annotated[int | None, typer.Option(help="Of droplets and points.  [default: 1]")] = None,
+    no_score: Annotated[
+        bool, typer.Option("--no-score", help="Do not score what the file casts, which takes time.")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what would be written, and write nothing.", rich_help_panel="Output")
+    ] = False,
+    overwrite: Annotated[bool, OVERWRITE] = False,
+    as_json: Annotated[bool, JSON] = False,
+) -> None:
+    """Write a cube for printers, lasers and other programs, with all that is to be known beside it."""
+    given: dict[str, Any] = {
+        "unit": unit,
+        "levels": levels,
+        "spacing_um": spacing_um,
+        "mode": mode,
+        "flips": flip,
+        "prefix": prefix,
+        "seed": seed,
+        "resins": None if resins is None else io.read_dyes(resins),
+    }
+    options = {name: value for name, value in given.items() if value is not None}
+    at = place(output)
+    with telling("reading", as_json=as_json) as tell:
+        loaded = exporting.opened(cube, tell=tell)
+    planned = fabrication.plan(loaded, at, kind, options)
+    fabrication.check(at, planned, overwrite=overwrite)
+    if dry_run:
+        _tell(output, {**planned.facts, "notes": list(planned.notes)}, as_json=as_json, verb="would be written")
+        return
+    with telling("writing", as_json=as_json) as tell:
+        document = fabrication.write(
+            loaded,
+            at,
+            kind,
+            planned,
+            overwrite,
+            tell,
+            is_scored=not no_score,
+            made_from=exporting.made_from(cube, output),
+        )
+    _tell(output, document, as_json=as_json, verb="is ready")
+
+
+def _tell(output: str, document: dict[str, Any], *, as_json: bool, verb: str) -> None:
+    """Print what was written, or would be."""
+    facts = {name: value for name, value in document.items() if name not in ("cube", "files")}
+    done(as_json, f"{output} {verb}", out=output, **facts)
+    if not as_json:
+        for line in exporting.told(document):
+            out.print(line)
