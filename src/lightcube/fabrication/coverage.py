@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.fabrication.resins import ConvertedCube, nearest, told_loss
-from lightcube.optics.arrays import Reals, Volume
+from lightcube.fabrication.resins import ConvertedCube, nearest
+from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.transfer import decode, encode
-from lightcube.wording import counted
 
 #: What pages are in.
 Space = Literal["grey", "rgb", "cmyk"]
@@ -123,8 +122,8 @@ def levels_of(stack: Cube, dyes: Dyes | None) -> tuple[NDArray[np.uint8], Printe
     if stack.amounts is not None and stack.dyes == dyes:
         return made.sent(stack.amounts), made, {}
     _check_dark(absorbance, dyes.base + dyes.limit @ dyes.extinction, stack, "these inks")
-    amounts, facts = nearest(Volume_of(absorbance), dyes)
-    warnings.warn(told_loss(facts, "inks", "cell"), ConvertedCube, stacklevel=2)
+    amounts, facts = nearest(absorbance.astype(np.float32), dyes)
+    warnings.warn(_lost(facts), ConvertedCube, stacklevel=2)
     return made.sent(amounts), made, facts
 
 
@@ -139,4 +138,13 @@ def _check_dark(absorbance: Reals, most: Reals, stack: Cube, who: str) -> None:
     raise InputError(
         f"film {film + 1} is as dark as density {darkest:.2f}, and {who} reach {reach:.2f}: solve it for that, with "
         f"--max-extinction {bound:g} or max_density = {math.floor(100 * most.min() / math.log(10)) / 100:g} in its file"
+    )
+
+
+def _lost(facts: dict[str, Any]) -> str:
+    """What a conversion costs, in a sentence."""
+    return (
+        "the films were not solved in these inks, so each cell is mixed as near to its colours as they can: "
+        f"{facts['out_of_gamut']:.1%} of all absorbance is out of their reach; solve in them for far better pictures "
+        "(solve --material)"
     )
