@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lightcube.errors import InputError
+from lightcube.kernels.films import NEAR, SLOPE
 from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
-from lightcube.kernels.films import NEAR, SLOPE
 from lightcube.optics.films import paths
 from lightcube.optics.moves import places_of
 from lightcube.optics.stack import Stack
@@ -51,11 +50,8 @@ class Assembly:
     sections: tuple[tuple[str, tuple[str, ...]], ...]
 
 
-def assembly(cube: Cube, *, is_mirrored: bool) -> Assembly:
-    """Say how a stack is put together; `InputError` where light runs along its films."""
-    stack = cube.grid
-    if not isinstance(stack, Stack):
-        raise InputError("this is a cube, not a stack of films: say of how many films it is to be made (--films 16)")
+def assembly(cube: Cube, stack: Stack, *, is_mirrored: bool) -> Assembly:
+    """Say how a cube's stack is put together."""
     light = paths(stack, cube.rig).table
     slopes = sorted({round(-float(row[SLOPE]), 4) for row in light if not row[NEAR]})
     count = stack.shape[0]
@@ -85,7 +81,7 @@ def _steps(cube: Cube, stack: Stack, *, is_mirrored: bool) -> tuple[str, ...]:
     return (
         "1. Print all pages at 100 %, on one printer, all one way round. Measure both bars: where they are off, export",
         "    again with --scale-x and --scale-y of 100 / what you measured.",
-        "2. Punch or drill both pin holes of each film. They are in no way symmetric: a film that is turned does not fit.",
+        "2. Punch or drill both pin holes of each film. They are not symmetric: a film that is turned does not fit.",
         f"3. Stack the films on pins, film 1 lowest, {side}, arrows away from you; every F must read right from above.",
         f"    Between them is {between}.",
         f"4. Light it from above, in the dark; {_screen(cube, stack)}.",
@@ -161,4 +157,3 @@ def _moved(place: Reals, height_mm: float) -> str:
     told += [f"turned {turn:.4g}°"] if abs(turn) > _NONE else []
     told += [f"at height {height:+.4g} mm from the middle"] if abs(height - height_mm) > _NONE else []
     return ", ".join(told)
-

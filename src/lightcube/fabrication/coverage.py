@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.fabrication.resins import ConvertedCube, nearest
-from lightcube.optics.arrays import Reals
+from lightcube.optics.arrays import Reals, Volume
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.transfer import decode, encode
@@ -46,12 +46,12 @@ class Printed:
     space: Space
     dyes: Dyes | None
 
-    def sent(self, given: Reals) -> NDArray[np.uint8]:
-        """Levels ``(film, y, x, colour)`` for amounts of the inks, or transmittance, ``(ink or channel, film, y, x)``."""
+    def sent(self, given: Volume) -> NDArray[np.uint8]:
+        """Levels ``(film, y, x, colour)`` for amounts ``(ink, film, y, x)``, or for light by channel."""
         if self.dyes is None:
-            shown = encode(given.astype(np.float32), "srgb")
+            shown = encode(given, "srgb")
             return np.rint(255 * np.moveaxis(shown, 0, -1)).astype(np.uint8)
-        covered = np.rint(255 * self.dyes.coverage(given.astype(np.float32))).astype(np.uint8)
+        covered = np.rint(255 * self.dyes.coverage(given)).astype(np.uint8)
         if self.space == "grey":
             return 255 - covered[0, ..., None]
         levels = np.zeros((*covered.shape[1:], 4), np.uint8)
@@ -82,7 +82,7 @@ def printed(dyes: Dyes | None, channels: int) -> Printed:
             raise InputError(f"pages show 1 or 3 colours, and the films have {channels}: name inks for them (--inks)")
         return Printed("grey" if channels == 1 else "rgb", None)
     if dyes.kind != "ink":
-        raise InputError(f"films are printed with inks, and these are {dyes.kind}s: name inks, such as --inks cmyk-film")
+        raise InputError(f"films are printed with inks, and these are {dyes.kind}s: name inks, as --inks cmyk-film")
     if dyes.channels != channels:
         raise InputError(f"inks of {dyes.channels} colours do not print films of {channels}: name others (--inks)")
     if len(dyes.names) == 1:
@@ -118,7 +118,7 @@ def levels_of(stack: Cube, dyes: Dyes | None) -> tuple[NDArray[np.uint8], Printe
     absorbance = stack.extinction.astype(np.float64) * stack.grid.voxel_mm
     if dyes is None:
         _check_dark(absorbance, np.full(len(absorbance), _DARKEST * math.log(10)), stack, "printers")
-        return made.sent(np.exp(-absorbance)), made, {}
+        return made.sent(np.exp(-absorbance).astype(np.float32)), made, {}
     if stack.amounts is not None and stack.dyes == dyes:
         return made.sent(stack.amounts), made, {}
     _check_dark(absorbance, dyes.base + dyes.limit @ dyes.extinction, stack, "these inks")

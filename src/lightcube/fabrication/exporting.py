@@ -77,7 +77,8 @@ def export(
         Is told how much is written.
     **options
         Of a volume `unit`, of shells `levels`, of points `spacing_um` and `seed`, of polyjet `resins`, `mode`, `seed`,
-        `flips` and `prefix`, of films `paper`, `dpi`, `inks`, `mirror`, `scale_x`, `scale_y` and `halftone`; as the class that `lightcube.fabrication.exporting.KINDS` has for the kind.
+        `flips` and `prefix`, of films `paper`, `dpi`, `inks`, `mirror`, `scale_x`, `scale_y` and `halftone`; as
+        the class that `lightcube.fabrication.exporting.KINDS` has for the kind.
 
     Returns
     -------
@@ -110,6 +111,12 @@ def plan(cube: Cube, at: Place, kind: Kind, options: Mapping[str, Any]) -> Plann
         takes = f"takes {' and '.join(sorted(known))}" if known else "takes no options"
         raise InputError(f"{kind} {takes}, not {strange[0]}: leave it out")
     return KINDS[kind](**options).plan(cube, at)
+
+
+def check_place(at: Place, *, overwrite: bool) -> None:
+    """Raise `InputError` unless a file and its sidecar can be written: ask before long work."""
+    for each in (at, sidecar.place_of(at, is_folder=False)):
+        check_free(each, overwrite=overwrite, replaceable=None)
 
 
 def check(at: Place, planned: Planned, *, overwrite: bool) -> None:

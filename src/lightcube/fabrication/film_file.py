@@ -72,9 +72,8 @@ def _dyes(said: dict[str, Any]) -> Dyes:
     """Inks of plain values."""
     gain = tuple(None if curve is None else np.array(curve) for curve in said["gain"])
     arrays = {name: np.array(said[name]) for name in ("extinction", "limit", "base", "scattering")}
-    plain = {name: said[name] for name in ("calibration", "kind")}
-    label = np.array(said["label"], np.uint8)
-    return Dyes(tuple(said["names"]), label=label, gain=gain, **arrays, **plain)
+    given = {**said, **arrays, "names": tuple(said["names"]), "label": np.array(said["label"], np.uint8), "gain": gain}
+    return Dyes(**given)
 
 
 def stack_of(path: Path, said: FilmFacts, heights_mm: tuple[float, ...], index: float) -> tuple[Volume, Stack, Reals]:
@@ -96,7 +95,8 @@ def stack_of(path: Path, said: FilmFacts, heights_mm: tuple[float, ...], index: 
         for page in pages:
             (picture,) = page.pictures()
             absorbance.append(printed.absorbance(_cells(picture, said)))
-            cell_mm.append((picture.width_mm / said.scale[0] / said.cells[1], picture.height_mm / said.scale[1] / said.cells[0]))
+            size_mm = np.array([picture.width_mm, picture.height_mm])
+            cell_mm.append(size_mm / said.scale / said.cells[::-1])
             off_mm.append(_off(picture, said, page.width_mm))
     if np.ptp(cell_mm) > _ALIKE * np.max(cell_mm):
         raise InputError(f"films of {path} are not all of one size, or not square any more: export it again")

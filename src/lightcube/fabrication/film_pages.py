@@ -20,6 +20,7 @@ from lightcube.io._pdf import POINTS
 
 #: Width of lines, and heights of letters, mm: of words, of headings, of the number of a film.
 _LINE, _WORDS, _HEADING, _LARGE = 0.1, 3.0, 5.0, 9.0
+_FONT, _BOLD = "Helvetica", "Helvetica-Bold"
 #: From one line of words to the next.
 _LEAD = 4.4
 #: Patches of the wedge: how many of each ink, and how large.
@@ -135,7 +136,7 @@ def _film_page(canvas: Any, sheets: Sheets, film: int) -> None:
         canvas.circle(x, y, PIN_MM)
         _cross(canvas, x, y, PIN_MM / 2)
     large, top = min(_LARGE, width / 10), bottom + height + 4
-    canvas.setFont("Helvetica", large / 0.72)  # capitals are so high
+    canvas.setFont(_FONT, large / 0.72)  # capitals are so high
     canvas.drawCentredString(left + 0.47 * width, top, str(film + 1))
     canvas.drawCentredString(left + 0.77 * width, top, "F")
     _arrow(canvas, left + 0.62 * width, top, large)
@@ -160,7 +161,15 @@ def _arrow(canvas: Any, x: float, y: float, length: float) -> None:
 
 
 def _words(
-    canvas: Any, x: float, y: float, said: str, room: float, size: float = _WORDS, *, centred: bool = False, font: str = "Helvetica"
+    canvas: Any,
+    x: float,
+    y: float,
+    said: str,
+    room: float,
+    size: float = _WORDS,
+    *,
+    centred: bool = False,
+    font: str = _FONT,
 ) -> None:
     """A line of words, in smaller letters where there is too little room."""
     from reportlab.pdfbase.pdfmetrics import stringWidth
@@ -198,18 +207,18 @@ def _assembly_pages(canvas: Any, sheets: Sheets) -> None:
 def _lines(assembly: Assembly) -> Iterator[tuple[str, float, str]]:
     """Lines of words with the heights and kinds of their letters."""
     for heading, told in assembly.sections:
-        yield "", _WORDS, "Helvetica"
-        yield heading, 3.6, "Helvetica-Bold"
+        yield "", _WORDS, _FONT
+        yield heading, 3.6, _BOLD
         for line in told:
-            yield line, _WORDS, "Helvetica"
+            yield line, _WORDS, _FONT
 
 
 def _head(canvas: Any, sheets: Sheets, y: float) -> float:
     """Title, a large F, and the films from the side; returns what is left below."""
     width, _ = sheets.layout.page_mm
-    _words(canvas, MARGIN_MM, y, sheets.assembly.title, width - 70, _HEADING, font="Helvetica-Bold")
+    _words(canvas, MARGIN_MM, y, sheets.assembly.title, width - 70, _HEADING, font=_BOLD)
     _words(canvas, MARGIN_MM, y - 7, sheets.assembly.subtitle, width - 70)
-    canvas.setFont("Helvetica-Bold", 18 / 0.72)
+    canvas.setFont(_BOLD, 18 / 0.72)
     canvas.drawString(width - MARGIN_MM - 36, y - 13, "F")
     _words(canvas, width - MARGIN_MM - 40, y - 18, "seen from above", 30, 2.4)
     high = 46.0
@@ -238,7 +247,8 @@ def _side(canvas: Any, assembly: Assembly, corner: tuple[float, float], room: tu
         y = ground + scale * (each - centre)
         canvas.line(middle - scale * wide / 2, y, middle + scale * wide / 2, y)
         if len(heights) <= 16:
-            _words(canvas, middle + scale * wide / 2 + 3, label - 1, f"{number + 1}: {assembly.heights[number]}", 40, 2.6)
+            told = f"{number + 1}: {assembly.heights[number]}"
+            _words(canvas, middle + scale * wide / 2 + 3, label - 1, told, 40, 2.6)
     canvas.setStrokeColorRGB(0, 0, 0)
     canvas.setLineWidth(_LINE)
 
@@ -273,9 +283,10 @@ def _wedge_page(canvas: Any, sheets: Sheets) -> None:
     width, height = sheets.layout.page_mm
     with _page(canvas, sheets):
         top = height - MARGIN_MM - _HEADING
-        _words(canvas, MARGIN_MM, top, "Wedge: even steps of each ink", width - 2 * MARGIN_MM, _HEADING, font="Helvetica-Bold")
-        told = "what each step lets through, measured or photographed on the screen's own light, says how this printer prints"
-        _words(canvas, MARGIN_MM, top - 7, told, width - 2 * MARGIN_MM)
+        room = width - 2 * MARGIN_MM
+        _words(canvas, MARGIN_MM, top, "Wedge: even steps of each ink", room, _HEADING, font=_BOLD)
+        told = "what steps let through, measured or photographed on the screen's own light, shows how it is printed"
+        _words(canvas, MARGIN_MM, top - 7, told, room)
         patch = min(_PATCH_MM, (width - 2 * MARGIN_MM - 24) / _STEPS)
         for row, (name, colour) in enumerate(_inks(sheets.printed)):
             y = top - 14 - patch - (patch + 8) * row

@@ -25,14 +25,15 @@ from lightcube.optics.checks import check_fields
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 
 #: How much larger or smaller a printer may have to be told to print.
 _MOST_SCALE = 1.1
 _RGB = (
-    "pages are of red, green and blue light, of which the printer's driver makes inks by rules of its own, and each ink "
-    "absorbs more colours than one: pictures like these came out at some 21 dB; solve them in the inks that they are "
-    "printed with (solve --material)"
+    "pages are of red, green and blue light, of which the printer's driver makes inks by its own rules, and each ink "
+    "absorbs more colours than one: four photographs came out at 21 dB; solve them in the inks that they are printed "
+    "with (solve --material)"
 )
 _DOTS = "what dots of one film cover of another's by chance is left out of the score of a halftone"
 
@@ -75,15 +76,18 @@ class FilmPages:
                     f"{_MOST_SCALE:g}, not {value:g}"
                 )
 
+    def laid_out(self, grid: Grid, rig: Rig) -> tuple[Stack, Layout]:
+        """The stack, and where its films lie on their pages; `InputError` where they do not fit, or are none."""
+        film_pages.reportlab()
+        if not isinstance(grid, Stack):
+            raise InputError("this is a cube, not a stack of films: solve one (solve --films 5, or a file of [stack])")
+        return grid, layout(grid, rig, self.paper, self.dpi, (self.scale_x, self.scale_y))
+
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written."""
         suffix_entry(at, {".pdf": True}, "pages of films")
-        film_pages.reportlab()
-        told = assembly(cube, is_mirrored=self.mirror)
-        stack = cube.grid
-        assert isinstance(stack, Stack)  # noqa: S101 - `assembly` refuses others
-        scale = self.scale_x, self.scale_y
-        where = layout(stack, cube.rig, self.paper, self.dpi, scale)
+        stack, where = self.laid_out(cube.grid, cube.rig)
+        told, scale = assembly(cube, stack, is_mirrored=self.mirror), (self.scale_x, self.scale_y)
         levels, printed, lost = levels_of(cube, self.inks)
         if self.halftone != "none" and printed.dyes is None:
             raise InputError("dots are of inks, and none are named: say which (--inks), or leave --halftone out")
@@ -107,8 +111,9 @@ class FilmPages:
             "halftone": self.halftone,
             **({"lost": lost} if lost else {}),
         }
-        notes = ((_RGB,) if printed.dyes is None else tuple(printed.dyes.doubts)) + ((_DOTS,) * (self.halftone != "none"))
-        return Planned((File(at, written),), known, notes, held, is_relit=bool(lost))
+        notes = [_RGB] if printed.dyes is None else printed.dyes.doubts
+        notes += [_DOTS] * (self.halftone != "none")
+        return Planned((File(at, written),), known, tuple(notes), held, is_relit=bool(lost))
 
 
 def _dots(halftone: Halftone, where: Layout) -> Callable[[int, NDArray[np.uint8]], NDArray[np.uint8]]:

@@ -12,13 +12,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from lightcube.errors import InputError
+from lightcube.optics.arrays import Reals
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 
 #: Width and height of paper by name, mm.
 PAPERS = {
-    **{"a5": (148.0, 210.0), "a4": (210.0, 297.0), "a3": (297.0, 420.0), "a2": (420.0, 594.0), "a1": (594.0, 841.0)},
-    **{"a0": (841.0, 1189.0), "letter": (215.9, 279.4), "legal": (215.9, 355.6), "tabloid": (279.4, 431.8)},
+    "a5": (148.0, 210.0),
+    "a4": (210.0, 297.0),
+    "a3": (297.0, 420.0),
+    "a2": (420.0, 594.0),
+    "a1": (594.0, 841.0),
+    "a0": (841.0, 1189.0),
+    "letter": (215.9, 279.4),
+    "legal": (215.9, 355.6),
+    "tabloid": (279.4, 431.8),
 }
 #: No printer of these reaches further out; and above and below films there is so much room for marks and words.
 MARGIN_MM, STRIP_MM = 6.0, 22.0
@@ -71,7 +79,8 @@ class Layout:
     def corner_mm(self) -> tuple[float, float]:
         """The picture's lower left corner, on a whole dot; the picture is in the middle of the page."""
         dot = _INCH / self.dpi
-        return tuple(round((page - size) / 2 / dot) * dot for page, size in zip(self.page_mm, self.size_mm, strict=True))  # type: ignore[return-value]
+        (width, height), (wide, high) = self.page_mm, self.size_mm
+        return round((width - wide) / 2 / dot) * dot, round((height - high) / 2 / dot) * dot
 
     @property
     def crosses_mm(self) -> tuple[tuple[float, float], ...]:
@@ -111,7 +120,8 @@ def layout(stack: Stack, rig: Rig, paper: str, dpi: int | None, scale: tuple[flo
         raise InputError(f"there is no paper {paper!r}: take one of {', '.join(PAPERS)}")
     dpi = _dpi(stack, rig, dpi)
     found = Layout(paper, PAPERS[paper], dpi, round(_dots(stack, dpi)), (stack.shape[1], stack.shape[2]))
-    need = np.multiply(found.size_mm, scale) + (0.0, 2 * STRIP_MM)
+    need = np.multiply(found.size_mm, scale)
+    need[1] += 2 * STRIP_MM
     pages = [page for page in (PAPERS[paper], PAPERS[paper][::-1]) if _fits(need, page)]
     if not pages:
         raise InputError(_too_large(found, need, rig))
@@ -124,7 +134,7 @@ def layout(stack: Stack, rig: Rig, paper: str, dpi: int | None, scale: tuple[flo
     return Layout(paper, pages[0], dpi, found.dots, found.cells)
 
 
-def _fits(need: np.ndarray[tuple[int], np.dtype[np.float64]], page: tuple[float, float]) -> bool:
+def _fits(need: Reals, page: tuple[float, float]) -> bool:
     return bool(np.all(need <= np.array(page) - 2 * MARGIN_MM + 1e-9))
 
 
@@ -169,7 +179,7 @@ def _picture_mm(rig: Rig) -> float:
     return float(max(columns * across, rows * along))
 
 
-def _too_large(found: Layout, need: np.ndarray[tuple[int], np.dtype[np.float64]], rig: Rig) -> str:
+def _too_large(found: Layout, need: Reals, rig: Rig) -> str:
     """What would fit, in a sentence."""
     width, height = (page - 2 * MARGIN_MM for page in found.page_mm)
     over = min(max(need[0] - width, need[1] - height), max(need[0] - height, need[1] - width))
@@ -178,7 +188,8 @@ def _too_large(found: Layout, need: np.ndarray[tuple[int], np.dtype[np.float64]]
     smaller = math.floor(_picture_mm(rig) - over - 2 * found.dots * _INCH / found.dpi)
     ways += [f"make pictures {smaller} mm large (solve --size-mm {smaller})"] if smaller > 0 else []
     ways = ways or ["let lamps stand more upright, or films lie nearer to each other"]
+    films = " x ".join(f"{side:.1f}" for side in found.size_mm)
     return (
-        f"films of {found.size_mm[0]:.1f} x {found.size_mm[1]:.1f} mm, with {STRIP_MM:g} mm for marks above and below, do "
-        f"not fit {found.paper}, which has {width:g} x {height:g} mm inside its margins: {', or '.join(ways)}"
+        f"films of {films} mm, with {STRIP_MM:g} mm for marks above and below, do not fit {found.paper}, which has "
+        f"{width:g} x {height:g} mm inside its margins: {', or '.join(ways)}"
     )

@@ -30,10 +30,10 @@ _FILMS = ".pdf"
 
 
 def is_exported(path: str | Path) -> bool:
-    """Whether a place is named as exported volumes and films are, or holds slices, or is another thing that was exported."""
+    """Whether a place is named as exported volumes and films are, or holds slices, or another thing was exported."""
     at = place(path)
     suffix = _suffix(at)
-    if suffix in FORMATS or is_film(path):
+    if suffix in FORMATS or suffix == _FILMS:
         return True
     if suffix in _SILENT:
         return _is_known(at)

@@ -168,25 +168,26 @@ class _File:
     def pages(self) -> list[Page]:
         """All pages in order."""
         pages: list[Page] = []
-        waiting = [(self._root["Pages"], {})]
-        while waiting:
+        waiting: list[tuple[Any, dict[str, Any]]] = [(self._root["Pages"], {})]
+        for _ in range(_MOST_PAGES):
+            if not waiting:
+                return pages
             reference, inherited = waiting.pop()
             said = {**inherited, **self.found(reference)}
-            if len(pages) + len(waiting) > _MOST_PAGES:
-                raise ValueError("too many pages")
             if said["Type"] == "Pages":
                 kept = {name: said[name] for name in ("MediaBox", "Resources", "Rotate") if name in said}
                 waiting += [(kid, kept) for kid in reversed(self.found(said["Kids"]))]
             else:
                 pages.append(self._page(said))
-        return pages
+        raise ValueError("too many pages")
 
     def _page(self, said: Mapping[str, Any]) -> Page:
         """A page of what is said of it."""
         left, bottom, right, top = (float(each) for each in self.found(said["MediaBox"]))
         if (left, bottom) != (0, 0) or said.get("Rotate", 0) != 0:
             raise ValueError("a page that is turned")
-        drawn = self._stream(said["Contents"], _MOST_TEXT)
+        texts = said["Contents"] if isinstance(said["Contents"], list) else [said["Contents"]]
+        drawn = b"\n".join(self._stream(each, _MOST_TEXT) for each in texts[:_MOST_PAGES])
         known = self.found(self.found(said["Resources"]).get("XObject", {}))
         is_picture = {name: self.found(each)["Subtype"] == "Image" for name, each in known.items()}
         uses = tuple((matrix, known[name]) for matrix, name in _used(drawn) if is_picture[name])
