@@ -45,7 +45,6 @@ def test_pictures_become_films_in_one_command(run, photos: Path, tmp_path: Path)
         (["--n", "8"], "not a stack of films"),
         ([*FEW, "--unit", "1/2"], "--unit solves a part"),
         (["--films", "2", "--n", "8", "--size-mm", "300"], "do not fit a4"),
-        (["--films", "2", "--n", "8", "--size-mm", "20.3217"], "not whole ones"),
     ],
 )
 def test_what_cannot_be_printed_is_told_before_it_is_solved(  # type: ignore[no-untyped-def]
