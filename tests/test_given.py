@@ -97,7 +97,9 @@ GIVEN: dict[str, dict[str, Any]] = {
     "load": {"path": "no.zarr"},
     "page": {"cube": CUBE, "label": "a"},
     "plan": {"pictures": PICTURES, "n": 6, "picture_width": 0.5},
+    "export": {"cube": CUBE, "path": "/no/such/folder/a.vdb", "kind": "volume"},
     "film": {"cube": CUBE},
+    "read_export": {"path": "no.vdb"},
     "play": {"cube": CUBE},
     "player": {"cube": CUBE},
     "predict": {"targets": TARGETS, "grid": GRID},
@@ -203,6 +205,8 @@ def test_what_is_right_is_taken(name: str) -> None:
         "read_shape",
         "read_stage",
         "read_stage_targets",
+        "export",
+        "read_export",
         "save",
     ):
         return

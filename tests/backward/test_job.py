@@ -21,11 +21,13 @@ from lightcube.backward.solving import make_job, solve, solve_job
 from lightcube.backward.store import Arrays, MemoryStore
 from lightcube.backward.units import coarser, split
 from lightcube.errors import InputError
+from lightcube.io import read_dyes
 from lightcube.jobs.partial import open_partial
 from lightcube.kernels.layout import columns_from_volume
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
+from lightcube.optics.material import Material
 from lightcube.optics.rig import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets
@@ -59,6 +61,7 @@ def job(elevation_deg: float = 35.0, size: tuple[int, int] = (3, 5), **options: 
     )
 
 
+DYED = Material(dyes=read_dyes("polyjet"))
 LEVEL: dict[str, Any] = {"elevation_deg": 0.0, "size": (4, 5), "units": 3}
 RAISED: dict[str, Any] = {"units": 2}
 KINDS: list[dict[str, Any]] = [
@@ -70,6 +73,9 @@ KINDS: list[dict[str, Any]] = [
     {"start": other_cube()},
     {**LEVEL, "method": "sirt"},
     {**RAISED, "method": "cgls"},
+    {"material": DYED},
+    {**LEVEL, "material": DYED, "light": Light(3, 3)},
+    {"material": DYED, "method": "sirt"},
 ]
 
 

@@ -57,7 +57,7 @@ def test_groups_stand_in_their_order_and_help_comes_last(capsys: pytest.CaptureF
 def test_options_in_no_group_stand_together_with_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main.run(["info", "--help"]) == 0
     told = capsys.readouterr().out
-    assert re.findall(r"^(\w+):$", told, re.MULTILINE) == ["Arguments", "Output"]
+    assert re.findall(r"^(\w+):$", told, re.MULTILINE) == ["Arguments", "Output", "Material"]
     assert told.index("--json") < told.index("--help")
 
 
@@ -65,7 +65,8 @@ def test_options_in_no_group_stand_together_with_help(capsys: pytest.CaptureFixt
 def test_where_a_word_lacks_an_example_has_it(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     needed = [each.opts[0] for each in options(name) if each.required]
     if needed:
-        assert main.run([name, "thing"]) == 2
+        arguments = [each for each in command(name).params if each.param_type_name == "argument" and each.required]
+        assert main.run([name, *["thing"] * len(arguments)]) == 2
         said = capsys.readouterr().err
         example = EXAMPLES[name][0][0]
         assert said == f"lightcube: Missing option '-o' / '--out': give it, as in {example}\n"
@@ -74,7 +75,7 @@ def test_where_a_word_lacks_an_example_has_it(name: str, capsys: pytest.CaptureF
 
 def test_commands_that_write_say_where_to() -> None:
     needing = [name for name in main.COMMANDS if any(each.required for each in options(name))]
-    assert needing == ["trace", "solve", "hull", "relief", "play", "draw"]
+    assert needing == ["trace", "solve", "hull", "relief", "play", "draw", "export"]
 
 
 @pytest.mark.parametrize(("name", "typed"), [(name, typed) for name, all_ in EXAMPLES.items() for typed, _ in all_])

@@ -233,7 +233,7 @@ def test_inks_that_a_stack_was_not_solved_in_are_warned_of(tmp_path: Path) -> No
     with pytest.warns(ConvertedCube, match="not solved in these inks"):
         said = export(stack(2), tmp_path / "a.pdf", "film", inks=INKS)
     assert said["predicted"]["psnr_mean"] >= said["predicted"]["psnr_mean_of_old_lamps"]
-    assert said["lost"]["out_of_gamut"] > 0.01
+    assert said["lost"]["out_of_reach_extinction"] > 0.01
 
 
 def test_dots_cover_as_much_as_they_are_asked_to() -> None:

@@ -29,7 +29,7 @@ INKS = Dyes(
 
 def stack(films: int = 3, *, moves: tuple[Move | None, ...] = (), inks: Dyes | None = None, seed: int = 7) -> Cube:
     """A stack of films for two pictures of 4 x 6 pixels that are just what it casts."""
-    lying = Films(films, gap_mm=4 * CELL if inks is None else CELL, size_mm=12 * CELL, pixels=6)
+    lying = Films(films, gap_mm=4 * CELL, size_mm=12 * CELL, pixels=6)
     stage = attenuator(["one", "two"], lying, 1.5, moves=moves)
     grid = stage.grid
     draw = np.random.default_rng(seed)

@@ -30,7 +30,7 @@ from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
-from tests.backward.test_job import LEVEL, RAISED, job, same
+from tests.backward.test_job import DYED, LEVEL, RAISED, job, same
 from tests.cli.test_cli import pressed, run
 from tests.conftest import INTERPRETED
 from tests.io.test_cubes import assert_same, content, files_in, partial_path
@@ -276,7 +276,11 @@ def begun(out: Path, made: Job, *pieces: str) -> DiskStore:
     return store
 
 
-@pytest.mark.parametrize("options", [{}, RAISED, LEVEL, {**LEVEL, "method": "sirt", "max_extinction": 2.0}], ids=str)
+@pytest.mark.parametrize(
+    "options",
+    [{}, RAISED, LEVEL, {**LEVEL, "method": "sirt", "max_extinction": 2.0}, {**LEVEL, "material": DYED}],
+    ids=str,
+)
 def test_a_job_comes_back_from_the_disk(options: dict[str, Any], tmp_path: Path) -> None:
     """All that a program elsewhere needs is in the folder."""
     made = job(**options, enough_db=60.0, provenance={"fit": "pad"})

@@ -12,6 +12,7 @@ from lightcube import io
 from lightcube.backward import solving
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
+from lightcube.io import read_dyes
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
@@ -83,6 +84,7 @@ BOUNDS: dict[str, dict[str, Any]] = {
     "one lamp": {"powers": "shared", "lamp_max": 3.0},
     "weak lamps": {"lamp_max": 1.5},
     "extinction of a voxel": {"material": Material(0.04, "voxel")},
+    "dyes": {"material": Material(dyes=read_dyes("pla"))},
     "black": {"black": 0.3},
     "all": {"lamp_power": 2.0, "max_extinction": 0.03, "black": 0.2},
 }
@@ -95,7 +97,9 @@ def test_what_bounded_the_cube_bounds_the_smaller_one(
     cube = solving.solve(**asked(targets_of(solved), solved.grid, passes=20, **bounds)).cube
     monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
     small = smaller(cube)
-    assert small.extinction.max() <= bounds.get("max_extinction", 0.02 if "material" in bounds else np.inf) * (1 + 1e-6)
+    assert small.extinction.max() <= (
+        bounds["material"].most(cube.grid) if "material" in bounds else bounds.get("max_extinction", np.inf)
+    ) * (1 + 1e-6)
     least, most = bounds.get("lamp_power", 0), bounds.get("lamp_power", bounds.get("lamp_max", 16))
     assert np.all((least <= small.powers) & (small.powers <= most))
     if bounds.get("powers") == "shared":

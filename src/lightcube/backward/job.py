@@ -1,6 +1,7 @@
 """A job: all that decides the bits of a cube, and the pieces that its computation consists of."""
 
 import hashlib
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -13,9 +14,10 @@ from numpy.typing import NDArray
 
 from lightcube.backward.problem import is_level
 from lightcube.backward.recipe import Recipe
-from lightcube.backward.units import Part, halvings, split
+from lightcube.backward.units import Part, halvings, most_units, split
 from lightcube.backward.wishes import asked
 from lightcube.optics.arrays import Images
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light, finer
 from lightcube.optics.rig import Rig
@@ -55,7 +57,8 @@ class Job:
         How many parts of the cube are solved one after the other. With more than one the lamp powers are those
         found at half the size.
     start
-        What the cube itself starts from, 1/mm, ``(channel, z, y, x)``; None = from a smaller one, or clear.
+        What the cube itself starts from, ``(channel, z, y, x)``, 1/mm, or amounts ``(dye, z, y, x)``; None = from a
+        smaller one, or clear.
     provenance
         What the cube shall remember of how it was made, beside all this; it decides no bit of the extinction.
     """
@@ -117,6 +120,34 @@ class Job:
             np.repeat(bound[lamps, None], self.channels, axis=1) for bound in (rig.lamps.least, rig.lamps.most)
         )
         return low, high
+
+    @property
+    def dyes(self) -> Dyes | None:
+        """What voxels are mixed of, 1/mm, if anything; those of coarser cubes too."""
+        dyes = self.recipe.dyes
+        return None if dyes is None else dyes.in_block(self.grid)
+
+    @property
+    def kinds(self) -> int:
+        """Of what each voxel is a number: colours, or dyes."""
+        return self.channels if self.recipe.dyes is None else len(self.recipe.dyes.names)
+
+    def kinds_of(self, part: Part) -> slice:
+        """Which of these a part of the cube has: its colours, or all dyes."""
+        return part.colours if self.recipe.dyes is None else slice(0, self.kinds)
+
+    @property
+    def most(self) -> NDArray[np.float32]:
+        """The largest number that a voxel can be, ``(kind, 1, 1, 1)``: extinction, 1/mm, or an amount of a dye."""
+        dyes = self.recipe.dyes
+        most = np.full(self.channels, self.max_extinction) if dyes is None else dyes.limit
+        return most.astype(np.float32)[:, None, None, None]
+
+    @property
+    def most_units(self) -> int:
+        """Into how many units the cube can be split: colours that are mixed of the same dyes belong together."""
+        colours = self.channels if self.recipe.dyes is None else 1
+        return most_units(self.grid.shape, colours, level=self.level)
 
     @property
     def max_extinction(self) -> float:
@@ -197,6 +228,7 @@ def fingerprint(job: Job) -> Fingerprint:
         **({"films": f"{grid.heights_mm} mm in {grid.index!r}"} if isinstance(grid, Stack) else {}),
         "transfer": targets.transfer,
         **{_WORDS.get(name, name): value for name, value in job.recipe.plain().items()},
+        "dyes": None if job.recipe.dyes is None else _digest(job.recipe.dyes.plain()),
         "units": job.units,
         "voxels to start from": None if job.start is None else _checksum(job.start),
     }
@@ -227,7 +259,7 @@ _WORDS = {
     "mat_width": "width of the mat",
     "mat_beyond": "weight beyond the mat",
 }
-_CHECKSUMS = ("pictures", "weights", "names", "lamps and screens", "voxels to start from")
+_CHECKSUMS = ("pictures", "weights", "names", "lamps and screens", "voxels to start from", "dyes")
 
 
 def _said(value: str | float | None) -> str:
@@ -238,6 +270,11 @@ def _arrays(rig: Rig) -> list[NDArray[Any]]:
     """All of a rig as arrays."""
     parts = [getattr(rig, each.name) for each in fields(rig)]
     return [np.asarray(getattr(part, each.name)) for part in parts for each in fields(part)]
+
+
+def _digest(said: Mapping[str, Any]) -> str:
+    """sha256 of plain numbers and words."""
+    return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()
 
 
 def _checksum(*arrays: NDArray[Any]) -> str:

@@ -1,5 +1,6 @@
 """What a store gives of a job's pieces, checked against the job before it is used: somebody may have changed it."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,8 +12,9 @@ from lightcube.backward.store import Arrays, Store
 from lightcube.backward.units import coarse_shape
 from lightcube.errors import InputError
 
-#: Names of what is kept of a piece: its voxels ``(channel, z, y, x)``, lamp powers ``(lamp, channel)``, figures of its
-#: iterations; of a checkpoint the least error that was cast with its iteration, and the figures of earlier phases.
+#: Names of what is kept of a piece: its voxels ``(channel or dye, z, y, x)``, lamp powers ``(lamp, channel)``, figures
+#: of its iterations; of a checkpoint the least error that was cast with its iteration, and the figures of earlier
+#: phases.
 VOXELS, POWERS, HISTORY, LOOKS, EARLIER = "extinction", "lamp-powers", "history", "looks", "earlier-history"
 _REASONS = ("iterations", "enough", "best", "converged")
 
@@ -33,12 +35,20 @@ def state_of(job: Job, store: Store, name: str) -> Arrays | None:
 
 
 def shape_of(job: Job, name: str) -> tuple[int, int, int, int]:
-    """Shape ``(channel, z, y, x)`` of a piece's voxels."""
+    """Shape ``(channel or dye, z, y, x)`` of a piece's voxels."""
     kind, number = name.split("-")
     if kind == "level":
-        return (job.channels, *coarse_shape(job.grid.shape, int(number)))
+        return (job.kinds, *coarse_shape(job.grid.shape, int(number)))
     part = job.parts[int(number)]
-    return (part.colours.stop - part.colours.start, part.slices.stop - part.slices.start, *job.grid.shape[1:])
+    kinds = job.kinds_of(part)
+    return (kinds.stop - kinds.start, part.slices.stop - part.slices.start, *job.grid.shape[1:])
+
+
+def _powers_shape(job: Job, name: str) -> tuple[int, int]:
+    """Shape ``(lamps, channels)`` of a piece's lamp powers."""
+    kind, number = name.split("-")
+    colours = slice(0, job.channels) if kind == "level" else job.parts[int(number)].colours
+    return job.lamp_bounds[0].shape[0], colours.stop - colours.start
 
 
 def _checked(name: str, found: Arrays, wrong: Iterator[str]) -> Arrays:
@@ -56,10 +66,10 @@ def _checked(name: str, found: Arrays, wrong: Iterator[str]) -> Arrays:
 
 def _wrong_results(job: Job, name: str, found: Arrays) -> Iterator[str]:
     """Yield what a result cannot be."""
-    shape, lamps = shape_of(job, name), job.lamp_bounds[0].shape[0]
+    shape = shape_of(job, name)
     if not _is_finite(found[VOXELS], shape) or np.min(found[VOXELS]) < 0:
         yield f"{VOXELS} are not finite numbers from 0 on of shape {shape}"
-    yield from _wrong_powers(found[POWERS], (lamps, shape[0]))
+    yield from _wrong_powers(found[POWERS], _powers_shape(job, name))
     if not _is_finite(found[HISTORY], (None,)) or not found[HISTORY].size:
         yield f"{HISTORY} is no list of finite numbers"
     rejected = found["rejected"]
@@ -75,10 +85,10 @@ def _wrong_results(job: Job, name: str, found: Arrays) -> Iterator[str]:
 
 def _wrong_state(job: Job, name: str, found: Arrays) -> Iterator[str]:
     """Yield what a checkpoint cannot be."""
-    channels, *sides = shape_of(job, name)
-    if not _is_finite(found["x"], None) or found["x"].size != channels * np.prod(sides):
-        yield f"x holds no {channels * np.prod(sides)} finite numbers"
-    yield from _wrong_powers(found[POWERS], (job.lamp_bounds[0].shape[0], channels))
+    count = math.prod(shape_of(job, name))
+    if not _is_finite(found["x"], None) or found["x"].size != count:
+        yield f"x holds no {count} finite numbers"
+    yield from _wrong_powers(found[POWERS], _powers_shape(job, name))
     for key in (HISTORY, EARLIER):
         if not _is_finite(found[key], (None,)):
             yield f"{key} is no list of finite numbers"

@@ -9,7 +9,7 @@ import numpy as np
 
 from lightcube.backward.job import Job, shares
 from lightcube.backward.problem import Problem, pose
-from lightcube.backward.units import coarse_shape, coarser, most_units, split
+from lightcube.backward.units import coarse_shape, coarser, split
 from lightcube.backward.wishes import asked
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
@@ -130,6 +130,7 @@ def job_memory(job: Job) -> int:
     return (
         mixed
         + kept
+        + _dyes_memory(job, len(every.views) * math.prod(every.picture_shape))
         + memory_needed(
             job.recipe.solver,
             job.grid,
@@ -147,10 +148,24 @@ def job_memory(job: Job) -> int:
     )
 
 
+def _dyes_memory(job: Job, beams: int) -> int:
+    """More bytes of a job whose voxels are mixed of dyes, for so many beams.
+
+    What is mixed, and what is cast before and after colours are set apart; unknowns of more dyes than colours; what
+    reaches each pixel, and its shadow's strength, through a clear material that is not quite clear.
+    """
+    if job.dyes is None:
+        return 0
+    share = max(part.columns for part in job.parts) / sum(part.columns for part in job.parts)
+    size, more = np.dtype(job.recipe.dtype).itemsize, job.kinds - job.channels
+    unknowns = (more * (job.recipe.solver.arrays[0] + _OF_SUMS[0]) + 2 * job.kinds + job.channels) * size
+    pixels = job.channels * (2 * size + (_MIXED if np.any(job.dyes.base) else 0))
+    return int(share * (unknowns * math.prod(job.grid.shape) + pixels * beams))
+
+
 def fewest_units(job: Job, memory: int) -> int:
     """Into how many units to split a job: as few as fit into so many bytes; where none fits, as few as need least."""
-    most = most_units(job.grid.shape, job.channels, level=job.level)
-    needed = [job_memory(replace(job, units=units)) for units in range(1, most + 1)]
+    needed = [job_memory(replace(job, units=units)) for units in range(1, job.most_units + 1)]
     fitting = [units for units, each in enumerate(needed, 1) if each <= memory]
     return fitting[0] if fitting else needed.index(min(needed)) + 1
 
@@ -189,10 +204,10 @@ def measured_speed(job: Job) -> Speed:
     problem = pose(targets, grid, job.recipe)
     low, high = job.lamp_bounds
     marks: list[float] = []
-    job.recipe.solver.solve(
-        problem.matrix,
-        problem.wanted((high, high) if job.frozen else (low, high)),
-        bounds=(0.0, job.max_extinction),
+    problem.solve(
+        job.recipe.solver,
+        (high, high) if job.frozen else (low, high),
+        job.max_extinction,
         iterations=_TIMED,
         callback=lambda progress: marks.append(time.perf_counter()),
     )

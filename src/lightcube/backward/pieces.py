@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lightcube.backward.job import Job, level_name
 from lightcube.backward.kept import EARLIER, HISTORY, LOOKS, POWERS, VOXELS, result_of, shape_of, state_of
-from lightcube.backward.problem import Problem, pose, powers_of_pictures, volume_from_unknowns
+from lightcube.backward.problem import Problem, pose, powers_of_pictures, voxels_from_unknowns
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.reckoning import Reckoning, is_look, is_look_ahead
 from lightcube.backward.store import Arrays, Store
@@ -104,25 +104,25 @@ def solve_piece(
         problem, bounds = _posed(job, name, store, phase.recipe)
         watch.begin(problem, number, earlier)
         options: dict[str, Any] = {} if phase.passes is None else {"iterations": phase.passes}
-        result = job.recipe.solver.solve(
-            problem.matrix,
-            problem.wanted(bounds),
+        result = problem.solve(
+            job.recipe.solver,
+            bounds,
+            job.max_extinction,
             x0=None if start is None else problem.unknowns(start),
-            bounds=(0.0, job.max_extinction),
             callback=watch,
             state=_handed(state),
             **options,
         )
         if watch.stopped:
             return False
-        start, state = problem.extinction(result.x), None
+        start, state = problem.voxels(result.x), None
         earlier = np.concatenate([earlier, result.residuals])
     store.finish(name, _bundle(problem, result, earlier, watch.reason or result.stop_reason))
     return True
 
 
 def _start(job: Job, name: str, store: Store) -> Floats | None:
-    """Extinction that a piece starts from, if any."""
+    """Voxels that a piece starts from, if any."""
     kind, number = name.split("-")
     if kind == "level":
         return start_of(job, store, int(number), _whole(job, int(number)))
@@ -141,7 +141,7 @@ def _posed(job: Job, name: str, store: Store, recipe: Recipe) -> tuple[Problem, 
         (targets, grid), part = coarser(job.targets, job.grid, int(number)), None
     else:
         (targets, grid), part = (job.targets, job.grid), job.parts[int(number)]
-    problem = pose(targets, grid, recipe, part)
+    problem = pose(targets, grid, recipe if job.dyes is None else recipe.for_any_size(job.grid), part)
     bounds = job.lamp_bounds
     if kind == "unit" and job.frozen:
         powers = _finished(job, store, level_name(1))[POWERS]
@@ -151,25 +151,30 @@ def _posed(job: Job, name: str, store: Store, recipe: Recipe) -> tuple[Problem, 
 
 
 def start_of(job: Job, store: Store, level: int, part: Part) -> Floats | None:
-    """Extinction that a part of the cube halved `level` times starts from, if any.
+    """Voxels that a part of the cube halved `level` times starts from, if any.
 
     What the job was given, or the next smaller cube, enlarged, which is finished; films start at random.
     """
     if level == 0 and job.start is not None:
-        return np.clip(job.start[part.colours, part.slices], 0, job.max_extinction)
+        own = job.kinds_of(part)
+        return np.clip(job.start[own, part.slices], 0, job.most[own])
     if isinstance(job.grid, Stack):
-        return np.minimum(_at_random(job)[part.colours], job.max_extinction)
+        own = job.kinds_of(part)
+        return np.minimum(_at_random(job)[own], job.most[own])
     if level >= job.levels:
         return None
     whole = _finished(job, store, level_name(level + 1))[VOXELS]
-    return enlarged(whole[part.colours], coarse_shape(job.grid.shape, level), part.slices)
+    return enlarged(whole[job.kinds_of(part)], coarse_shape(job.grid.shape, level), part.slices)
 
 
 def _at_random(job: Job) -> Floats:
     """Films of random cells: clear ones are alike within a pixel, and a solver could never tell them apart."""
-    shape = job.channels, *job.grid.shape
+    shape = job.kinds, *job.grid.shape
     absorbance = _RANDOM * np.random.default_rng(job.recipe.seed).random(shape, np.float32)
-    return absorbance / np.float32(job.grid.voxel_mm)
+    extinction = absorbance / np.float32(job.grid.voxel_mm)
+    if job.dyes is None:
+        return extinction
+    return extinction / job.dyes.extinction.max(axis=1).astype(np.float32)[:, None, None, None]
 
 
 def known(job: Job, store: Store, name: str) -> Arrays | None:
@@ -181,7 +186,7 @@ def known(job: Job, store: Store, name: str) -> Arrays | None:
     if state is None:
         return None
     channels, *shape = shape_of(job, name)
-    voxels = volume_from_unknowns(state["x"], (shape[0], shape[1], shape[2]), channels)
+    voxels = voxels_from_unknowns(state["x"], (shape[0], shape[1], shape[2]), channels, job.dyes)
     return {VOXELS: voxels, POWERS: state[POWERS], HISTORY: np.concatenate([state[EARLIER], state[HISTORY]])}
 
 
@@ -218,7 +223,7 @@ def _finished(job: Job, store: Store, name: str) -> Arrays:
 def _bundle(problem: Problem, result: Result, history: Reals, stop_reason: str) -> dict[str, NDArray[Any]]:
     """What is kept of a piece that is finished."""
     bundle: dict[str, NDArray[Any]] = {
-        VOXELS: problem.extinction(result.x),
+        VOXELS: problem.voxels(result.x),
         POWERS: result.lamp_powers,
         HISTORY: history,
         "rejected": problem.pixels(result.rejected),

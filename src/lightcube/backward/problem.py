@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.backward.dyed import solve_amounts
 from lightcube.backward.mat import framed, inner, weights_beyond
 from lightcube.backward.recipe import Powers, Recipe
 from lightcube.backward.units import Part
@@ -16,6 +17,7 @@ from lightcube.kernels.layout import (
     volume_from_columns,
 )
 from lightcube.optics.arrays import Counts, Images, Reals
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture
 from lightcube.optics.light import judged
@@ -25,7 +27,8 @@ from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
 from lightcube.projection.shadows import shadows
-from lightcube.solvers.contract import Lighting, Wanted
+from lightcube.solvers.contract import Lighting, Result, Wanted
+from lightcube.solvers.method import Method
 
 Floats = NDArray[np.floating[Any]]
 
@@ -55,6 +58,8 @@ class Problem:
         ``(pictures of the matrix,)``: which of the targets each is for.
     judge
         The rig of the targets by the beams that what is cast is judged by, and which power each of its views has.
+    dyes
+        What voxels are mixed of, 1/mm: then unknowns are parts of their limits. None = unknowns are extinction.
     """
 
     matrix: Projector
@@ -66,6 +71,7 @@ class Problem:
     targets: Targets
     stop: Counts
     judge: tuple[Rig, NDArray[np.intp]]
+    dyes: Dyes | None = None
 
     @property
     def channels(self) -> int:
@@ -81,13 +87,27 @@ class Problem:
     def _voxels(self) -> int:
         return self.matrix.grid.shape[1] * self.matrix.grid.shape[2]
 
-    def extinction(self, x: Floats) -> Floats:
-        """``(channel, z, y, x)`` of the unknowns `x`: those of the part."""
-        return volume_from_unknowns(x, (self.slices, *self.matrix.grid.shape[1:]), self.channels)
+    def voxels(self, x: Floats) -> Floats:
+        """``(channel, z, y, x)`` extinction of the unknowns `x`, or ``(dye, z, y, x)`` amounts: those of the part."""
+        return voxels_from_unknowns(x, (self.slices, *self.matrix.grid.shape[1:]), self.channels, self.dyes)
 
-    def unknowns(self, extinction: Floats) -> Floats:
-        """Inverse of `extinction`."""
-        return columns_from_volume(extinction).reshape(self.matrix.shape[1], -1)
+    def unknowns(self, voxels: Floats) -> Floats:
+        """Inverse of `voxels`."""
+        if self.dyes is None:
+            return columns_from_volume(voxels).reshape(self.matrix.shape[1], -1)
+        parts = voxels / self.dyes.limit.astype(voxels.dtype)[:, None, None, None]
+        return np.ascontiguousarray(parts.transpose(0, 2, 3, 1)).reshape(len(parts) * self.matrix.shape[1], -1)
+
+    def extinction(self, x: Floats) -> Floats:
+        """``(channel, z, y, x)`` of the unknowns `x`: that of the part."""
+        return self.voxels(x) if self.dyes is None else self.dyes.mixed(self.voxels(x))
+
+    def solve(self, method: Method, lamp_bounds: tuple[Floats, Floats], most: float, **options: Any) -> Result:
+        """Solve by a method: no extinction above `most` without dyes, and what else a solver takes."""
+        wanted = self.wanted(lamp_bounds)
+        if self.dyes is not None:
+            return solve_amounts(method, self.matrix, wanted, self.dyes, **options)
+        return method.solve(self.matrix, wanted, bounds=(0.0, most), **options)
 
     def wanted(self, lamp_bounds: tuple[Floats, Floats]) -> Wanted:
         """What a solver is to reach with lamps whose powers are within these bounds, each ``(lamps, channels)``."""
@@ -99,7 +119,8 @@ class Problem:
         ``(stop, row, column, channel)`` of the part: `rows` and colours only.
         """
         rig, lamp = self.judge
-        columns, of_views = x.reshape(self._voxels, -1), np.asarray(powers[lamp], np.float64)
+        columns = x.reshape(self._voxels, -1) if self.dyes is None else columns_from_volume(self.extinction(x))
+        of_views = np.asarray(powers[lamp], np.float64)
         shown = shadows(columns, self.matrix.grid, rig, of_views, self.rows, self.part.colours)
         return np.stack(list(shown)).astype(np.float32, copy=False)
 
@@ -132,9 +153,16 @@ def powers_of_pictures(targets: Targets, powers: Floats, recipe: Recipe) -> Real
     return np.array(own, np.float64)
 
 
-def volume_from_unknowns(x: Floats, shape: tuple[int, int, int], channels: int) -> Floats:
-    """``(channel, z, y, x)`` of a grid of `shape` ``(nz, ny, nx)`` from the unknowns that a solver finds."""
-    return volume_from_columns(x.reshape(shape[1] * shape[2], -1), shape, channels)
+def voxels_from_unknowns(x: Floats, shape: tuple[int, int, int], channels: int, dyes: Dyes | None = None) -> Floats:
+    """``(channel, z, y, x)`` of a grid of `shape` ``(nz, ny, nx)`` from the unknowns that a solver finds.
+
+    Of dyes ``(dye, z, y, x)``: amounts of these.
+    """
+    if dyes is None:
+        return volume_from_columns(x.reshape(shape[1] * shape[2], -1), shape, channels)
+    nz, ny, nx = shape
+    amounts = x.reshape(-1, ny, nx, nz) * dyes.limit.astype(x.dtype)[:, None, None, None]
+    return amounts.transpose(0, 3, 1, 2)
 
 
 def is_level(grid: Grid, views: Views) -> bool:
@@ -183,6 +211,7 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
         targets=targets,
         stop=all_that.stop,
         judge=_judge(targets.rig, recipe, grid),
+        dyes=None if recipe.dyes is None else recipe.dyes.in_block(grid),
     )
 
 

@@ -13,6 +13,8 @@ from lightcube.backward.mat import Mat
 from lightcube.errors import InputError
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.cube import Cube
+from lightcube.optics.dyes import Dyes
+from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
 from lightcube.optics.told import remembered
@@ -65,7 +67,8 @@ class Recipe:
         Degrees on either side of its stop over which each picture shall stand, at most half the way to the next one:
         it is asked for at several angles, under one lamp power.
     material
-        What bounds the extinction; None = as usual: an absorbance of 3 along a voxel's side, or nothing by thin beams.
+        What bounds the extinction, or the dyes that voxels are mixed of; None = as usual: an absorbance of 3 along a
+        voxel's side, or nothing by thin beams.
     light
         Over how many points of a pixel its light is averaged; None = as usual, ``Light()``, or ``Light.thin()`` by
         methods that know no light that adds up.
@@ -161,19 +164,30 @@ class Recipe:
         """What bounds the extinction, never None."""
         return self.material or (Material() if self.beams.is_thin else BUILDABLE)
 
+    @property
+    def dyes(self) -> Dyes | None:
+        """What voxels are mixed of, if anything."""
+        return self.bounded_by.dyes
+
+    def for_any_size(self, grid: Grid) -> Recipe:
+        """The same, bounded as in a grid of these voxels, for grids of others: what smaller cubes are solved by."""
+        return replace(self, material=self.bounded_by.of_any_size(grid))
+
     def by_display(self, passes: int) -> Recipe:
         """The same powers, hold and material by so many passes of method display: what a rehearsal solves."""
         return replace(
             self, method="display", passes=passes, enough_db=math.inf, dtype=Recipe().dtype, light=self.beams
         )
 
-    def plain(self) -> dict[str, str | float | None]:
+    def plain(self) -> dict[str, Any]:
         """Every field by name, as JSON has it: infinity, which it has not, is None."""
         flat = {each.name: getattr(self, each.name) for each in fields(self)}
         del flat["material"], flat["light"], flat["mat"]
-        flat |= {"method": self.solver.name, **asdict(self.bounded_by), **asdict(self.beams)}
+        material = {name: getattr(self.bounded_by, name) for name in _MATERIAL}
+        flat |= {"method": self.solver.name, **material, **asdict(self.beams)}
+        flat["dyes"] = None if self.dyes is None else self.dyes.plain()
         flat |= {f"mat_{each.name}": None if self.mat is None else getattr(self.mat, each.name) for each in fields(Mat)}
-        return {name: None if value in _NONE else value for name, value in flat.items()}
+        return {name: None if value == math.inf else value for name, value in flat.items()}
 
 
 def _precision(dtype: Any) -> str:
@@ -187,7 +201,6 @@ def _precision(dtype: Any) -> str:
     return name
 
 
-_NONE = (None, math.inf)
 _MATERIAL, _LIGHT, _MAT = (tuple(each.name for each in fields(part)) for part in (Material, Light, Mat))
 
 
@@ -201,6 +214,8 @@ def from_plain(said: Mapping[str, Any]) -> Recipe:
     """
     own = {each.name for each in fields(Recipe)} - {"material", "light", "mat"}
     given = {name: value for name, value in said.items() if value is not None}
+    if "dyes" in given:
+        given["dyes"] = Dyes(**given["dyes"])
     material = Material(**{name: given[name] for name in _MATERIAL if name in given}) if "per" in given else None
     light = Light(**{name: given[name] for name in _LIGHT if name in given}) if "points" in given else None
     mat = (
@@ -218,4 +233,5 @@ def recipe_of(cube: Cube) -> Recipe:
     said = remembered(cube)
     if said.get("method", "display") not in METHODS:
         said["method"] = Method.named(said["method"])
-    return replace(from_plain(said), hold_deg=cube.hold_deg)
+    recipe = replace(from_plain(said), hold_deg=cube.hold_deg)
+    return recipe if cube.dyes is None else replace(recipe, material=Material(dyes=cube.dyes))

@@ -81,11 +81,11 @@ class Solution:
 
 def merged(job: Job, store: Store) -> Solution:
     """Put together what a store has of a job: units, checkpoints of others, for the rest the start, enlarged."""
-    extinction = clear_volume(job.grid.shape, job.channels)
+    voxels = clear_volume(job.grid.shape, job.kinds)
     powers = _coarse_powers(job, store)
     facts = []
     for name, part in zip(job.unit_names, job.parts, strict=True):
-        facts.append(_place(job, store, name, part, extinction, powers))
+        facts.append(_place(job, store, name, part, voxels, powers))
     complete = all("stop_reason" in each for each in facts)
     stop_reason = _slowest([str(each["stop_reason"]) for each in facts]) if complete else "callback"
     residuals = _together(job, [each["history"] for each in facts if "history" in each])
@@ -93,7 +93,7 @@ def merged(job: Job, store: Store) -> Solution:
     bounds = [float(each["lower_bound"]) for each in facts if "lower_bound" in each]
     made = {"iterations": len(residuals), "stop_reason": stop_reason, "rejected": len(rejected)}
     cube = Cube(
-        extinction=locked(extinction),
+        extinction=locked(voxels if job.dyes is None else job.dyes.mixed(voxels)),
         grid=job.grid,
         rig=job.targets.rig,
         lamp_powers=powers_of_pictures(job.targets, powers, job.recipe),
@@ -103,23 +103,25 @@ def merged(job: Job, store: Store) -> Solution:
         status="complete" if complete else "interrupted",
         hold_deg=job.recipe.hold_deg,
         provenance=_made_with(job) | made,
+        amounts=None if job.dyes is None else locked(voxels),
+        dyes=job.recipe.dyes,
     )
     undetermined = sum(int(each.get("undetermined", 0)) for each in facts)
     bound = sum(bounds) if complete and len(bounds) == len(facts) else None
     return Solution(cube, residuals, rejected, undetermined, stop_reason, bound)
 
 
-def _place(job: Job, store: Store, name: str, part: Part, extinction: Images, powers: Reals) -> Arrays:
+def _place(job: Job, store: Store, name: str, part: Part, voxels: Images, powers: Reals) -> Arrays:
     """Write what there is of a unit into the cube and the lamp powers; returns what else is known of it."""
-    found = known(job, store, name)
+    found, own = known(job, store, name), voxels[job.kinds_of(part), part.slices]
     if found is None:
         newest = _newest_level(job, store)
         if job.start is not None:
-            extinction[part.colours, part.slices] = start_of(job, store, 0, part)
+            own[...] = start_of(job, store, 0, part)
         elif newest is not None:
-            extinction[part.colours, part.slices] = _enlarged(job, *newest, part)
+            own[...] = _enlarged(job, *newest, part)
         return {}
-    extinction[part.colours, part.slices] = found[VOXELS]
+    own[...] = found[VOXELS]
     powers[:, part.colours] = found[POWERS]
     return {key: found[key] for key in _FACTS if key in found}
 
@@ -145,7 +147,7 @@ def _coarse_powers(job: Job, store: Store) -> Reals:
 
 def _enlarged(job: Job, level: int, found: Arrays, part: Part) -> Floats:
     """A coarse cube through all sizes up to the cube itself; this part of it."""
-    volume = found[VOXELS][part.colours]
+    volume = found[VOXELS][job.kinds_of(part)]
     for larger in range(level - 1, -1, -1):
         volume = enlarged(volume, coarse_shape(job.grid.shape, larger), part.slices if larger == 0 else None)
     return volume
@@ -169,7 +171,7 @@ def _slowest(reasons: list[str]) -> str:
 def _made_with(job: Job) -> dict[str, Any]:
     """What the cube remembers of how it was made, beside its hold."""
     recipe = job.recipe.plain()
-    del recipe["hold_deg"]
+    del recipe["hold_deg"], recipe["dyes"]  # a cube has its own fields for them
     return {
         "lightcube": version("lightcube"),
         **recipe,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -14,11 +14,11 @@ from lightcube.backward.pieces import Watching, solve_pieces
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution, merged
 from lightcube.backward.store import MemoryStore, Store
-from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Images, locked
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.optics.gamut import nearest
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.rig import Rig
 from lightcube.pictures.targets import Targets
@@ -101,17 +101,21 @@ def make_job(
     recipe = recipe or Recipe()
     check_targets(targets, grid)
     _check_method(recipe, targets.rig)
+    _check_dyes(recipe, targets)
     recipe = recipe.with_passes
-    voxels = None if start is None else _as_start(start, grid, targets)
+    voxels = None if start is None else _as_start(start, grid, targets, recipe)
     job = Job(targets, grid, recipe, start=voxels, provenance=dict(provenance or {}))
-    most = most_units(grid.shape, job.channels, level=job.level)
+    most = job.most_units
     if units is not None and not 1 <= units <= most:
         raise InputError(f"this cube can be solved in 1 to {most} units, not in {units}: ask for a number between")
     return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)
 
 
-def _as_start(cube: Cube, grid: Grid, targets: Targets) -> Images:
-    """Extinction of a cube to start from, of as much absorbance a voxel; `InputError` where it is of another shape."""
+def _as_start(cube: Cube, grid: Grid, targets: Targets, recipe: Recipe) -> Images:
+    """Extinction of a cube to start from, of as much absorbance a voxel; `InputError` where it is of another shape.
+
+    Of dyes the amounts that it holds, or those nearest to it.
+    """
     wanted = (targets.pictures.shape[-1], *grid.shape)
     if cube.extinction.shape != wanted:
         have, want = (" x ".join(map(str, shape[1:])) for shape in (cube.extinction.shape, wanted))
@@ -119,7 +123,10 @@ def _as_start(cube: Cube, grid: Grid, targets: Targets) -> Images:
         raise InputError(
             f"a cube of {have} voxels (z, y, x) is no start for one of {want}{colours}: give one of the same shape"
         )
-    return locked(cube.extinction * np.float32(cube.grid.voxel_mm / grid.voxel_mm))
+    if recipe.dyes is not None and recipe.dyes == cube.dyes:
+        return cast(Images, cube.amounts)
+    extinction = cube.extinction * np.float32(cube.grid.voxel_mm / grid.voxel_mm)
+    return locked(extinction if recipe.dyes is None else nearest(extinction, recipe.dyes.in_block(grid)))
 
 
 def _check_method(recipe: Recipe, rig: Rig) -> None:
@@ -132,6 +139,13 @@ def _check_method(recipe: Recipe, rig: Rig) -> None:
         )
     if not method.takes_sums and not rig.is_thin:
         raise InputError(f"method {method.name} cannot do with light that adds up: use method display")
+
+
+def _check_dyes(recipe: Recipe, targets: Targets) -> None:
+    """Raise `InputError` where dyes are of other colours than the pictures."""
+    dyes, colours = recipe.dyes, targets.pictures.shape[-1]
+    if dyes is not None and dyes.channels != colours:
+        raise InputError(f"dyes that absorb {dyes.channels} colours make no pictures of {colours}: give as many")
 
 
 def check_targets(targets: Targets, grid: Grid) -> None:

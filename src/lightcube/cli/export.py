@@ -7,6 +7,7 @@ import typer
 from lightcube import io
 from lightcube.cli.console import done, out, telling
 from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
+from lightcube.errors import InputError
 from lightcube.fabrication import exporting as fabrication
 from lightcube.fabrication.dots import Halftone
 from lightcube.fabrication.printers import Mode
@@ -18,11 +19,12 @@ from lightcube.verbs import exporting
 @threaded
 def export(
     kind: Annotated[
-        Kind,
+        str,
         typer.Argument(
+            metavar="KIND",
             help="What is made: a volume (.vdb, .nrrd, .vti, .npy), a shell (.3mf, .ply), points for a glass laser "
             "(.ply), polyjet slices (a folder), printed films of a stack (.pdf), or the schedule of table and lamps "
-            "(.csv, .json)."
+            "(.csv, .json).",
         ),
     ],
     cube: Annotated[str, typer.Argument(help="A cube or a stack of films, or an exported volume or folder of slices.")],
@@ -99,6 +101,7 @@ def export(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Write a cube for printers, lasers and other programs, with all that is to be known beside it."""
+    chosen = _kind(kind)
     given: dict[str, Any] = {
         "unit": unit,
         "levels": levels,
@@ -118,10 +121,9 @@ def export(
     }
     options = {name: value for name, value in given.items() if value is not None}
     at = place(output)
-    with telling("reading", as_json=as_json) as tell:
-        loaded = exporting.opened(cube, tell=tell)
-    planned = fabrication.plan(loaded, at, kind, options)
-    fabrication.check(at, planned, overwrite=overwrite)
+    fabrication.check(at, chosen, overwrite=overwrite)
+    loaded = exporting.opened(cube)
+    planned = fabrication.plan(loaded, at, chosen, options)
     if dry_run:
         _tell(output, {**planned.facts, "notes": list(planned.notes)}, as_json=as_json, verb="would be written")
         return
@@ -129,7 +131,7 @@ def export(
         document = fabrication.write(
             loaded,
             at,
-            kind,
+            chosen,
             planned,
             overwrite,
             tell,
@@ -137,6 +139,14 @@ def export(
             made_from=exporting.made_from(cube, output),
         )
     _tell(output, document, as_json=as_json, verb="is ready")
+
+
+def _kind(said: str) -> Kind:
+    """The kind that is named, or `InputError`."""
+    found = next((kind for kind in fabrication.KINDS if kind == said), None)
+    if found is None:
+        raise InputError(f"{said} is nothing that is made of a cube: give one of {', '.join(fabrication.KINDS)}")
+    return found
 
 
 def _tell(output: str, document: dict[str, Any], *, as_json: bool, verb: str) -> None:

@@ -9,6 +9,7 @@ from typing import Annotated, Any, get_args
 import typer
 
 from lightcube.cli import arguments
+from lightcube.io import read_dyes
 from lightcube.verbs.options import Option, Options
 
 _FIELDS = {each.name: each for each in fields(Options)}
@@ -20,6 +21,7 @@ _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "focus": lambda text: arguments.two_numbers(text, "--focus"),
     "angles_deg": lambda text: arguments.numbers(text, "--angles-deg"),
     "grain": lambda text: arguments.number_or_auto(text, "--grain"),
+    "material": read_dyes,
 }
 
 

@@ -19,6 +19,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube solve photos -o cube.zarr", "a folder of photographs, all else is chosen"),
         ("lightcube solve photos -o cube.zarr --n 64 --quality draft", "smaller and quicker, to try"),
         ("lightcube solve photos -o cube.zarr --size-mm 60 --lamp-max 4", "60 mm wide, for a weaker lamp"),
+        ("lightcube solve photos -o cube.zarr --material polyjet", "of resins that a printer mixes"),
         ("lightcube solve photos -o cube.zarr --dry-run", "how much memory and time it takes"),
     ],
     "check": [
@@ -56,12 +57,25 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     "score": [
         ("lightcube score cube.zarr", "how near each picture comes"),
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
+        ("lightcube score print cube.zarr", "what a folder of exported slices would cast"),
         ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
     ],
     "relief": [
         ("lightcube relief a.jpg b.jpg c.jpg d.jpg -o plate.stl --sheet sheet.png", "four photographs in one plate"),
         ("lightcube relief photo.jpg -o plate.3mf --colour", "one photograph in colour, by three coloured lamps"),
         ("lightcube relief a.png b.png -o plate.stl --layer-mm 0.2", "heights that the printer makes exactly"),
+    ],
+    "materials": [
+        ("lightcube materials", "those that come along"),
+        ("lightcube materials show polyjet", "what its resins absorb, and which colours they make"),
+    ],
+    "export": [
+        ("lightcube export volume cube.zarr -o cube.vdb --unit m", "for Blender, whose unit is a metre"),
+        (
+            "lightcube export polyjet cube.zarr -o print --resins polyjet --dry-run",
+            "what slices would be",
+        ),
+        ("lightcube export schedule cube.zarr -o show.csv", "when the table turns, and how bright lamps are"),
     ],
     "draw": [
         ("lightcube draw cube.zarr -o room.png", "the room, at the cube's first stop"),

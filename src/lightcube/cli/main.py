@@ -27,6 +27,7 @@ COMMANDS: Mapping[str, str] = {
     "draw": "Draw a stage from above and from the side, with its beams, or the room of a cube in perspective.",
     "info": "Say what is in the file of a cube, a shape or a relief.",
     "export": "Write a cube for printers, lasers and other programs, with all that is to be known beside it.",
+    "materials": "Say what inks, resins and filaments there are, and what each absorbs.",
     "publish": "Make a cube of what there is of an unfinished one, and say whether it is whole.",
     "bench": "Measure this machine and what lightcube makes of it, beside others: tables in Markdown.",
     "demo": "Make three small cubes to be turned by hand, and one page that shows them, into a folder.",

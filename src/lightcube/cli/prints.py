@@ -39,7 +39,7 @@ class Prints:
             return
         if in_part:
             raise InputError(f"{self._path} is of a whole stack, and --unit solves a part: let -o end in {_STACK}")
-        fabrication.check_place(place(self._path), overwrite=self._overwrite)
+        fabrication.check(place(self._path), "film", overwrite=self._overwrite)
 
     def check_job(self, job: Job) -> None:
         """Raise `InputError` where it is no stack, or its films do not fit their pages."""

@@ -60,12 +60,12 @@ def score(
     is_file = is_exported(cube)
     if force and not is_file:
         raise InputError("--force is for files that lightcube export wrote: leave it out")
+    if is_file:
+        loaded, wanted = exporting.measured(cube, pictures, force=force)
+    else:
+        loaded = load(cube)
+        wanted = wanted_of(loaded, pictures)
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
-        if is_file:
-            loaded, wanted = exporting.measured(cube, pictures, force=force, tell=tell)
-        else:
-            loaded = load(cube)
-            wanted = wanted_of(loaded, pictures)
         found = scoring.score(loaded, wanted, tell, between=between_pictures or plot is not None, off=robust)
     drawn: list[tuple[io.Output, Thing]] = []
     if plot_file is not None and found.curve is not None:

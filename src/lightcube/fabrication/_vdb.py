@@ -28,6 +28,8 @@ _ACTIVE_ONLY = 2
 #: Voxels along a side of a leaf; leaves along one of a node, and nodes along the side of the one that holds all.
 _LEAF, _NODE, _TOP = 8, 16, 32
 _MOST = _LEAF * _NODE * _TOP
+#: No file of this package has more grids.
+_MOST_GRIDS = 64
 #: What the colours are called, each a grid of its own, and the grid of vectors that holds all three.
 COLOURS, TOGETHER = ("red", "green", "blue"), "sigma"
 #: What is told of a grid beside what every such file has: the file's unit, and the sides of voxels as `Grid` has them.
@@ -214,5 +216,7 @@ def _said(data: bytes) -> tuple[Grid, float, int]:
         raise ValueError
     at = struct.calcsize("<qIII?") + 40
     (count,) = struct.unpack_from("<I", data, at)
+    if not 1 <= count <= _MOST_GRIDS:
+        raise ValueError
     is_rgb = data.startswith(_text(COLOURS[0]), at + 4)
     return Grid((nz, ny, nx), wide, tall), unit_mm, 3 if is_rgb else count

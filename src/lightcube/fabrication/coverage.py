@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.fabrication.resins import ConvertedCube, nearest
+from lightcube.fabrication.resins import ConvertedCube
 from lightcube.optics.arrays import Reals, Volume
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
+from lightcube.optics.gamut import OutOfReach, nearest, out_of_reach
 from lightcube.optics.transfer import decode, encode
 
 #: What pages are in.
@@ -122,9 +123,11 @@ def levels_of(stack: Cube, dyes: Dyes | None) -> tuple[NDArray[np.uint8], Printe
     if stack.amounts is not None and stack.dyes == dyes:
         return made.sent(stack.amounts), made, {}
     _check_dark(absorbance, dyes.base + dyes.limit @ dyes.extinction, stack, "these inks")
-    amounts, facts = nearest(absorbance.astype(np.float32), dyes)
-    warnings.warn(_lost(facts), ConvertedCube, stacklevel=2)
-    return made.sent(amounts), made, facts
+    wanted = absorbance.astype(np.float32)
+    lost = out_of_reach(wanted, dyes)
+    warnings.warn(_lost(lost), ConvertedCube, stacklevel=2)
+    facts = {"out_of_reach_extinction": lost.extinction, "out_of_reach_worst": lost.worst or None}
+    return made.sent(nearest(wanted, dyes)), made, facts
 
 
 def _check_dark(absorbance: Reals, most: Reals, stack: Cube, who: str) -> None:
@@ -141,10 +144,10 @@ def _check_dark(absorbance: Reals, most: Reals, stack: Cube, who: str) -> None:
     )
 
 
-def _lost(facts: dict[str, Any]) -> str:
+def _lost(lost: OutOfReach) -> str:
     """What a conversion costs, in a sentence."""
     return (
         "the films were not solved in these inks, so each cell is mixed as near to its colours as they can: "
-        f"{facts['out_of_gamut']:.1%} of all absorbance is out of their reach; solve in them for far better pictures "
+        f"{lost.extinction:.1%} of all absorbance is out of their reach; solve in them for far better pictures "
         "(solve --material)"
     )

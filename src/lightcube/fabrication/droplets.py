@@ -46,8 +46,9 @@ class Droplets:
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Droplets along z, y and x: as many as the block needs, the outer ones may stand out of it."""
-        nz, ny, nx = (int(np.ceil(mm / side - 1e-9)) for mm, side in zip(self.grid.size_mm, self._sides, strict=True))
+        """Droplets along z, y and x: as many as the block needs, an even number, the outer ones may stand out of it."""
+        halves = (mm / side / 2 for mm, side in zip(self.grid.size_mm, self._sides, strict=True))
+        nz, ny, nx = (2 * int(np.ceil(half - 1e-9)) for half in halves)
         return nz, ny, nx
 
     @property

@@ -24,7 +24,7 @@ from lightcube.fabrication.schedule import Schedule
 from lightcube.fabrication.shells import Shells
 from lightcube.fabrication.sidecar import Kind
 from lightcube.fabrication.volumes import VolumeFile
-from lightcube.io._files import check_free, written_whole
+from lightcube.io._files import check_free, suffix_entry, written_whole
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
@@ -100,6 +100,7 @@ def export(
     (['a.json', 'a.vdb'], {'x': 6.0, 'y': 6.0, 'z': 4.0})
     """
     at = place(path)
+    check(at, kind, overwrite=overwrite)
     return write(cube, at, kind, plan(cube, at, kind, options), overwrite, tell, is_scored=score, made_from=made_from)
 
 
@@ -113,16 +114,13 @@ def plan(cube: Cube, at: Place, kind: Kind, options: Mapping[str, Any]) -> Plann
     return KINDS[kind](**options).plan(cube, at)
 
 
-def check_place(at: Place, *, overwrite: bool) -> None:
-    """Raise `InputError` unless a file and its sidecar can be written: ask before long work."""
-    for each in (at, sidecar.place_of(at, is_folder=False)):
-        check_free(each, overwrite=overwrite, replaceable=None)
-
-
-def check(at: Place, planned: Planned, *, overwrite: bool) -> None:
-    """Raise `InputError` unless all files can be written."""
-    for file in (*planned.files, *_sidecar(at, planned)):
-        check_free(file.at, overwrite=overwrite, replaceable=file.replaceable)
+def check(at: Place, kind: Kind, *, overwrite: bool) -> None:
+    """Raise `InputError` unless something of a kind could be written: ask before long work."""
+    how = KINDS[kind]
+    suffix_entry(at, dict.fromkeys(how.suffixes), how.called)
+    check_free(at, overwrite=overwrite, replaceable=how.replaceable)
+    if how.replaceable is None:
+        check_free(sidecar.place_of(at, is_folder=False), overwrite=overwrite, replaceable=None)
 
 
 def write(
@@ -137,7 +135,8 @@ def write(
     made_from: str | None = None,
 ) -> dict[str, Any]:
     """Write what was planned, and the sidecar; none gets its name before all are whole. Returns what it says."""
-    check(at, planned, overwrite=overwrite)
+    for file in (*planned.files, *_sidecar(at, planned)):
+        check_free(file.at, overwrite=overwrite, replaceable=file.replaceable)
     advance: Advance = counting(tell or _silent)
     with ExitStack() as stack:
         made = []

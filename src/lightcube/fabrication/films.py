@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from lightcube.fabrication.dots import Halftone, blue_dots
 from lightcube.fabrication.film_file import FilmFacts, stack_of
 from lightcube.fabrication.paper import Layout, layout
 from lightcube.fabrication.planned import Advance, File, Planned, named
-from lightcube.io._files import suffix_entry
+from lightcube.io._files import Replaceable
 from lightcube.io._places import Place
 from lightcube.optics.arrays import Volume
 from lightcube.optics.checks import check_fields
@@ -58,6 +58,10 @@ class FilmPages:
         ``"none"``: levels, of which the printer makes dots; ``"blue"``: dots of full ink, as blue noise.
     """
 
+    called: ClassVar[str] = "pages of films"
+    suffixes: ClassVar[tuple[str, ...]] = (".pdf",)
+    replaceable: ClassVar[Replaceable] = None
+
     paper: str = "a4"
     dpi: int | None = None
     inks: Dyes | None = None
@@ -85,7 +89,6 @@ class FilmPages:
 
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written."""
-        suffix_entry(at, {".pdf": True}, "pages of films")
         stack, where = self.laid_out(cube.grid, cube.rig)
         told, scale = assembly(cube, stack, is_mirrored=self.mirror), (self.scale_x, self.scale_y)
         levels, printed, lost = levels_of(cube, self.inks)

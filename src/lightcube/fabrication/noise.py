@@ -22,7 +22,6 @@ _WIDTH, _HEIGHT = 1.5, 1 << 24
 _FIRST = 0.1
 
 
-@cache
 def blue_order(sides: tuple[float, float, float], side: int = SIDE) -> NDArray[np.uint16]:
     """``(z, y, x)``: when each place of a tile is taken, from 0 on; the tile repeats without a seam.
 
@@ -31,6 +30,14 @@ def blue_order(sides: tuple[float, float, float], side: int = SIDE) -> NDArray[n
     sides
         How far places are from each other along z, y and x.
     """
+    longest = max(sides)
+    z, y, x = (round(each / longest, 6) for each in sides)
+    return _order((z, y, x), side)
+
+
+@cache
+def _order(sides: tuple[float, float, float], side: int) -> NDArray[np.uint16]:
+    """The same, for sides of which the longest is 1."""
     bells = _bells(sides, side)
     first = _evenly(bells, side)
     order = np.empty((side,) * 3, np.uint16)

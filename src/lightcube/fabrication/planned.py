@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -66,7 +66,11 @@ class Planned:
 
 
 class How(Protocol):
-    """How something of a kind is made."""
+    """How something of a kind is made; what it is called, what its names end with, and which folders it may replace."""
+
+    called: ClassVar[str]
+    suffixes: ClassVar[tuple[str, ...]]
+    replaceable: ClassVar[Replaceable]
 
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written; `InputError` where it cannot be right."""

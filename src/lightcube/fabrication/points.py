@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from lightcube.errors import InputError
 from lightcube.fabrication.boxes import edges, means
 from lightcube.fabrication.noise import SIDE, blue_order
 from lightcube.fabrication.planned import AXES, Advance, File, Planned, named
-from lightcube.io._files import suffix_entry
+from lightcube.io._files import Replaceable
 from lightcube.io._places import Place
 from lightcube.optics.arrays import Reals, Volume
 from lightcube.optics.checks import check_fields
@@ -82,6 +83,10 @@ class PointCloud:
     spacing_um: float = 100.0
     seed: int = 1
 
+    called: ClassVar[str] = "points"
+    suffixes: ClassVar[tuple[str, ...]] = (".ply",)
+    replaceable: ClassVar[Replaceable] = None
+
     def __post_init__(self) -> None:
         check_fields(self)
         if not 20 <= self.spacing_um <= 2000:
@@ -90,7 +95,6 @@ class PointCloud:
 
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written."""
-        suffix_entry(at, {".ply": True}, "points")
         points = Points(cube, self.spacing_um / 1000, self.seed)
         if points.expected > MOST:
             most = self.spacing_um * (points.expected / MOST) ** (1 / 3)

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.fabrication import sidecar
+from lightcube.fabrication.blocks import Blocks
 from lightcube.fabrication.droplets import Droplets
 from lightcube.fabrication.planned import AXES, Advance, File, Planned, named
 from lightcube.fabrication.points import check_seed
 from lightcube.fabrication.printers import MODES, Mode, Printing
 from lightcube.fabrication.resins import Mixed, mixed
-from lightcube.fabrication.slices import Held, Look, palette_of, write_slices
-from lightcube.io._files import suffix_entry
+from lightcube.fabrication.slices import MOST_VOXELS, Held, Look, palette_of, write_slices
+from lightcube.io._files import Replaceable
 from lightcube.io._places import Place
 from lightcube.optics.arrays import Volume
 from lightcube.optics.checks import check_fields
@@ -29,6 +31,15 @@ from lightcube.wording import counted
 CLEAR = "clear"
 #: Names of slices have four digits.
 _MOST_SLICES = 10_000
+
+
+def is_slices_folder(at: Place) -> bool:
+    """Whether a folder holds slices, and may therefore be replaced by others."""
+    try:
+        said = sidecar.read(sidecar.place_of(at, is_folder=True))
+    except (InputError, OSError):
+        return False
+    return said is not None and said.kind == "polyjet"
 
 
 @dataclass(frozen=True)
@@ -56,6 +67,10 @@ class PolyJet:
     flips: str = ""
     prefix: str = "slice"
 
+    called: ClassVar[str] = "a folder of slices"
+    suffixes: ClassVar[tuple[str, ...]] = ("", ".slices")
+    replaceable: ClassVar[Replaceable] = staticmethod(is_slices_folder)
+
     def __post_init__(self) -> None:
         check_fields(self)
         check_seed(self.seed)
@@ -66,16 +81,19 @@ class PolyJet:
 
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written."""
-        suffix_entry(at, {"": True, ".slices": True}, "a folder of slices")
         printing, made = MODES[self.mode], mixed(cube, self.resins)
         droplets = Droplets(made.amounts, cube.grid, printing.sides_mm, made.order, self.seed)
-        _check(made, droplets, printing, self.mode)
+        unused = droplets.expected() < 1
+        if np.any(unused):
+            droplets = replace(droplets, amounts=made.amounts * ~unused[:, None, None, None])
+        used = [0, *(1 + np.flatnonzero(~unused)).tolist()]
+        _check(used, droplets, printing, self.mode)
         look, palette = Look(self.prefix, printing.dpi, "".join(sorted(self.flips))), palette_of(made.dyes.label)
         names = (CLEAR, *made.dyes.names)
 
         def write(folder: Path, advance: Advance) -> None:
             found = write_slices(folder, droplets, palette, look, advance)
-            missing = [name for name, count in zip(names, found, strict=True) if not count]
+            missing = [names[material] for material in used if not found[material]]
             if missing:
                 raise InputError(f"no droplet came out as {missing[0]}, which printers refuse: leave that resin out")
 
@@ -84,16 +102,10 @@ class PolyJet:
 
         files = (File(at, write, is_slices_folder),)
         facts = _facts(made, droplets, printing, self, palette)
-        return Planned(files, facts, tuple(made.dyes.doubts), held, is_relit=bool(made.facts))
-
-
-def is_slices_folder(at: Place) -> bool:
-    """Whether a folder holds slices, and may therefore be replaced by others."""
-    try:
-        said = sidecar.read(sidecar.place_of(at, is_folder=True))
-    except (InputError, OSError):
-        return False
-    return said is not None and said.kind == "polyjet"
+        facts["palette"] = [facts["palette"][material] for material in used]
+        left_out = [name for name, is_so in zip(made.dyes.names, unused, strict=True) if is_so]
+        notes = [f"nothing of the cube is of {', '.join(left_out)}, which printers refuse: left out"] * bool(left_out)
+        return Planned(files, facts, (*notes, *made.dyes.doubts), held, is_relit=True)
 
 
 def held_of(folder: Path, said: sidecar.Sidecar) -> Held:
@@ -110,9 +122,11 @@ def held_of(folder: Path, said: sidecar.Sidecar) -> Held:
     return Held(folder, (nz, ny, nx), (x, y, z), palette, np.array(extinction), look)
 
 
-def _check(made: Mixed, droplets: Droplets, printing: Printing, mode: Mode) -> None:
+def _check(used: Sequence[int], droplets: Droplets, printing: Printing, mode: Mode) -> None:
     """Raise `InputError` where a printer could not print it."""
-    materials, slices = 1 + len(made.dyes.names), droplets.shape[0]
+    materials, slices = len(used), droplets.shape[0]
+    if materials == 1:
+        raise InputError("the cube is clear all over, so there is nothing to print: solve one first")
     if materials > printing.most:
         raise InputError(
             f"{counted(materials, 'material')} with the clear one are more than the {printing.most} that mode {mode} "
@@ -124,16 +138,12 @@ def _check(made: Mixed, droplets: Droplets, printing: Printing, mode: Mode) -> N
             f"the cube is {counted(slices, 'slice')} of {printing.layer_mm * 1000:g} micrometres high, and a print has "
             f"{printing.least} to {_MOST_SLICES - 1}: make it between {low:.3g} and {high:.3g} mm high"
         )
-    unused = [name for name, count in zip(made.dyes.names, droplets.expected(), strict=True) if count < 1]
-    if unused:
-        raise InputError(
-            f"nothing of the cube is of {unused[0]}, and printers refuse a material of no droplet: leave it out"
-        )
 
 
 def _facts(made: Mixed, droplets: Droplets, printing: Printing, how: PolyJet, palette: Any) -> dict[str, Any]:
     """All that is known of slices before they are made."""
     count, sides = droplets.shape[::-1], printing.sides_mm
+    blocks = Blocks.of(droplets.shape, sides, MOST_VOXELS)
     parts = made.amounts.mean(axis=(1, 2, 3), dtype=np.float64)
     names = (CLEAR, *made.dyes.names)
     return {
@@ -153,5 +163,6 @@ def _facts(made: Mixed, droplets: Droplets, printing: Printing, how: PolyJet, pa
                 names, palette.tolist(), made.droplets.tolist(), (1 - parts.sum(), *parts.tolist()), strict=True
             )
         ],
+        "cast_in": named(blocks.each[::-1]),
         **({"conversion": dict(made.facts)} if made.facts else {}),
     }

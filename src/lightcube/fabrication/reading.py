@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from lightcube.errors import InputError
-from lightcube.events import Tell, counting
 from lightcube.fabrication import sidecar
 from lightcube.fabrication.film_file import laid, stack_of
 from lightcube.fabrication.polyjet import held_of
@@ -46,7 +45,7 @@ def is_film(path: str | Path) -> bool:
 
 
 @checked
-def read_export(path: str | Path, *, like: Cube | None = None, force: bool = False, tell: Tell | None = None) -> Cube:
+def read_export(path: str | Path, *, like: Cube | None = None, force: bool = False) -> Cube:
     """Read what an exported volume, a folder of slices or pages of films hold as a cube, without targets.
 
     Lamps and screens are those that the sidecar says, ``NAME.json`` beside a file and ``slices.json`` in a folder.
@@ -58,8 +57,6 @@ def read_export(path: str | Path, *, like: Cube | None = None, force: bool = Fal
         large voxels are in a file that does not.
     force
         Take files that were changed since, or are missing, for what they are now.
-    tell
-        Is told how much is read.
 
     Raises
     ------
@@ -74,14 +71,10 @@ def read_export(path: str | Path, *, like: Cube | None = None, force: bool = Fal
     with fetched(at) as local, system_errors(local, "reading"):
         if said is not None and not force:
             names = local if folder else local.parent
-            sidecar.check_files(sidecar.place_of(at, is_folder=folder), said, names, counting(tell or _silent))
+            sidecar.check_files(sidecar.place_of(at, is_folder=folder), said, names)
         if folder:
             return _slices(local, said, force=force)
         return _films(local, at, said) if is_film(path) else _volume(local, at, said, like)
-
-
-def _silent(_: object) -> None:
-    """Say nothing."""
 
 
 def _slices(folder: Path, said: Sidecar | None, *, force: bool) -> Cube:

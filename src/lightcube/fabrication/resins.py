@@ -13,11 +13,7 @@ from lightcube.errors import InputError
 from lightcube.optics.arrays import Reals, Volume, locked
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
-
-#: How often each dye is chosen anew: by then the rest stays within a thousandth of what it can be.
-_SWEEPS = 200
-#: A voxel is off its colour where it differs by more than this part of it.
-_OFF = 0.05
+from lightcube.optics.gamut import OutOfReach, nearest, out_of_reach
 
 
 class ConvertedCube(UserWarning):
@@ -78,8 +74,10 @@ def mixed(cube: Cube, dyes: Dyes | None) -> Mixed:
     if cube.amounts is not None and cube.dyes == dyes:
         amounts = cube.amounts
     else:
-        amounts, facts = nearest(cube.extinction, dyes)
-        warnings.warn(_lost(facts), ConvertedCube, stacklevel=2)
+        amounts, lost = nearest(cube.extinction, dyes), out_of_reach(cube.extinction, dyes)
+        facts = {"out_of_reach_extinction": lost.extinction, "out_of_reach_voxels": lost.voxels}
+        facts["out_of_reach_worst"] = lost.worst or None
+        warnings.warn(_lost(lost), ConvertedCube, stacklevel=2)
     total = amounts.sum(axis=0)
     over = total > 1
     if np.any(over):
@@ -88,49 +86,11 @@ def mixed(cube: Cube, dyes: Dyes | None) -> Mixed:
     return Mixed(dyes, amounts, facts)
 
 
-def nearest(extinction: Volume, dyes: Dyes) -> tuple[Volume, dict[str, Any]]:
-    """Amounts ``(dye, z, y, x)`` whose mixtures come nearest to an extinction, in squares, and how far they are off.
-
-    Each dye is chosen anew as is best beside the others, the lightest first, so that what two ways of mixing can do is
-    done by light ones: their droplets are seen less.
-    """
-    has_matter = np.any(extinction > dyes.base.reshape(-1, 1, 1, 1), axis=0)
-    wanted = extinction[:, has_matter].astype(np.float64)
-    rest = wanted - dyes.base[:, None]
-    amounts = np.zeros((len(dyes.names), wanted.shape[1]))
-    order = np.argsort(dyes.extinction.sum(axis=1), kind="stable")
-    for _ in range(_SWEEPS):
-        for dye in order:
-            full = dyes.extinction[dye]
-            better = np.clip(amounts[dye] + full @ rest / (full @ full), 0, dyes.limit[dye])
-            rest -= full[:, None] * (better - amounts[dye])
-            amounts[dye] = better
-    volume = np.zeros((len(amounts), *has_matter.shape), np.float32)
-    volume[:, has_matter] = amounts
-    return locked(volume), _facts(wanted, rest)
-
-
-def _facts(wanted: Reals, rest: Reals) -> dict[str, Any]:
-    """How much of a cube is out of the dyes' reach: of all extinction, of voxels, and the voxel that is off most."""
-    if not wanted.size or not wanted.max() > 0:
-        return {"out_of_gamut": 0.0, "voxels_off": 0.0}
-    worst = int(np.argmax(np.abs(rest).max(axis=0)))
-    return {
-        "out_of_gamut": float(np.abs(rest).sum() / wanted.sum()),
-        "voxels_off": float(np.mean(np.abs(rest).max(axis=0) > _OFF * wanted.max(axis=0))),
-        "worst_wanted": wanted[:, worst].tolist(),
-        "worst_nearest": (wanted - rest)[:, worst].tolist(),
-    }
-
-
-def _lost(facts: Mapping[str, Any]) -> str:
+def _lost(lost: OutOfReach) -> str:
     """What a conversion costs, in a sentence."""
-    told = (
+    worst = f", most of it where they are to absorb {lost.worst}" if lost.worst else ""
+    return (
         "the cube was not solved in these dyes, so each voxel is mixed as near to its colours as they can: "
-        f"{facts['out_of_gamut']:.1%} of all extinction is out of their reach, {facts['voxels_off']:.0%} of the voxels "
-        f"that hold any are off by more than {_OFF:.0%}"
+        f"{lost.extinction:.1%} of all extinction is out of their reach, and {lost.voxels:.0%} of the voxels that are "
+        f"not clear are off by more than a twentieth{worst}; solve for these dyes by --material for a better one"
     )
-    if "worst_wanted" in facts:
-        wanted, found = (" ".join(f"{each:.2g}" for each in facts[f"worst_{name}"]) for name in ("wanted", "nearest"))
-        told += f", the worst wants {wanted} per mm and gets {found}"
-    return f"{told}; solve it in them (lightcube solve --dyes) for a better one"

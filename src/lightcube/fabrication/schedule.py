@@ -11,15 +11,15 @@ import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from lightcube.fabrication import lamps
 from lightcube.fabrication.planned import Advance, File, Planned
 from lightcube.forward.dimming import Course
-from lightcube.io._files import suffix_entry
-from lightcube.io._places import Place
+from lightcube.io._files import Replaceable
+from lightcube.io._places import Place, name_of
 from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
 from lightcube.optics.transfer import decode
@@ -34,9 +34,13 @@ _BEAT, _POINTS = 30.0, 11
 class Schedule:
     """How a schedule is written: a table for people and spreadsheets with all of it beside, or just all of it."""
 
+    called: ClassVar[str] = "a schedule"
+    suffixes: ClassVar[tuple[str, ...]] = (".csv", ".json")
+    replaceable: ClassVar[Replaceable] = None
+
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written."""
-        is_table = suffix_entry(at, {".csv": True, ".json": False}, "a schedule")
+        is_table = name_of(at).lower().endswith(".csv")
         document = schedule(cube)
 
         def write(path: Path, _: Advance) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from lightcube.errors import InputError
 from lightcube.fabrication.planned import AXES, Advance, File, Planned, named
 from lightcube.fabrication.points import PLY_HEAD, check_matter, luminance
 from lightcube.io._3mf import write_parts_3mf
-from lightcube.io._files import suffix_entry
+from lightcube.io._files import Replaceable
 from lightcube.io._places import Place, beside, name_of
 from lightcube.io._stl import write_stl
 from lightcube.optics.arrays import Volume
@@ -26,6 +27,8 @@ from lightcube.solids.surface import surface
 MOST = 8
 #: Marching cubes make faces of no size nearer to 0.
 _CLEAR_OF_0 = 1 / 256
+#: And where it changes faster than this at a face, what stands there would stand out of the block.
+_STEEPEST = np.float32(0.5)
 #: What such a thing is.
 _NOTE = "shells are decorative: printed in opaque parts they cast none of the cube's pictures"
 
@@ -64,6 +67,10 @@ class Shells:
 
     levels: int = 3
 
+    called: ClassVar[str] = "a shell"
+    suffixes: ClassVar[tuple[str, ...]] = (".3mf", ".ply")
+    replaceable: ClassVar[Replaceable] = None
+
     def __post_init__(self) -> None:
         check_fields(self)
         if not 1 <= self.levels <= MOST:
@@ -71,7 +78,7 @@ class Shells:
 
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written: parts in one file, and for slicers that cannot keep those together one STL each."""
-        is_3mf = suffix_entry(at, {".3mf": True, ".ply": False}, "a shell")
+        is_3mf = name_of(at).lower().endswith(".3mf")
         made = shells(cube, self.levels)
         parts = [(f"shell {number}", shell.mesh, shell.colour) for number, shell in enumerate(made, 1)]
 
@@ -132,12 +139,12 @@ def _shell(cube: Cube, dark: Volume, level: float) -> Shell:
     """The shell around what is darker than a level."""
     inside = dark >= level
     field = ((level - dark) / max(level, float(np.finfo(np.float32).tiny))).astype(np.float32)
-    field = np.where(inside, np.minimum(field, -_CLEAR_OF_0), np.maximum(field, _CLEAR_OF_0)).astype(np.float32)
+    low, high = np.clip(field, -_STEEPEST, -_CLEAR_OF_0), np.clip(field, _CLEAR_OF_0, _STEEPEST)
     mean = cube.extinction[:, inside].mean(axis=1, dtype=np.float64)
     light = np.exp(-mean / max(float(mean.mean()), 1e-12))
     red, green, blue = to_uint8(np.broadcast_to(light, 3) if len(light) != 3 else light).tolist()
     holds = float(cube.extinction[:, inside].sum(dtype=np.float64) / cube.extinction.sum(dtype=np.float64))
-    return Shell(surface(field, cube.grid), (red, green, blue), level, holds)
+    return Shell(surface(np.where(inside, low, high), cube.grid), (red, green, blue), level, holds)
 
 
 def ply(made: Sequence[Shell]) -> bytes:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -143,9 +143,9 @@ def digest_of(cube: Cube) -> str:
     return summed.hexdigest()
 
 
-def check_files(at: Place, said: Sidecar, folder: Path, advance: Callable[[int, int], None]) -> None:
+def check_files(at: Place, said: Sidecar, folder: Path) -> None:
     """Raise `InputError` where a file is missing, or is not the one that was written."""
-    for number, (name, wanted) in enumerate(said.files.items()):
+    for name, wanted in said.files.items():
         file = folder / name
         if not file.is_file():
             raise InputError(f"{file} is missing: export again, or --force goes on without it")
@@ -154,4 +154,3 @@ def check_files(at: Place, said: Sidecar, folder: Path, advance: Callable[[int, 
                 f"{file} is not the file that was exported, its SHA-256 is another than {name_of(at)} says: it was "
                 "changed, export again, or --force takes it as it is"
             )
-        advance(number + 1, len(said.files))

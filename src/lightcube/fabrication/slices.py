@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.errors import InputError
-from lightcube.fabrication.boxes import edges, means
+from lightcube.fabrication.blocks import Blocks
 from lightcube.fabrication.droplets import Droplets, Labels
 from lightcube.optics.arrays import Reals, Volume, locked
 from lightcube.optics.grid import Grid
@@ -117,41 +117,27 @@ class Held:
     extinction: Reals
     look: Look
 
-    def grid(self) -> tuple[Grid, int]:
-        """Voxels as fine as droplets are, or where that were too many, of several; and droplets along z in each."""
-        x, y, z = self.sides_mm
-        wide, high = 1, 1
-        while True:
-            side = wide * min(x, y)
-            nz, ny, nx = (
-                int(np.ceil(count * mm / voxel - 1e-9))
-                for count, mm, voxel in zip(self.shape, (z, y, x), (high * z, side, side), strict=True)
-            )
-            if nz * ny * nx <= MOST_VOXELS:
-                return Grid((nz, ny, nx), side, high * z / side), high
-            wide, high = (wide + 1, high) if side <= high * z else (wide, high + 1)
-
     def volume(self, *, forced: bool = False) -> tuple[Volume, Grid]:
-        """The extinction that the slices hold; of several droplets a voxel it is the mean.
+        """The extinction that the slices hold, droplet by droplet, or where there are too many, block by block.
 
         Parameters
         ----------
         forced
             Take the nearest colour of the palette where a slice has others, and slices that are missing for clear.
         """
-        grid, high = self.grid()
-        nz, ny, nx = grid.shape
-        x, y, _ = self.sides_mm
-        cuts = edges(ny, grid.voxel_mm, self.shape[1], y), edges(nx, grid.voxel_mm, self.shape[2], x)
-        volume = np.zeros((self.extinction.shape[1], nz, ny, nx), np.float32)
-        for number in range(self.shape[0]):
-            labels = self._labels(number, forced=forced)
-            layer = means(means(self.extinction.T[:, labels], 1, cuts[0]), 2, cuts[1])
-            volume[:, number // high] += (layer / high).astype(np.float32)
-        return locked(volume), grid
+        blocks = Blocks.of(self.shape, self.sides_mm, MOST_VOXELS)
+        (below, _), *around = blocks.padding(self.shape)
+        volume = np.empty((self.extinction.shape[1], *blocks.counts), np.float32)
+        for layer in range(blocks.counts[0]):
+            numbers = range(layer * blocks.each[0] - below, (layer + 1) * blocks.each[0] - below)
+            labels = np.stack([self._labels(number, forced=forced) for number in numbers])
+            volume[:, layer] = blocks.seen(self.extinction.T[:, np.pad(labels, [(0, 0), *around])])
+        return locked(volume), blocks.grid
 
     def _labels(self, number: int, *, forced: bool) -> Labels:
-        """The materials of a slice, counted from below, ``(y, x)``."""
+        """The materials of a slice, counted from below, ``(y, x)``: all clear below and above."""
+        if not 0 <= number < self.shape[0]:
+            return np.zeros(self.shape[1:], np.uint8)
         file = self.folder / name_of(self.look.prefix, self.look.place(number, self.shape[0]))
         if forced and not file.exists():
             return np.zeros(self.shape[1:], np.uint8)

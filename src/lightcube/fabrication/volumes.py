@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.fabrication import _raw, _vdb
 from lightcube.fabrication.planned import Advance, File, Planned, of_grid
-from lightcube.io._files import suffix_entry
+from lightcube.io._files import Replaceable, suffix_entry
 from lightcube.io._places import Place
 from lightcube.optics.arrays import Volume
 from lightcube.optics.checks import check_fields
@@ -46,17 +46,21 @@ class VolumeFile:
 
     unit: Literal["mm", "m"] = "mm"
 
+    called: ClassVar[str] = "a volume"
+    suffixes: ClassVar[tuple[str, ...]] = tuple(FORMATS)
+    replaceable: ClassVar[Replaceable] = None
+
     def __post_init__(self) -> None:
         check_fields(self)
 
     def plan(self, cube: Cube, at: Place) -> Planned:
         """What would be written."""
-        is_vdb = suffix_entry(at, {suffix: suffix == ".vdb" for suffix in FORMATS}, "a volume")
+        write, read = suffix_entry(at, FORMATS, self.called)
+        is_vdb = read is _vdb.read_vdb
         if is_vdb:
             _vdb.check_vdb(cube.grid)
         elif self.unit != "mm":
             raise InputError(f"{at} says that its unit is a mm, only a .vdb does not: leave --unit {self.unit} out")
-        write, read = suffix_entry(at, FORMATS, "a volume")
 
         def written(path: Path, _: Advance) -> None:
             if is_vdb:

@@ -71,7 +71,7 @@ class _JobJson(BlockJson):
     names: list[str]
     transfer: Transfer
     rig: RigJson
-    recipe: dict[str, str | int | float | None]
+    recipe: dict[str, Any]
     units: Annotated[int, Field(ge=1)]
     provenance: dict[str, Any]
 

@@ -13,6 +13,7 @@ from lightcube.kernels.layout import clear_volume
 from lightcube.optics.arrays import Bytes, Floats, Reals, Volume, keep
 from lightcube.optics.checks import check_fields
 from lightcube.optics.grid import Grid
+from lightcube.optics.stack import Stack
 from lightcube.wording import counted
 
 #: What absorbs: ink on a film, a resin that is cured drop by drop, a filament.
@@ -147,10 +148,11 @@ class Dyes:
         """The same dyes by their extinction, 1/mm, in a grid's voxels: inks lie on films, one for each slice."""
         if self.kind != "ink":
             return self
-        extinction, base = self.extinction / grid.slice_mm, self.base / grid.slice_mm
+        thick_mm = grid.voxel_mm if isinstance(grid, Stack) else grid.slice_mm  # along which extinction is counted
+        extinction, base = self.extinction / thick_mm, self.base / thick_mm
         return replace(self, extinction=extinction, base=base, kind="resin")
 
-    def mixed(self, amounts: Volume) -> Volume:
+    def mixed(self, amounts: Floats) -> Volume:
         """Extinction ``(channel, z, y, x)`` of amounts ``(dye, z, y, x)``: 1/mm, or of inks the films' absorbance."""
         full, clear = self.extinction.astype(np.float32), self.base.astype(np.float32)
         nz, ny, nx = amounts.shape[1:]

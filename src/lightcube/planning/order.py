@@ -19,7 +19,6 @@ from lightcube.optics.arrays import Counts, Images, Reals, keep, locked
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.light import Light
-from lightcube.optics.material import Material
 from lightcube.optics.views import Views
 from lightcube.pictures.resampling import shares
 from lightcube.pictures.targets import Targets
@@ -96,7 +95,7 @@ def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Or
     """
     raised(targets.rig, grid)
     recipe = recipe or Recipe()
-    bound = Material(recipe.bounded_by.most(grid))
+    bound = recipe.bounded_by.of_any_size(grid)
     drafted = replace(recipe.by_display(_PASSES), material=bound, hold_deg=0.0, mat=None)
     if not recipe.beams.is_thin:
         drafted = replace(drafted, light=_POINTS)

@@ -43,7 +43,6 @@ from lightcube.optics.arrays import Images, Reals, keep, locked
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, nearest, raster_shape
 from lightcube.optics.light import Light, finer, is_in_slices
-from lightcube.optics.material import Material
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import encode
 from lightcube.pictures.resampling import shares
@@ -168,7 +167,7 @@ def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
     held(targets.rig, recipe, grid)
     small, small_grid = reduced(targets, grid, _width(targets, grid, recipe))
     width = max(small_grid.shape[1:])
-    bound = Material(recipe.bounded_by.most(grid))
+    bound = recipe.bounded_by.of_any_size(grid)
     light = recipe.beams if recipe.beams.is_thin else replace(POINTS, grain=recipe.beams.grain)
     rehearsed = replace(recipe.by_display(rehearsal_of(recipe).passes), material=bound, light=light)
     rehearsed = replace(rehearsed, hold_deg=_small_hold(targets, grid, hold_deg, width))

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.events import Tell
 from lightcube.fabrication import reading, sidecar
 from lightcube.forward.casting import cast
 from lightcube.jobs.reading import load
@@ -32,11 +31,11 @@ _CUBES = (".zarr", ".zarr.zip", ".npz")
 _WAYS = {"x": "left and right", "y": "front and back", "z": "bottom and top"}
 
 
-def opened(path: str, *, force: bool = False, like: Cube | None = None, tell: Tell | None = None) -> Cube:
+def opened(path: str, *, force: bool = False, like: Cube | None = None) -> Cube:
     """The cube of a file of its own, or of one that was exported, with the targets of the cube it was made from."""
     if not reading.is_exported(path):
         return load(path)
-    cube = reading.read_export(path, like=like, force=force, tell=tell)
+    cube = reading.read_export(path, like=like, force=force)
     made_from = like or _original(path)
     if made_from is None or made_from.targets is None or made_from.rig.picture_shape != cube.rig.picture_shape:
         return cube
@@ -56,13 +55,13 @@ def _original(path: str) -> Cube | None:
     return cube if sidecar.digest_of(cube) == digest else None
 
 
-def measured(path: str, pictures: str | None, *, force: bool, tell: Tell) -> tuple[Cube, Targets]:
+def measured(path: str, pictures: str | None, *, force: bool) -> tuple[Cube, Targets]:
     """What a file holds, and the pictures that it is compared with: of a cube, of a folder, or of its own cube."""
     is_cube = pictures is not None and pictures.rstrip("/").lower().endswith(_CUBES)
     if is_cube:
         like = load(str(pictures))
-        return opened(path, force=force, like=like, tell=tell), wanted_of(like, None)
-    cube = opened(path, force=force, tell=tell)
+        return opened(path, force=force, like=like), wanted_of(like, None)
+    cube = opened(path, force=force)
     if pictures is None and cube.targets is None:
         raise InputError(
             f"{path} does not hold what was wanted, and the cube it was made from is not where it was: name that, or "
@@ -147,6 +146,9 @@ def told(document: Mapping[str, Any]) -> list[str]:
     if "round_s" in document:
         lines.append(f"{counted(document['stops'], 'stop')}, once round takes {document['round_s']:.0f} s")
     lines += _cast(document.get("predicted") or {})
+    blocks = document.get("cast_in", {})
+    if "predicted" in document and any(count > 1 for count in blocks.values()):
+        lines.append(f"cast in blocks of {_along(blocks)} droplets, which are too many one by one: up to 2 dB too low")
     white = document.get("one_white_lamp")
     if white:
         lines.append(f"one constant white lamp instead, of power {white['power']:.3g}: {_mean(white)}")

@@ -9,6 +9,7 @@ from lightcube.backward.mat import TONES, Mat
 from lightcube.backward.recipe import Powers, Quality, Recipe
 from lightcube.errors import InputError
 from lightcube.optics.attenuator import Films
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.light import Beams, Light
 from lightcube.optics.material import Material
 from lightcube.optics.tables import power_bounds
@@ -188,6 +189,14 @@ class Options:
             "[default: to 5 % along one voxel; thin beams: any]",
         ),
     ] = None
+    material: Annotated[
+        Dyes | None,
+        Option(
+            "Material",
+            "Solve for amounts of dyes, within what they can make: a material's file (TOML), or the name of one, as "
+            "lightcube materials lists them.  [default: any colours]",
+        ),
+    ] = None
     quality: Annotated[
         Quality | None, Option("Quality", "At most 30, 200 or 400 passes over all pictures.  [default: normal]")
     ] = None
@@ -343,11 +352,13 @@ class Options:
             raise InputError("--quality and --iterations both say how many passes: leave one of them out")
         if self.quality is not None and self.method != "display":
             raise InputError(f"--quality is for method display: use --iterations with method {self.method}")
+        if self.material is not None and self.max_extinction is not None:
+            raise InputError("--material says how dark it can be: leave --max-extinction out")
         said: dict[str, Any] = {
             "method": self.method,
             "powers": self.powers,
             "hold_deg": self.hold_deg,
-            "material": None if self.max_extinction is None else Material(self.max_extinction),
+            "material": self._bound,
             "light": self._beams,
             "mat": Mat(TONES[self.mat]) if self.mat in TONES else None,
             "passes": self.iterations,
@@ -364,6 +375,13 @@ class Options:
         if recipe.beams.is_thin and grain:
             raise InputError(f"--grain {grain:g} is for light on areas: leave out --light thin, or use method display")
         return replace(recipe, light=replace(recipe.beams, grain=grain))
+
+    @property
+    def _bound(self) -> Material | None:
+        """What voxels can be, where that is said."""
+        if self.material is not None:
+            return Material(dyes=self.material)
+        return None if self.max_extinction is None else Material(self.max_extinction)
 
     @property
     def _beams(self) -> Light | None:

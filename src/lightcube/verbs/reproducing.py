@@ -19,6 +19,7 @@ from lightcube.backward.needs import MEMORY, fewest_units
 from lightcube.backward.recipe import QUALITIES, Quality, Recipe, recipe_of
 from lightcube.errors import InputError, without_secrets
 from lightcube.optics.cube import Cube
+from lightcube.optics.dyes import Dyes
 from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.tables import POWER_MAX
@@ -146,7 +147,9 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from ("--method", made.solver.name)
     if made.powers != usual.powers:
         yield from ("--powers", made.powers)
-    if made.bounded_by != usual.bounded_by:
+    if made.dyes is not None:
+        yield from ("--material", _material(made.dyes, command))
+    elif made.bounded_by != usual.bounded_by:
         yield from ("--max-extinction", _number(made.bounded_by.most(cube.grid)))
     yield from _mat(made, command)
     quality = _quality(made) if "passes" in remembered(cube) else None
@@ -155,6 +158,15 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from _passes(remembered(cube), command)
     elif quality != "normal":
         yield from ("--quality", quality)
+
+
+def _material(dyes: Dyes, command: Command) -> str:
+    """The material that ships with these dyes, or a file's name in its place."""
+    known = (name for name in io.material_names() if io.read_dyes(name) == dyes)
+    name = next(known, "material.toml")
+    if name.endswith(".toml"):
+        command.doubts.append(f"Its material is kept with it: lightcube.save(cube.dyes, {name!r}) writes the file.")
+    return name
 
 
 def _mat(made: Recipe, command: Command) -> Iterator[str]:

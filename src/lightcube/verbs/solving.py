@@ -15,7 +15,6 @@ from lightcube.backward.job import Job
 from lightcube.backward.mat import Mat
 from lightcube.backward.needs import Speed, expected_passes, job_memory, measured_speed, memory_needed, seconds_a_pass
 from lightcube.backward.solving import make_job
-from lightcube.backward.units import most_units
 from lightcube.errors import InputError
 from lightcube.events import Tell
 from lightcube.jobs.partial import begun_units
@@ -204,7 +203,7 @@ def _origin(planned: Plan) -> dict[str, Any]:
 
 def divided(made: Job, output: str, workers: int, memory: int | None = None) -> Job:
     """A job in units for so many workers, or in as many as its unfinished cube was begun with, if they fit `memory`."""
-    most = most_units(made.grid.shape, made.channels, level=made.level)
+    most = made.most_units
     begun = begun_units(output, made)
     if begun is None or (memory is not None and job_memory(replace(made, units=begun)) > memory):
         begun = max(made.units, min(workers, most))
@@ -231,7 +230,16 @@ def _speed(made: Job) -> Speed:
     from lightcube.kernels.tasks import threads  # here: the compiler comes with it
 
     kind = made.recipe.method if isinstance(made.recipe.method, str) else ""
-    asked = [version("lightcube"), platform.node(), threads(), kind, made.recipe.dtype, made.level, made.channels]
+    asked = [
+        version("lightcube"),
+        platform.node(),
+        threads(),
+        kind,
+        made.recipe.dtype,
+        made.level,
+        made.channels,
+        made.kinds,
+    ]
     known, name = io.Remembered(), sha256(json.dumps(["speed", *asked]).encode()).hexdigest()
     if kind and name in known:
         with suppress(TypeError, ValueError):

@@ -18,6 +18,7 @@ from lightcube.planning.measured import is_measured
 from lightcube.planning.plan import Plan, narrower
 from lightcube.planning.rehearsals import Rehearsals
 from lightcube.scoring.metrics import FAIR_DB, grain_word, nearness
+from lightcube.verbs import materials
 from lightcube.wording import counted, in_ev
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ def in_short(planned: Plan, order: "Order | None") -> list[str]:
         f"cube of {voxels(planned.grid.shape)} voxels, {planned.grid.size_mm[2]:.3g} mm wide{held}",
         *expected(planned),
         *gain(planned, order),
+        *([] if planned.recipe.dyes is None else materials.in_words(planned.recipe.dyes)),
         *(f"doubtful: {sentence}" for sentence in planned.doubtful),
         *unsampled(rig, "thin" if planned.recipe.beams.is_thin else "area"),
     ]
@@ -221,7 +223,7 @@ def solved(solution: Solution) -> list[str]:
         lines.append(
             f"lamp: at most {power:.3g} times as strong as one that makes the bare wall white ({in_ev(power)})"
         )
-    return [*lines, from_near(scores["grain_rms"], recipe_of(cube).beams)]
+    return [*lines, *materials.held(cube), from_near(scores["grain_rms"], recipe_of(cube).beams)]
 
 
 def from_near(grain_rms: float, light: Light) -> str:

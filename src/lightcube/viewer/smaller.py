@@ -13,7 +13,6 @@ from lightcube.forward.casting import cast
 from lightcube.optics.arrays import locked
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.material import Material
 from lightcube.pictures.fitting import targets_of
 from lightcube.pictures.resampling import coarser
 from lightcube.pictures.targets import Targets
@@ -44,7 +43,7 @@ def smaller(cube: Cube, callback: Watching | None = None) -> Cube:
     wanted = _cast(cube) if cube.targets is None else targets_of(cube)
     targets, grid = coarser(wanted, cube.grid, ratio)
     recipe = recipe_of(cube)
-    bound = Material(recipe.bounded_by.most(cube.grid))
+    bound = recipe.bounded_by.of_any_size(cube.grid)
     solution = solve(targets, grid, replace(recipe.by_display(_PASSES), material=bound), callback=callback)
     return replace(solution.cube, scores=metrics.score(solution.cube, targets), status=cube.status)
 
