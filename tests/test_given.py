@@ -97,6 +97,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "load": {"path": "no.zarr"},
     "page": {"cube": CUBE, "label": "a"},
     "plan": {"pictures": PICTURES, "n": 6, "picture_width": 0.5},
+    "as_films": {"cube": CUBE, "films": 2},
     "export": {"cube": CUBE, "path": "/no/such/folder/a.vdb", "kind": "volume"},
     "film": {"cube": CUBE},
     "read_export": {"path": "no.vdb"},

@@ -54,3 +54,18 @@ def test_what_cannot_be_printed_is_told_before_it_is_solved(  # type: ignore[no-
     assert found.code == 2
     assert told in " ".join(found.err.split())
     assert [each.name for each in tmp_path.iterdir()] == ["photos"]
+
+
+def test_a_cube_becomes_films_and_says_what_that_gains(run, photos: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    small = ["--n", "8", "--elevation-deg", "35", "--iterations", "4", "--hold-deg", "0", "--mat", "none"]
+    assert run("solve", photos, *small, "-o", tmp_path / "cube.npz").code == 0
+    out = tmp_path / "prints.pdf"
+    told = " ".join(run("export", "film", tmp_path / "cube.npz", "-o", out, "--films", "4").out.split())
+    assert "4 films, solved for themselves" in told
+    assert "the cube's slices as they are" in told
+    predicted = json.loads((tmp_path / "prints.json").read_text())["predicted"]["psnr_mean"]
+    assert json.loads(run("score", out, "--json").out)["psnr_mean"] == pytest.approx(predicted, abs=0.05)
+    again = run("export", "film", tmp_path / "prints.zarr", "-o", tmp_path / "more.pdf", "--paper", "a3", "--no-score")
+    assert again.code == 0
+    refused = run("export", "volume", tmp_path / "cube.npz", "-o", tmp_path / "a.vdb", "--films", "4")
+    assert "--films is of printed films" in refused.err

@@ -7,12 +7,16 @@ import typer
 from lightcube import io
 from lightcube.cli.console import done, out, telling
 from lightcube.cli.options import JSON, OUT, OVERWRITE, threaded
+from lightcube.cli.prints import Prints
 from lightcube.errors import InputError
 from lightcube.fabrication import exporting as fabrication
 from lightcube.fabrication.dots import Halftone
+from lightcube.fabrication.films import FilmPages
 from lightcube.fabrication.printers import Mode
 from lightcube.fabrication.sidecar import Kind
+from lightcube.fabrication.thinning import as_films, stack_of
 from lightcube.io._places import place
+from lightcube.optics.cube import Cube
 from lightcube.verbs import exporting
 
 
@@ -52,6 +56,12 @@ def export(
     ] = None,
     prefix: Annotated[str | None, typer.Option(help="What names of slices begin with.  [default: slice]")] = None,
     seed: Annotated[int | None, typer.Option(help="Of droplets and points.  [default: 1]")] = None,
+    films: Annotated[
+        int | None,
+        typer.Option(
+            help="Solve the cube anew as so many films, and keep them beside as NAME.zarr.", rich_help_panel="Films"
+        ),
+    ] = None,
     paper: Annotated[
         str | None,
         typer.Option(help="Of films: a5 to a0, letter, legal, tabloid.  [default: a4]", rich_help_panel="Films"),
@@ -123,6 +133,8 @@ def export(
     at = place(output)
     fabrication.check(at, chosen, overwrite=overwrite)
     loaded = exporting.opened(cube)
+    if films is not None:
+        loaded, cube = _as_films(loaded, films, chosen, output, options, overwrite=overwrite, as_json=as_json)
     planned = fabrication.plan(loaded, at, chosen, options)
     if dry_run:
         _tell(output, {**planned.facts, "notes": list(planned.notes)}, as_json=as_json, verb="would be written")
@@ -147,6 +159,24 @@ def _kind(said: str) -> Kind:
     if found is None:
         raise InputError(f"{said} is nothing that is made of a cube: give one of {', '.join(fabrication.KINDS)}")
     return found
+
+
+def _as_films(
+    cube: Cube, films: int, kind: Kind, output: str, options: dict[str, Any], *, overwrite: bool, as_json: bool
+) -> tuple[Cube, str]:
+    """The stack that a cube is made of, and where it is kept: beside its pages."""
+    if kind != "film":
+        raise InputError(f"--films is of printed films: leave it out for a {kind}, or export film")
+    kept = io.Output(Prints(output, overwrite=overwrite).cube, "cube", overwrite)
+    kept.check()
+    FilmPages(**options).laid_out(stack_of(cube, films), cube.rig)
+    with telling("solving", as_json=as_json) as tell:
+        stack = as_films(cube, films, tell=tell)
+    kept.write(stack)
+    if not as_json:
+        for line in exporting.said_of_films(stack):
+            out.print(line)
+    return stack, str(kept.path)
 
 
 def _tell(output: str, document: dict[str, Any], *, as_json: bool, verb: str) -> None:

@@ -84,7 +84,10 @@ class FilmPages:
         """The stack, and where its films lie on their pages; `InputError` where they do not fit, or are none."""
         film_pages.reportlab()
         if not isinstance(grid, Stack):
-            raise InputError("this is a cube, not a stack of films: solve one (solve --films 5, or a file of [stack])")
+            raise InputError(
+                "this is a cube, not a stack of films: make one of it (export film --films 16), or solve one "
+                "for pictures (solve --films 5)"
+            )
         return grid, layout(grid, rig, self.paper, self.dpi, (self.scale_x, self.scale_y))
 
     def plan(self, cube: Cube, at: Place) -> Planned:
@@ -103,7 +106,8 @@ class FilmPages:
 
         def written(path: Path, advance: Advance) -> None:
             film_pages.write_sheets(path, sheets, advance)
-            _check_same(path, held(path)[0] * np.float32(stack.voxel_mm), levels, printed, self.halftone)
+            volume, grid = held(path)
+            _check_same(path, volume * np.float32(grid.voxel_mm), levels, printed, self.halftone)
 
         known = {
             "films": stack.shape[0],

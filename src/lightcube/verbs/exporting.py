@@ -136,6 +136,13 @@ def made_from(cube: str, output: str) -> str | None:
     return os.path.relpath(cube, Path(output).absolute().parent)
 
 
+def said_of_films(stack: Cube) -> list[str]:
+    """What solving a cube anew for films gains."""
+    found, slices = stack.scores["psnr_mean"], stack.provenance["psnr_of_slices"]
+    films = counted(stack.grid.shape[0], "film")
+    return [f"{films}, solved for themselves: mean PSNR {found:.1f} dB; the cube's slices as they are {slices:.1f}"]
+
+
 def told(document: Mapping[str, Any]) -> list[str]:
     """What was written, in sentences."""
     lines = [] if "size_mm" not in document else [f"{_along(document['size_mm'])} mm (x, y, z){_how(document)}"]

@@ -2,79 +2,85 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from lightcube.backward.pieces import Watching
 from lightcube.backward.recipe import recipe_of
 from lightcube.backward.solving import solve
 from lightcube.errors import InputError
 from lightcube.events import Tell, counting
 from lightcube.optics.arrays import Volume, locked
+from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.optics.light import Light
 from lightcube.optics.material import Material
 from lightcube.optics.stack import MOST_FILMS, Stack
 from lightcube.pictures.fitting import targets_of
 from lightcube.scoring.metrics import score
 
-#: Printers reach this density in each colour; and how often a stack is solved that starts from a cube.
-_DENSITY, _PASSES = 1.5, 60
+#: Printers reach this density in each colour; how often a stack is solved that starts from a cube, and over how many
+#: points of a pixel: thin sheets vary more inside pixels than voxels do (benchmarks/thinning.py).
+_DENSITY, _PASSES, _POINTS = 1.5, 60, 50
 #: Light that is less aslant to the films than this, degrees, runs along them; and what cubes are usually lit at.
 _FLAT_DEG, _USUAL_DEG = 10.0, 35
 
 
-@dataclass(frozen=True, eq=False)
-class Restacked:
-    """A cube as films.
+@checked
+def as_films(cube: Cube, films: int, *, tell: Tell | None = None) -> Cube:
+    """Solve a cube anew as a stack of films that lie flat: `export` makes pages of it.
+
+    A slice of a cube that is printed on a film casts something else than the slice did, since its light went through
+    slabs that were as thick as the room between films. So films are solved for the cube's pictures, from its slices on.
 
     Parameters
     ----------
-    cube
-        The stack.
-    psnr_slices
-        Mean PSNR, dB, of the cube's slices on as many films as they are, and under the cube's lamps.
-    """
+    films
+        How many, evenly apart where the cube is.
+    tell
+        Is told of every pass.
 
-    cube: Cube
-    psnr_slices: float
-
-
-def restacked(cube: Cube, films: int, tell: Tell | None = None) -> Restacked:
-    """Solve so many films, evenly apart where the cube is, for the pictures that the cube was made for.
+    Returns
+    -------
+    The stack, whose ``provenance["psnr_of_slices"]`` is what slices as they are would have cast, mean PSNR in dB.
 
     Raises
     ------
     InputError
         Where the cube is a stack already, has no pictures, or its light runs along the films.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> grid = lc.Grid((4, 8, 8))
+    >>> rig = lc.turntable(grid, [20, 80], elevation_deg=35, picture_shape=(4, 4))
+    >>> targets = lc.Targets(np.full((2, 4, 4, 3), 0.5, np.float32), rig, np.ones((2, 4, 4), np.float32))
+    >>> lc.as_films(lc.solve(targets, grid, lc.Recipe(passes=2)).cube, 2).grid
+    <stack of 2 films of 8 x 8 cells of 1 mm>
     """
-    stack = stack_of(cube, films)
-    targets = targets_of(cube)
-    start = replace(
-        cube,
-        grid=stack,
-        extinction=sliced(cube, stack),
-        amounts=None,
-        dyes=None,
-        targets=None,
-        scores={},
-        provenance={},
-    )
-    recipe = replace(recipe_of(cube), material=Material(_DENSITY * math.log(10), "voxel"), passes=_PASSES, light=None)
-    advance = None if tell is None else counting(tell)
-    done = 0
+    stack, targets = stack_of(cube, films), targets_of(cube)
+    slices = sliced(cube, stack)
+    start = replace(cube, grid=stack, extinction=slices, amounts=None, dyes=None, scores={}, provenance={})
+    before = score(start, targets)["psnr_mean"]
+    material = Material(_DENSITY * math.log(10), "voxel")
+    recipe = replace(recipe_of(cube).by_display(_PASSES), material=material, light=Light(_POINTS))
+    look = None if tell is None else _looking(tell)
+    made = solve(targets, stack, recipe, start=start, callback=look, provenance={"psnr_of_slices": before}).cube
+    return replace(made, scores=score(made, targets))
+
+
+def _looking(tell: Tell) -> Watching:
+    """What counts passes while films are solved."""
+    advance, done = counting(tell), itertools.count(1)
 
     def look(*_: object) -> bool:
-        nonlocal done
-        done += 1
-        if advance is not None:
-            advance(min(done, _PASSES), _PASSES)
+        advance(min(next(done), _PASSES), _PASSES)
         return False
 
-    slices = score(start, targets)["psnr_mean"]
-    solution = solve(targets, stack, recipe, start=start, callback=look)
-    made = solution.cube
-    return Restacked(replace(made, scores=score(made, targets)), slices)
+    return look
 
 
 def stack_of(cube: Cube, films: int) -> Stack:
