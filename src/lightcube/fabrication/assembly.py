@@ -7,10 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lightcube.kernels.films import NEAR, SLOPE
 from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
-from lightcube.optics.films import paths
 from lightcube.optics.moves import places_of
 from lightcube.optics.stack import Stack
 from lightcube.wording import counted
@@ -52,6 +50,9 @@ class Assembly:
 
 def assembly(cube: Cube, stack: Stack, *, is_mirrored: bool) -> Assembly:
     """Say how a cube's stack is put together."""
+    from lightcube.kernels.films import NEAR, SLOPE  # here: the compiler comes with them
+    from lightcube.optics.films import paths
+
     light = paths(stack, cube.rig).table
     slopes = sorted({round(-float(row[SLOPE]), 4) for row in light if not row[NEAR]})
     count = stack.shape[0]
