@@ -3,8 +3,8 @@
     python benchmarks/thinning.py [--n 64] [--pictures 16] [--films 16 32 64] [--points 13 50]
 
 Photographs half as wide as the cube, 35 degrees, 60 passes. The columns: films, points a pixel that are solved for, the
-cube itself, its slices as they are, films solved for themselves (mean and worst PSNR, dB), the same judged at 233 points,
-not at the usual 55, what the exported pages cast, seconds.
+cube itself, its slices as they are, films solved for themselves (mean and worst PSNR, dB), the same judged at 233
+points, not at the usual 55, what the exported pages cast, seconds.
 """
 
 import argparse

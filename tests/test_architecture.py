@@ -20,7 +20,7 @@ STOREYS = [
     ["pictures", "projection", "solvers"],
     ["scene", "backward", "forward", "solids"],
     ["scoring", "io", "cores"],
-    ["planning", "jobs", "drawing", "fabrication", "bench"],
+    ["planning", "jobs", "drawing", "fabrication", "bench", "calibration"],
     ["viewer", "report"],
     ["verbs", ""],
     ["cli"],

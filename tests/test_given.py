@@ -40,6 +40,7 @@ REACH = lc.reach(SILHOUETTES, GRID)
 #: What would do of every public function and class.
 GIVEN: dict[str, dict[str, Any]] = {
     "Cube": {"extinction": CUBE.extinction, "grid": GRID, "rig": RIG},
+    "Films": {},
     "Dyes": {"names": ("a", "b"), "extinction": np.array([[1.0, 2, 3], [3, 2, 1]])},
     "Grid": {"shape": (3, 5, 7)},
     "Label": {"title": "a"},
@@ -48,6 +49,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "Mat": {},
     "Material": {},
     "Mesh": {"vertices_mm": np.eye(4, 3), "faces": [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]},
+    "Move": {"name": "slid"},
     "Pictures": {"images": [np.ones((2, 3, 3))], "names": ["a"]},
     "Plan": {
         "pictures": PICTURES,
@@ -77,6 +79,7 @@ GIVEN: dict[str, dict[str, Any]] = {
         "undetermined": 0,
         "stop_reason": "enough",
     },
+    "Stack": {"shape": (3, 5, 7)},
     "Stage": {"grid": GRID, "lamps": [LAMP], "screens": [SCREEN], "shots": [SHOT]},
     "Targets": {"pictures": TARGETS.pictures, "rig": RIG},
     "Turntable": {},
@@ -85,8 +88,10 @@ GIVEN: dict[str, dict[str, Any]] = {
     "Warped": {"given": SILHOUETTES, "nodes": np.zeros((len(SILHOUETTES), 2, 11, 11)), "weight": 1.0},
     "as_cube": {"shape": SHAPE},
     "carve": {"shape": SHAPE, "how": "lace"},
+    "with_base": {"shape": SHAPE, "thick_mm": 0.5},
     "repair": {"silhouettes": SILHOUETTES, "grid": GRID, "way": "warp"},
     "warp": {"silhouettes": SILHOUETTES, "grid": GRID},
+    "attenuator": {"names": ["a", "b"]},
     "best_order": {"targets": TARGETS, "grid": GRID},
     "cast": {"cube": CUBE},
     "certify": {"mesh": SHAPE.mesh, "silhouettes": SILHOUETTES},
@@ -159,6 +164,7 @@ SENSIBLE = {
         for argument, value in [("names", "words")]
     ),
     ("Shot", "lamps", "words"),
+    ("attenuator", "names", "words"),
     ("Cube", "scores", "a table"),
     ("Cube", "provenance", "a table"),
     ("Shape", "provenance", "a table"),

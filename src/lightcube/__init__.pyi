@@ -23,12 +23,15 @@ from lightcube.io import (
 )
 from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import load
+from lightcube.optics.attenuator import Films, attenuator
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
+from lightcube.optics.moves import Move
 from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.stack import Stack
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import Views, spread_angles
 from lightcube.pictures.fitting import fit
@@ -44,6 +47,7 @@ from lightcube.scene.scene import Scene
 from lightcube.scene.tracer import scene_rig, scene_targets
 from lightcube.scoring.metrics import score
 from lightcube.scoring.reliefs import score_relief
+from lightcube.solids.base import with_base
 from lightcube.solids.carving import carve
 from lightcube.solids.certificate import certify
 from lightcube.solids.cutting import cut
@@ -69,6 +73,7 @@ __all__ = [
     "METHODS",
     "Cube",
     "Dyes",
+    "Films",
     "Grid",
     "InputError",
     "Label",
@@ -77,6 +82,7 @@ __all__ = [
     "Mat",
     "Material",
     "Mesh",
+    "Move",
     "Pictures",
     "Plan",
     "Prediction",
@@ -94,6 +100,7 @@ __all__ = [
     "Shot",
     "Silhouettes",
     "Solution",
+    "Stack",
     "Stage",
     "Targets",
     "Turntable",
@@ -101,6 +108,7 @@ __all__ = [
     "Warped",
     "as_cube",
     "as_films",
+    "attenuator",
     "best_order",
     "carve",
     "cast",
@@ -145,4 +153,5 @@ __all__ = [
     "turntable",
     "walls",
     "warp",
+    "with_base",
 ]

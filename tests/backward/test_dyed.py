@@ -27,6 +27,7 @@ from lightcube.pictures.targets import Targets
 from lightcube.projection.inked import Inked
 from lightcube.scoring.metrics import score
 from lightcube.solvers import METHODS, find_method
+from lightcube.solvers.contract import Lighting, Wanted
 from tests.backward.test_job import LEVEL, SHAPE, job, some_targets
 from tests.backward.test_stages import known, stage
 from tests.helpers.recipes import asked
@@ -122,6 +123,14 @@ def test_a_method_is_asked_for_what_a_cube_in_its_clear_material_casts(room: int
     shown = shown_light(told.lighting.mixture, of_views, absorbance, rig.picture_shape)
     of_colours = shown.reshape(3, *wanted.shape[:3]).transpose(1, 2, 3, 0) * rig.inside[..., None]
     np.testing.assert_allclose(of_colours, wanted, rtol=2e-4)
+
+
+def test_rounding_makes_no_shadow_stronger_than_whole() -> None:
+    clear = np.random.default_rng(0).random((300, 40), np.float32)
+    wanted = Wanted(np.ones((300 * 40, 1), np.float32), lighting=Lighting(np.zeros(300, int)))
+    behind = _behind(clear, wanted, find_method("display")).lighting.mixture
+    assert behind is not None
+    np.testing.assert_allclose(behind.light * behind.shadow, clear, rtol=1e-5)
 
 
 def test_a_stage_is_solved_in_amounts() -> None:

@@ -62,6 +62,7 @@ def job(elevation_deg: float = 35.0, size: tuple[int, int] = (3, 5), **options: 
 
 
 DYED = Material(dyes=read_dyes("polyjet"))
+CLEAR = Material(dyes=read_dyes("pla"))  # in a material that absorbs nothing itself
 LEVEL: dict[str, Any] = {"elevation_deg": 0.0, "size": (4, 5), "units": 3}
 RAISED: dict[str, Any] = {"units": 2}
 KINDS: list[dict[str, Any]] = [
@@ -343,6 +344,10 @@ def test_a_cube_is_cast_from_where_it_lies(kind: dict[str, Any]) -> None:
         ((60, 60, 60), (30, 30), 35.0, 12, {"light": Light(13, 7, 0.01), "mat": Mat(), "hold_deg": 0.3}),
         ((60, 60, 60), (30, 30), 35.0, 12, {"light": Light(34)}),
         ((60, 60, 60), (60, 40), 0.0, 20, {"light": Light(8, 5), "units": 3}),
+        ((60, 60, 60), (30, 30), 35.0, 12, {"light": Light(13), "material": DYED}),
+        ((60, 60, 60), (30, 30), 35.0, 12, {"light": Light(13), "material": CLEAR}),
+        ((60, 60, 60), (60, 40), 0.0, 20, {"light": Light(8, 5), "units": 3, "material": DYED}),
+        ((80, 80, 80), (40, 30), 35.0, 6, {"material": CLEAR}),
     ],
     ids=str,
 )

@@ -105,3 +105,13 @@ def test_placements_are_of_walls(run, tmp_path: Path) -> None:  # type: ignore[n
     three = bars(tmp_path, *[(5, 5, 35, 35)] * 3)
     done = run("hull", *three, "--placement", "best", "-o", tmp_path / "a.stl")
     assert (done.code, "--placement is for three walls" in done.err) == (2, True)
+
+
+def test_pictures_along_the_same_lines_are_told(run, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    two = bars(tmp_path, (5, 5, 20, 35), (5, 5, 20, 35))
+    level = ("--opaque", "--elevation-deg", 0, "--n", 20)
+    done = run("check", *two, *level, "--angles-deg", "10,190")
+    assert "note: 0 and 1 are seen from opposite sides, and must be mirror images, but share" in done.err
+    assert "note: all pictures are seen along one line, and none says how deep the object is" in done.err
+    done = run("check", *two, *level, "--angles-deg", "10,100")
+    assert "are seen" not in done.err

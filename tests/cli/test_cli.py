@@ -483,7 +483,9 @@ def test_help_names_every_command() -> None:
     command = [sys.executable, "-m", "lightcube", "--help"]
     text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
     listed = re.findall(r"^\s+([a-z]+)\s\s+[A-Z]", text, re.MULTILINE)
-    assert " ".join(listed) == "trace check solve hull relief play score view report draw info publish bench demo"
+    assert " ".join(listed) == (
+        "trace check solve hull relief play score view report draw info materials calibrate publish bench demo"
+    )
 
 
 def test_the_demo_leaves_what_it_says(run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:  # type: ignore[no-untyped-def]

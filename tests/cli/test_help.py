@@ -65,17 +65,17 @@ def test_options_in_no_group_stand_together_with_help(capsys: pytest.CaptureFixt
 def test_where_a_word_lacks_an_example_has_it(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     needed = [each.opts[0] for each in options(name) if each.required]
     if needed:
-        arguments = [each for each in command(name).params if each.param_type_name == "argument" and each.required]
-        assert main.run([name, *["thing"] * len(arguments)]) == 2
-        said = capsys.readouterr().err
         example = EXAMPLES[name][0][0]
+        arguments = [each for each in command(name).params if each.param_type_name == "argument" and each.required]
+        assert main.run([name, *example.split()[2 : 2 + len(arguments)]]) == 2
+        said = capsys.readouterr().err
         assert said == f"lightcube: Missing option '-o' / '--out': give it, as in {example}\n"
         assert set(needed) <= set(example.split())
 
 
 def test_commands_that_write_say_where_to() -> None:
     needing = [name for name in main.COMMANDS if any(each.required for each in options(name))]
-    assert needing == ["trace", "solve", "hull", "relief", "play", "draw", "export"]
+    assert needing == ["trace", "solve", "hull", "carve", "relief", "play", "draw", "export", "calibrate"]
 
 
 @pytest.mark.parametrize(("name", "typed"), [(name, typed) for name, all_ in EXAMPLES.items() for typed, _ in all_])

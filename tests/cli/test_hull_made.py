@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from lightcube.io import read_shape
+from lightcube.solids.silhouettes import FINE
 from tests.cli.test_cli import run
 from tests.solids.test_warp import BARS
 
@@ -60,6 +61,52 @@ def test_the_way_can_be_chosen(run: Any, word: list[Path], tmp_path: Path, way: 
     assert np.all(np.array(said["repair"]["overlap"]) <= 1)
 
 
+def test_what_is_thinner_than_walls_is_listed(run: Any, word: list[Path], tmp_path: Path) -> None:
+    """Bars of 8 pixels of 40 are 20 mm thick; a lace of them is not."""
+    base = ("hull", *word, "--walls", "--n", 32, "--repair", "grow", "--overwrite", "-o", tmp_path / "a.stl")
+    fine = told(run(*base, "--wall", 4, "--json").out)
+    assert fine["thin"]["share"] < 0.005
+    assert "thinner than" not in run(*base, "--wall", 4).out
+    lace = (*base, "--wall", 12, "--carve", "lace", "--keep-deep", 1)
+    found = told(run(*lace, "--json").out)["thin"]
+    assert found["share"] > 0.5
+    assert 0 < len(found["places"]) <= 5
+    assert "of it is thinner than 12 mm, most of that around (" in run(*lace).out
+    assert told(run(*base, "--wall", 0, "--json").out)["thin"] is None
+
+
+@pytest.fixture
+def leaning(tmp_path: Path) -> list[Path]:
+    """A wide top on a leg at its corner: from the front and the side a seven, from above a square."""
+    paths = []
+    for name in ("front", "side", "top"):
+        levels = np.full((50, 50), 255, np.uint8)
+        levels[5:15, 5:45] = 0
+        levels[5:45, 5 : 45 if name == "top" else 14] = 0
+        paths.append(tmp_path / f"{name}.png")
+        Image.fromarray(levels).save(paths[-1])
+    return paths
+
+
+def test_what_would_tip_over_gets_a_base_unless_told_otherwise(run: Any, leaning: list[Path], tmp_path: Path) -> None:
+    made = {}
+    for base in ("auto", "none", "5"):
+        out = tmp_path / f"{base}.shape.zarr"
+        done = run("hull", *leaning, "--walls", "--n", 32, "-o", out, "--base", base, "--json")
+        assert done.code == 0
+        made[base] = told(done.out)
+    assert [made[base]["stands"] for base in made] == [True, False, True]
+    assert made["none"]["base_mm"] == 0
+    assert made["auto"]["base_mm"] == pytest.approx(2 * 100 / 32)
+    assert made["5"]["base_mm"] == 5
+    assert min(each["overlap_min"] for each in made.values()) > 0.97
+    said = run("hull", *leaning, "--walls", "--n", 32, "-o", tmp_path / "a.stl")
+    assert "it stands on a base of 6.2 mm, below its pictures' lowest row and in none of them" in said.out
+    assert "it tips over" not in said.out
+    assert "it tips over" in run("hull", *leaning, "--walls", "--n", 32, "-o", tmp_path / "b.stl", "--base", "none").out
+    assert run("view", tmp_path / "auto.shape.zarr", "-o", tmp_path / "a.html").code == 0
+
+
 @pytest.mark.parametrize("carving", ["shell", "lace"])
 def test_material_is_taken_out(run: Any, word: list[Path], tmp_path: Path, carving: str) -> None:
     volumes = []
@@ -81,20 +128,60 @@ def test_a_picture_is_kept(run: Any, word: list[Path], tmp_path: Path) -> None:
     assert overlaps[1] > 0.9
 
 
+@pytest.mark.parametrize("placed", [(), ("--placement", "best")])
+def test_a_part_of_a_picture_is_kept(run: Any, word: list[Path], tmp_path: Path, placed: tuple[str, ...]) -> None:
+    """The left half of the H, wherever it stands, by a mask that is white there and twice as large, or opaque there."""
+    levels = np.zeros((100, 100, 4), np.uint8)
+    levels[:, :50, :3] = levels[:, :50, 3] = 255
+    Image.fromarray(levels).convert("RGB").save(tmp_path / "white.png")
+    levels[..., :3] = 255
+    Image.fromarray(levels).save(tmp_path / "clear.png")
+    base = ("hull", *word, "--walls", "--n", 24, "--wall", 0, *placed)
+    assert run(*base, "-o", tmp_path / "given.shape.zarr", "--repair", "none").code == 0
+    drawn = read_shape(tmp_path / "given.shape.zarr")
+    own = drawn.names.index("front")
+    high, wide = FINE * drawn.rig.stops.window[own]
+    changed = []
+    for mask in ("", "=white.png", "=clear.png"):
+        made = tmp_path / "made.shape.zarr"
+        more = ("--keep", f"front={tmp_path / mask[1:]}") if mask else ()
+        assert run(*base, "-o", made, "--repair", "warp", "--overwrite", *more).code == 0
+        apart = read_shape(made).silhouettes.inside[own] != drawn.silhouettes.inside[own]
+        changed.append((int(apart[:high, : wide // 2].sum()), int(apart[:high, wide // 2 : wide].sum())))
+    free, white, clear = changed
+    assert white == clear
+    if not placed:  # there it hardly has to move
+        assert white[0] < 0.4 * free[0]
+        assert white[1] > 2 * white[0]
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
+        (("--keep", "front=none.png"), "none.png"),
+        (("--keep", "back=a.png"), "--keep back=a.png: there is no such picture: name one of front, side, top"),
+        (("--keep", "front=wide.png"), "wide.png has 20 x 50 pixels and its picture 50 x 50"),
         (("--keep", "back"), "--keep back: there is no such picture: name one of front, side, top"),
         (("--wall", "-1"), "--wall is how thick walls are, 0 mm or more, not -1"),
         (("--carve", "holes"), "holes"),
         (("--keep-deep", "0"), "keep-deep"),
+        (("--base", "thick"), "--base thick"),
+        (("--base", "-3"), "--base -3: give how thick it is in mm, auto or none"),
+        (("--base", "1000"), "a base is thicker than 0 mm and at most"),
         (("--carve", "shell", "--drain", "-2"), "a drain 0 mm or more"),
         (("--repair", "mend"), "mend"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(
-    run: Any, word: list[Path], tmp_path: Path, given: tuple[str, ...], said: str
+    run: Any,
+    word: list[Path],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    given: tuple[str, ...],
+    said: str,
 ) -> None:
+    monkeypatch.chdir(tmp_path)
+    Image.fromarray(np.full((20, 50), 255, np.uint8)).save("wide.png")
     done = run("hull", *word, "--walls", "--n", 16, "-o", tmp_path / "a.stl", *given)
     assert done.code == 2
     assert said in done.err
@@ -130,10 +217,6 @@ def test_all_that_takes_cubes_takes_shapes(run: Any, word: list[Path], tmp_path:
     assert run("view", shape, "-o", tmp_path / "word.html").code == 0
     text = (tmp_path / "word.html").read_text(encoding="utf-8")
     assert "A solid stands in the light, and its shadows are pictures: front, side, top." in text
-    for command, more, said in (
-        ("report", (), "is a shape, and reports are of cubes"),
-        ("score", ("--robust",), "is a shape, and --robust is for cubes: leave it out"),
-    ):
-        done = run(command, shape, *more)
-        assert done.code == 2
-        assert said in done.err
+    done = run("score", shape, "--robust")
+    assert done.code == 2
+    assert "is a shape, and --robust is for cubes: leave it out" in done.err

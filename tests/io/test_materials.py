@@ -8,7 +8,7 @@ import pytest
 
 from lightcube.errors import InputError
 from lightcube.io import material_names, read_cube, read_dyes, save
-from lightcube.io.materials import as_toml
+from lightcube.io.materials import as_toml, read_material
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import turntable
@@ -44,8 +44,14 @@ def test_every_key_of_a_file_comes_back(tmp_path: Path) -> None:
     dyes = read_dyes("polyjet")
     two = type(dyes)(('a "b" \\', "é"), dyes.extinction[:2], gain=(curve, None), calibration="guess", **said)
     file = tmp_path / "a.toml"
-    file.write_text(as_toml(two, instrument="a lamp"), encoding="utf-8")
+    file.write_text(as_toml(two), encoding="utf-8")
     assert read_dyes(file) == two
+
+
+def test_when_and_how_it_was_measured_is_told(tmp_path: Path) -> None:
+    (tmp_path / "a.toml").write_text(f'instrument = "a lamp"\n{FILM}')
+    assert read_material(tmp_path / "a.toml").measured == {"date": "2026-11-28", "instrument": "a lamp"}
+    assert read_material("pla").measured == {}
 
 
 def test_densities_are_of_films_and_to_the_base_of_10(tmp_path: Path) -> None:

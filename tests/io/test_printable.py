@@ -1,15 +1,18 @@
 """Meshes as files: other programs read what is written, and nothing is written that loses what matters."""
 
+import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from lightcube.errors import InputError
 from lightcube.io import save
 from lightcube.io.printable import WRITERS, read_written
 from lightcube.solids.mesh import Mesh
 from tests.laws.test_writer import a_mesh
+from tests.solids.test_printing import box
 
 every_suffix = pytest.mark.parametrize("suffix", WRITERS)
 
@@ -59,6 +62,24 @@ def test_manifold_takes_it_and_gives_it_back(tmp_path: Path) -> None:
     assert solid.volume() == pytest.approx(mesh.volume_mm3, rel=1e-6)
     back = solid.to_mesh()
     assert Mesh(back.vert_properties[:, :3], back.tri_verts.astype(int)).is_watertight
+
+
+def test_3mf_has_a_picture_of_what_is_in_it(tmp_path: Path) -> None:
+    """A box, 4 wide, 3 deep and 8 high: its three faces are seen, the top brightest, and nothing around it."""
+    with zipfile.ZipFile(save(box(4.0, 3.0, 8.0), tmp_path / "a.3mf")) as archive:
+        kinds, links = (archive.read(name).decode() for name in ("[Content_Types].xml", "_rels/.rels"))
+        levels = np.asarray(Image.open(archive.open("Metadata/thumbnail.png"))).astype(int)
+    assert 'Extension="png" ContentType="image/png"' in kinds
+    assert "/Metadata/thumbnail.png" in links
+    assert levels.shape == (256, 256, 4)
+    rows, columns = (np.flatnonzero((levels[..., 3] > 128).any(axis=axis)) for axis in (1, 0))
+    assert 0.85 * 256 < np.ptp(rows) < 0.9 * 256
+    assert rows[0] + rows[-1] == pytest.approx(255, abs=2)
+    assert np.ptp(columns) < 0.8 * np.ptp(rows)
+    assert levels[2, 2, 3] == levels[-3, 2, 3] == 0
+    middle = levels[128, 128]
+    assert middle[3] == 255
+    assert middle[0] > middle[1] > middle[2]
 
 
 @every_suffix

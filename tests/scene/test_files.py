@@ -311,7 +311,7 @@ def test_damaged_meshes(tmp_path: Path, name: str, content: bytes | None) -> Non
 def test_missing_and_unknown_mesh_files(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"shapes\.0\.file: there is no file .*none\.stl"):
         read_scene(mesh_scene(tmp_path, "none.stl"))
-    with pytest.raises(InputError, match=r"use a file ending in \.stl or \.obj"):
+    with pytest.raises(InputError, match=r"use a file ending in \.stl, \.obj, \.ply, \.3mf"):
         read_scene(mesh_scene(tmp_path, "cube.step"))
     description = parse({"camera": {"type": "shadow", "cube_width": 1}, "shapes": [_mesh_shape("a.stl")]})
     with pytest.raises(InputError, match=r"shapes\.0\.file: the mesh a\.stl was not given"):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy import ndimage
+from scipy.spatial import ConvexHull
 
 from lightcube.errors import InputError
 from lightcube.kernels import carving as kernels
@@ -14,6 +15,8 @@ from lightcube.optics.grid import Grid
 from lightcube.solids import carving, projections
 from lightcube.solids.carving import carve
 from lightcube.solids.certificate import certify
+from lightcube.solids.filling import held_by
+from lightcube.solids.mesh import Mesh
 from lightcube.solids.shape import Shape, hull
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.walls import walls
@@ -135,8 +138,8 @@ def test_a_drain_that_would_show_is_not_made() -> None:
     field = carve(whole, "shell", wall_mm=3.0, drain_mm=0).field.copy()
     top = int(np.flatnonzero((field < 0).any(axis=(1, 2))).max())
     field[top - 1 :] = np.abs(field[top - 1 :])  # its ceiling is off: the cavity is open, and gets nothing
-    open_above = replace(whole, field=locked(field))
-    assert np.array_equal(carving._drained(open_above.field, open_above, 1.5), field)
+    open_above, free = replace(whole, field=locked(field)), np.ones(field.shape, np.bool_)
+    assert np.array_equal(carving._drained(open_above.field, open_above, 1.5, free), field)
 
 
 @pytest.mark.parametrize(
@@ -150,3 +153,110 @@ def test_a_drain_that_would_show_is_not_made() -> None:
 def test_what_cannot_be_carved_is_said(given: dict[str, object], said: str) -> None:
     with pytest.raises(InputError, match=said):
         carve(block(), **given)  # type: ignore[arg-type]
+
+
+def same_shadows(one: Shape, other: Shape) -> bool:
+    return all(map(np.array_equal, seen(one.inside), seen(other.inside)))
+
+
+@compiled_only
+@pytest.mark.parametrize("how", ["shell", "lace"])
+def test_only_what_is_under_the_brush_is_taken(how: carving.Carving) -> None:
+    whole = block()
+    brush = np.zeros(whole.grid.shape, np.bool_)
+    brush[:, :, :11] = True
+    made = carve(whole, how, deep=1, wall_mm=3.0, where=brush)
+    taken = whole.inside & ~made.inside
+    assert np.any(taken)
+    assert not np.any(taken & ~brush)
+    assert same_shadows(made, whole)
+    assert pieces(made.inside) == 1
+    assert made.mesh.is_watertight
+    assert not np.any(taken & ~carve(whole, how, deep=1, wall_mm=3.0).inside & made.inside)
+
+
+def test_a_brush_around_a_core_is_refused() -> None:
+    whole = block()
+    brush = whole.inside.copy()
+    brush[6:8, 8:10, 9:13] = False
+    with pytest.raises(InputError, match="the brush would leave something loose in a cavity"):
+        carve(whole, "shell", wall_mm=1.5, drain_mm=0, where=brush)
+
+
+@compiled_only
+def test_a_ray_gives_what_it_does_not_need_and_no_other_does() -> None:
+    whole = block()
+    rays = [(0, 6, 8), (2, 9, 11)]
+    made = carve(whole, "none", deep=2, rays=rays)
+    taken = whole.inside & ~made.inside
+    front, top = np.zeros((2, *whole.grid.shape), np.bool_)
+    front[whole.grid.shape[0] - 1 - 6, :, 8] = True  # rows from above
+    top[:, whole.grid.shape[1] - 1 - 9, 11] = True
+    assert not np.any(taken & ~(front | top))
+    assert (made.inside & front).sum() == 2
+    assert same_shadows(made, whole)
+    assert pieces(made.inside) == 1
+
+
+@compiled_only
+def test_what_was_taken_can_be_given_back() -> None:
+    whole = block()
+    lace = carve(whole, "lace", deep=1)
+    again = carve(lace, "none", anew=True)
+    assert np.array_equal(again.inside, whole.inside)
+    assert np.array_equal(carve(lace, "lace", deep=3, anew=True).inside, carve(whole, "lace", deep=3).inside)
+
+
+@compiled_only
+def test_what_stands_outside_of_the_hull_stays() -> None:
+    """A base that no silhouette knows of: no lace takes of it, and giving back keeps it."""
+    whole = block()
+    field = whole.field.copy()
+    field[:3, 4:14, 4:18] = np.where(field[:3, 4:14, 4:18] < 0, field[:3, 4:14, 4:18], np.float32(-0.5))
+    standing = replace(whole, field=locked(field))
+    base = standing.inside & ~whole.inside
+    assert np.any(base)
+    lace = carve(standing, "lace", deep=1)
+    assert np.all(lace.inside[base])
+    assert np.array_equal(carve(lace, "none", anew=True).inside, standing.inside)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"how": "none"}, "nothing is to be taken out"),
+        ({"how": "lace", "where": np.ones((2, 3, 4), bool)}, "a brush has shape"),
+        ({"how": "none", "rays": [(3, 0, 0)]}, "there is no picture 3 among 3"),
+        ({"how": "none", "rays": [(-1, 0, 0)]}, "there is no picture -1 among 3"),
+        ({"how": "none", "rays": [(1, 14, 0)]}, "picture S has 14 x 18 pixels, counted from 0, and none in row 14"),
+    ],
+)
+def test_what_a_brush_or_a_ray_cannot_be_is_said(given: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        carve(block(), **given)  # type: ignore[arg-type]
+
+
+def ball(radius: float, middle: tuple[float, float, float]) -> Mesh:
+    """A sphere of triangles."""
+    icosahedron = np.array([(0, 1, 1.618), (0, -1, 1.618), (0, 1, -1.618), (0, -1, -1.618)])
+    corners = np.concatenate([np.roll(icosahedron, shift, axis=1) for shift in range(3)])
+    convex = ConvexHull(corners)
+    faces = convex.simplices.copy()
+    a, b, c = corners[faces.T]
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), convex.equations[:, :3]) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    return Mesh(locked(radius * corners / np.linalg.norm(corners[0]) + middle), locked(faces.astype(np.int64)))
+
+
+def test_voxels_in_a_mesh_are_those_whose_middles_it_holds() -> None:
+    grid, mesh = Grid((15, 17, 21), 2.0), ball(11.0, (3.0, -2.0, 1.5))
+    places = [(np.arange(count) - (count - 1) / 2) * 2.0 for count in grid.shape]
+    points = np.stack(np.meshgrid(*places, indexing="ij"), axis=-1)[..., ::-1]
+    sides = ConvexHull(mesh.vertices_mm).equations
+    wanted = np.all(points @ sides[:, :3].T + sides[:, 3] < 0, axis=-1)
+    assert np.array_equal(held_by(mesh, grid), wanted)
+    assert held_by(mesh, grid).sum() * 8 == pytest.approx(mesh.volume_mm3, rel=0.05)
+    turned = Mesh(mesh.vertices_mm, locked(mesh.faces[:, ::-1].copy()))
+    assert np.array_equal(held_by(turned, grid), wanted)
+    with pytest.raises(InputError, match="a mesh with 3 open or doubled edges holds nothing"):
+        held_by(Mesh(mesh.vertices_mm, locked(mesh.faces[1:].copy())), grid)

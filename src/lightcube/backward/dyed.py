@@ -92,7 +92,8 @@ def _behind(clear: Floats, wanted: Wanted, method: Method) -> Wanted:
         return Wanted(light, wanted.weights, lighting, wanted.lamp_bounds, wanted.transfer)
     sums = mixture or Mixture.of_whole_views(len(clear), 1)
     reaches = 1 - sums.shadow * (1 - clear)
-    behind = Mixture(sums.starts, sums.share, sums.light * reaches, sums.shadow * clear / reaches)
+    shadow = np.minimum(sums.shadow * clear / reaches, 1)  # rounding may leave more
+    behind = Mixture(sums.starts, sums.share, sums.light * reaches, shadow)
     return Wanted(wanted.light, wanted.weights, Lighting(lighting.lamp, behind), wanted.lamp_bounds, wanted.transfer)
 
 

@@ -158,8 +158,8 @@ def _dyes_memory(job: Job, beams: int) -> int:
         return 0
     share = max(part.columns for part in job.parts) / sum(part.columns for part in job.parts)
     size, more = np.dtype(job.recipe.dtype).itemsize, job.kinds - job.channels
-    unknowns = (more * (job.recipe.solver.arrays[0] + _OF_SUMS[0]) + 2 * job.kinds + job.channels) * size
-    pixels = job.channels * (2 * size + (_MIXED if np.any(job.dyes.base) else 0))
+    unknowns = (more * job.recipe.solver.arrays[0] + job.kinds + job.channels) * size
+    pixels = job.channels * (size + (_MIXED if np.any(job.dyes.base) else 0))
     return int(share * (unknowns * math.prod(job.grid.shape) + pixels * beams))
 
 

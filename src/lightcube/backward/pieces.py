@@ -155,26 +155,23 @@ def start_of(job: Job, store: Store, level: int, part: Part) -> Floats | None:
 
     What the job was given, or the next smaller cube, enlarged, which is finished; films start at random.
     """
+    own = job.kinds_of(part)
     if level == 0 and job.start is not None:
-        own = job.kinds_of(part)
         return np.clip(job.start[own, part.slices], 0, job.most[own])
     if isinstance(job.grid, Stack):
-        own = job.kinds_of(part)
         return np.minimum(_at_random(job)[own], job.most[own])
     if level >= job.levels:
         return None
     whole = _finished(job, store, level_name(level + 1))[VOXELS]
-    return enlarged(whole[job.kinds_of(part)], coarse_shape(job.grid.shape, level), part.slices)
+    return enlarged(whole[own], coarse_shape(job.grid.shape, level), part.slices)
 
 
 def _at_random(job: Job) -> Floats:
     """Films of random cells: clear ones are alike within a pixel, and a solver could never tell them apart."""
     shape = job.kinds, *job.grid.shape
+    strongest = 1.0 if job.dyes is None else job.dyes.extinction.max(axis=1)[:, None, None, None]
     absorbance = _RANDOM * np.random.default_rng(job.recipe.seed).random(shape, np.float32)
-    extinction = absorbance / np.float32(job.grid.voxel_mm)
-    if job.dyes is None:
-        return extinction
-    return extinction / job.dyes.extinction.max(axis=1).astype(np.float32)[:, None, None, None]
+    return (absorbance / (job.grid.voxel_mm * strongest)).astype(np.float32)
 
 
 def known(job: Job, store: Store, name: str) -> Arrays | None:

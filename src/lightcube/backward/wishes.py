@@ -17,7 +17,7 @@ from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Counts, Reals
 from lightcube.optics.grid import Grid, dense_step_deg
-from lightcube.optics.light import Light, bundle, finer, is_exact, is_in_slices
+from lightcube.optics.light import Light, bundle, finer, is_exact, is_in_slices, seeds
 from lightcube.optics.moves import misplaced
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
@@ -28,8 +28,8 @@ MAT = Light(3, 3)
 BEYOND = Light.thin()
 #: At so many places of films that lie off pictures are asked for: 10 are no better (measured).
 MISPLACED = 4
-#: The middle of a pixel, about which means are taken that are exact.
-_MIDDLE = np.zeros((1, 4))
+#: The middle of a pixel, about which means are taken that are exact, and points of a lamp's disc for them.
+_MIDDLE, _DISC = np.zeros((1, 4)), 7
 #: The points of a pixel at which smoothness is asked for.
 SMOOTH = Light(2, 2)
 
@@ -122,7 +122,7 @@ def _assembled(rig: Rig, recipe: Recipe, grid: Grid) -> Rig:
 def _wishes(rig: Rig, grid: Grid, recipe: Recipe) -> list[Wish]:
     """What a recipe asks for, the picture itself first; `rig` has the pictures with their mats."""
     if is_exact(rig, grid):
-        return [Wish(_MIDDLE, _MIDDLE, picture=1.0, mat=1.0)]
+        return [Wish(_MIDDLE, np.hstack([np.zeros((_DISC, 2)), seeds(_DISC)]), picture=1.0, mat=1.0)]
     light, in_slices = finer(recipe.beams, rig, grid), is_in_slices(rig, grid)
     own, coarse, single = (bundle(each, in_slices=in_slices) for each in (light, MAT, SMOOTH))
     apart = recipe.mat is not None and len(own[0]) > len(coarse[0])

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import PurePath
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,17 @@ def number_or_auto(text: str, option: str) -> float | None:
         return None if text.strip() == "auto" else float(text)
     except ValueError:
         raise InputError(f"{option} {text}: give a number, or auto") from None
+
+
+def base_mm(text: str) -> float | Literal["auto", "none"]:
+    """How thick a base is, or that there is none, or one where it is needed."""
+    said = text.strip()
+    if said in ("auto", "none"):
+        return said  # type: ignore[return-value]
+    thick_mm = number_or_auto(text, "--base")
+    if thick_mm is None or not 0 < thick_mm < 1e6:
+        raise InputError(f"--base {text}: give how thick it is in mm, auto or none")
+    return thick_mm
 
 
 def whole_numbers(text: str, separator: str, option: str, count: int) -> tuple[int, ...]:

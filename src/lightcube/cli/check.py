@@ -10,7 +10,7 @@ from lightcube.cli.fields import one_by_one
 from lightcube.cli.hull import INVERT, SOURCES, THRESHOLD, WALLS
 from lightcube.cli.options import JSON, OVERWRITE, VERBOSE, threaded
 from lightcube.errors import InputError
-from lightcube.verbs import checking, hulls, solving
+from lightcube.verbs import checking, hull_words, hulls, solving
 from lightcube.verbs.options import Options
 
 
@@ -98,13 +98,13 @@ def _check_opaque(
     with telling("checking", as_json=False):  # what is printed is one document
         wanted = hulls.read(pictures, options, how)
         found = building.check(wanted, is_walls=how.is_walls)
-    doubts = hulls.doubts(wanted)
+    doubts = hull_words.doubts(wanted)
     if folder is not None:
         folder.write(found.maps(), names=list(wanted.silhouettes.names), scale=4)
     if as_json:
         json_document({**found.facts, "doubts": doubts})
     else:
-        for line in [*hulls.in_short(wanted), *(f"note: {each}" for each in doubts)]:
+        for line in [*hull_words.in_short(wanted), *(f"note: {each}" for each in doubts)]:
             err.print(line)
         for line in building.lines(found):
             out.print(line)

@@ -46,6 +46,15 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ),
         ("lightcube hull room.toml -o a.shape.zarr", "any lamps and screens, kept with its silhouettes"),
     ],
+    "carve": [
+        ("lightcube carve word.shape.zarr -o lace.stl --carve lace", "a lace of what was made as a whole"),
+        (
+            "lightcube carve word.shape.zarr -o less.shape.zarr --carve lace --where ball.stl",
+            "only where a mesh of yours lies over it",
+        ),
+        ("lightcube carve word.shape.zarr -o less.stl --ray front,40,52", "what one ray of light does not need"),
+        ("lightcube carve less.shape.zarr -o word.stl --undo-to hull", "the whole of it again"),
+    ],
     "trace": [
         ("lightcube trace carousel -o pictures", "a scene that comes with lightcube, as a folder of PNGs"),
         ("lightcube trace scene.toml -o film.mp4 --count 64", "a scene of your own, as a movie"),
@@ -59,6 +68,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube score cube.zarr photos --sheet sheet.png", "wanted, shown and the difference, as one picture"),
         ("lightcube score print cube.zarr", "what a folder of exported slices would cast"),
         ("lightcube score cube.zarr --robust", "what is left where lamp and wall are a little off"),
+        ("lightcube score word.stl front.png side.png top.png --walls", "what any mesh casts beside pictures"),
     ],
     "relief": [
         ("lightcube relief a.jpg b.jpg c.jpg d.jpg -o plate.stl --sheet sheet.png", "four photographs in one plate"),
@@ -68,6 +78,12 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
     "materials": [
         ("lightcube materials", "those that come along"),
         ("lightcube materials show polyjet", "what its resins absorb, and which colours they make"),
+        ("lightcube materials import pixestl:palette.json -o pla.toml --only Cyan,Magenta,Yellow", "filaments"),
+    ],
+    "calibrate": [
+        ("lightcube calibrate wedge -o wedge.png", "a page to print"),
+        ("lightcube calibrate fit photo.jpg -o inkjet.toml", "its photograph, and what the inks are"),
+        ("lightcube calibrate fit densities.csv -o inkjet.toml", "the same of densities that were typed"),
     ],
     "export": [
         ("lightcube export volume cube.zarr -o cube.vdb --unit m", "for Blender, whose unit is a metre"),

@@ -17,7 +17,8 @@ from lightcube.solids.carving import Carving
 from lightcube.solids.printing import stands
 from lightcube.solids.reach import count_pieces
 from lightcube.solids.repair import Way
-from lightcube.verbs import hulls, making, words
+from lightcube.solids.shape import Shape
+from lightcube.verbs import hull_words, hulls, making, words
 from lightcube.verbs.options import Options
 
 SOURCES = Annotated[
@@ -29,8 +30,8 @@ SOURCES = Annotated[
 OUTS = typer.Option(
     "-o",
     "--out",
-    help="Where to write: a mesh to print (.stl, .3mf, .obj, .ply), or all of the shape (.shape.zarr). It may be said "
-    "several times.",
+    help="Where to write: a mesh to print (.stl, .3mf, .obj, .ply), or all of the shape (.shape.zarr; in one file "
+    ".shape.zarr.zip). It may be said several times.",
     rich_help_panel="Output",
 )
 WALLS = typer.Option("--walls", help="Three pictures: front, side and top.", rich_help_panel="Pictures")
@@ -48,15 +49,22 @@ REPAIR = typer.Option(
     "none of it; auto trims what hardly shows, else bends.",
     rich_help_panel="Pictures",
 )
-KEEP = typer.Option(help="A picture, by its name, that stays as it is if it can.", rich_help_panel="Pictures")
+KEEP = typer.Option(
+    help="NAME or NAME=MASK: a picture that stays as it is if it can, or the part of it that is light in a mask. "
+    "It may be said several times.",
+    rich_help_panel="Pictures",
+)
 WALL = typer.Option(
     help="How thick walls are at least, mm, where pictures are bent or a shell is made.", rich_help_panel="Material"
 )
-CARVE = typer.Option(
-    help="Take out what no shadow needs: shell or lace.  [default: nothing]", rich_help_panel="Material"
-)
+CARVE = typer.Option(help="Take out what no shadow needs: shell or lace.", rich_help_panel="Material")
 DEEP = typer.Option(help="Voxels that a lace keeps on each ray of light.", min=1, rich_help_panel="Material")
 DRAIN = typer.Option(help="Width of the holes of a shell, mm; 0 = none.", rich_help_panel="Material")
+BASE = typer.Option(
+    help="A base below the pictures' lowest row, which none of them shows: its thickness, mm; none; or auto, where it "
+    "would tip over.",
+    rich_help_panel="Material",
+)
 OVERLAY = typer.Option(help="Draw what is cast over what was given (PNG).", rich_help_panel="Output")
 #: Steps that are told of: to have read, to have made, to have written.
 _READ, _MADE, _WRITTEN, _STEPS = 1, 17, 19, 20
@@ -72,7 +80,7 @@ def hull(
     placement: Annotated[
         hulls.Place,
         typer.Option(
-            help="With --walls: pictures as given, or on other walls or mirrored, as most of them can be cast.",
+            help="With --walls: pictures as given, or another one on top, turned, as most of them can be cast.",
             rich_help_panel="Pictures",
         ),
     ] = "given",
@@ -86,9 +94,10 @@ def hull(
     repair: Annotated[Way, REPAIR] = "auto",
     keep: Annotated[list[str] | None, KEEP] = None,
     wall: Annotated[float, WALL] = 1.2,
-    carve: Annotated[Carving | None, CARVE] = None,
+    carve: Annotated[Carving, CARVE] = "none",
     keep_deep: Annotated[int, DEEP] = 3,
     drain: Annotated[float, DRAIN] = 3.0,
+    base: Annotated[str, BASE] = "auto",
     overlay: Annotated[str | None, OVERLAY] = None,
     most: Annotated[int | None, flag("most")] = None,
     every: Annotated[int | None, flag("every")] = None,
@@ -110,7 +119,7 @@ def hull(
     overlay_file = None if overlay is None else io.Output(overlay, "picture", overwrite)
     if overlay_file is not None:
         overlay_file.check()
-    how = making.Making(repair, keep or (), wall, carve, keep_deep, drain)
+    how = making.Making(repair, wall, carve, keep_deep, drain, arguments.base_mm(base))
     angles = None if angles_deg is None else arguments.numbers(angles_deg, "--angles-deg")
     said: dict[str, Any] = {"most": most, "every": every, "n": n, "size_mm": size_mm, "span_deg": span_deg}
     options = Options(**said, elevation_deg=elevation_deg, angles_deg=angles)
@@ -120,10 +129,10 @@ def hull(
         tell(Progress(_READ + (_MADE - _READ) * done // of, _STEPS))
 
     with telling("hull", as_json=as_json) as tell:
-        wanted = hulls.read(pictures, options, hulls.Cutting(threshold, invert, walls, fit, placement))
-        doubts = hulls.doubts(wanted)
+        wanted = hulls.read(pictures, options, hulls.Cutting(threshold, invert, walls, fit, placement, keep or ()))
+        doubts = hull_words.doubts(wanted)
         if not as_json:
-            for line in [*hulls.in_short(wanted), *(f"note: {each}" for each in doubts)]:
+            for line in [*hull_words.in_short(wanted), *(f"note: {each}" for each in doubts)]:
                 err.print(line)
         if not dry_run:
             tell(Progress(_READ, _STEPS))
@@ -144,7 +153,13 @@ def hull(
     if as_json:
         mesh = shape.mesh
         facts: dict[str, Any] = {"volume_mm3": mesh.volume_mm3, "faces": len(mesh), "bad_edges": mesh.bad_edges}
-        facts |= {"pieces": pieces, "stands": stands(mesh), "repair": making.facts(made)}
+        facts |= {
+            "pieces": pieces,
+            "stands": stands(mesh),
+            "base_mm": shape.provenance["base_mm"],
+            "repair": making.facts(made),
+            "thin": _thin(shape),
+        }
         json_line(
             "result",
             out=outputs[0],
@@ -157,8 +172,16 @@ def hull(
         )
         return
     out.print(f"{' and '.join(outputs)} {'is' if len(outputs) == 1 else 'are'} ready after {words.duration(seconds)}")
-    for line in [*making.in_words(made, is_placed=bool(wanted.placed)), *hulls.results(shape, found, pieces)]:
+    for line in [*making.in_words(made, is_placed=bool(wanted.placed)), *hull_words.results(shape, found, pieces)]:
         out.print(line)
     kept = next((output for output in outputs if io.is_shape(output)), None)
     look = "add -o NAME.shape.zarr, and lightcube view" if kept is None else f"lightcube view {kept}"
     out.print(f"to look at it between its walls: {look}" + ("" if kept else " shows that"))
+
+
+def _thin(shape: Shape) -> dict[str, Any] | None:
+    """Where a shape is thinner than its walls are to be, for JSON."""
+    found = hull_words.thin_of(shape)
+    if found is None:
+        return None
+    return {"share": found.share, "places": [{"at_mm": at, "volume_mm3": volume} for at, volume in found.places_mm]}

@@ -17,17 +17,23 @@ COMMANDS: Mapping[str, str] = {
     ),
     "solve": "Compute the cube whose shadows are the pictures; what was stopped or killed goes on where it was.",
     "hull": "Carve the largest solid whose shadows stay within silhouettes: a mesh to print, or a shape, by suffix.",
+    "carve": "Take material out of a finished shape, all over or where a brush or a ray says; its shadows stay.",
     "relief": "Make one relief that shows a picture under each of up to four low lamps.",
     "play": "Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.",
-    "score": "Compare what a cube, a shape or a relief really casts with what was wanted.",
-    "view": "Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail.",
+    "score": "Compare what a cube, a shape, a relief or a mesh really casts with what was wanted.",
+    "view": (
+        "Write a page in which the cube, or a relief's lamp, is turned by hand: one HTML file, to keep or to mail."
+    ),
     "report": (
         "Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, how it was made."
     ),
     "draw": "Draw a stage from above and from the side, with its beams, or the room of a cube in perspective.",
     "info": "Say what is in the file of a cube, a shape or a relief.",
     "export": "Write a cube for printers, lasers and other programs, with all that is to be known beside it.",
-    "materials": "Say what inks, resins and filaments there are, and what each absorbs.",
+    "materials": (
+        "Say what inks, resins and filaments there are, and what each absorbs; import those of other programs."
+    ),
+    "calibrate": "Print a page of patches, photograph it, and know your own inks.",
     "publish": "Make a cube of what there is of an unfinished one, and say whether it is whole.",
     "bench": "Measure this machine and what lightcube makes of it, beside others: tables in Markdown.",
     "demo": "Make three small cubes to be turned by hand, and one page that shows them, into a folder.",

@@ -6,7 +6,7 @@ from typing import Any
 
 from lightcube.backward.solution import Solution
 from lightcube.cli.console import out
-from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.disturbance import SAID
 from lightcube.optics.rig import Rig
 from lightcube.optics.told import remembered
 from lightcube.scoring.metrics import grain_word
@@ -74,4 +74,5 @@ def scored(scores: dict[str, Any], rig: Rig) -> None:
     out.print(f"{thin}{_beside(scores)}")
     for name, left in scores.get("robust", {}).items():
         figures = f"{left['psnr_mean']:6.2f} dB (worst {left['psnr_min']:5.2f})"
-        out.print(f"  {figures}  {DISTURBANCES[name]}")
+        relit = f", relit {left['relit_mean']:5.2f}" if "relit_mean" in left else ""
+        out.print(f"  {figures}{relit}  {SAID[name]}")

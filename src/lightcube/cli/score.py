@@ -1,13 +1,16 @@
 """The command `lightcube score`."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from lightcube import io
-from lightcube.cli import printing
+from lightcube.cli import arguments, printing
 from lightcube.cli.console import json_document, out, telling
+from lightcube.cli.fields import flag
+from lightcube.cli.hull import INVERT, THRESHOLD, WALLS
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.drawing.relief_sheet import relief_sheet
 from lightcube.errors import InputError
@@ -16,17 +19,32 @@ from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
 from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.reach import count_pieces
-from lightcube.verbs import exporting, hulls, reliefs, scoring
+from lightcube.verbs import exporting, hull_words, hulls, meshes, reliefs, scoring
+from lightcube.verbs.options import Options
 from lightcube.verbs.refitting import wanted_of
 
 
 @threaded
 def score(
-    cube: Annotated[str, typer.Argument(help="A cube, a shape, a relief, or an exported volume or folder of slices.")],
+    cube: Annotated[
+        str,
+        typer.Argument(
+            help="A cube, a shape, a relief, a mesh (.stl, .3mf, .obj, .ply), or an exported volume or folder of slices.",
+        ),
+    ],
     pictures: Annotated[
-        str | None,
-        typer.Argument(help="The pictures it was made from; default its own targets.  Of an export, or its cube."),
+        list[str] | None,
+        typer.Argument(
+            help="The pictures it was made from; default its own targets. Of an export, or its cube. A mesh has none: "
+            "give what hull takes, or a shape.",
+        ),
     ] = None,
+    walls: Annotated[bool, WALLS] = False,
+    threshold: Annotated[float | None, THRESHOLD] = None,
+    invert: Annotated[bool | None, INVERT] = None,
+    elevation_deg: Annotated[float | None, flag("elevation_deg")] = None,
+    span_deg: Annotated[float | None, flag("span_deg")] = None,
+    angles_deg: Annotated[str | None, flag("angles_deg")] = None,
     sheet: Annotated[
         str | None, typer.Option(help="Draw a contact sheet: shown beside wanted (PNG, WebP or JPEG).")
     ] = None,
@@ -41,7 +59,24 @@ def score(
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Compare what a cube, a shape or a relief really casts with what was wanted."""
+    """Compare what a cube, a shape, a relief or a mesh really casts with what was wanted."""
+    standing = Options(
+        elevation_deg=elevation_deg,
+        span_deg=span_deg,
+        angles_deg=None if angles_deg is None else arguments.numbers(angles_deg, "--angles-deg"),
+    )
+    how = hulls.Cutting(threshold, invert, walls)
+    of_cubes = {"--sheet": sheet, "--between": between_pictures, "--robust": robust, "--plot": plot}
+    if io.is_mesh(cube):
+        _refuse(cube, "a mesh", of_cubes)
+        _score_mesh(cube, pictures or [], standing, how, as_json=as_json)
+        return
+    if standing != Options() or how != hulls.Cutting():
+        raise InputError(
+            f"{cube} knows how its pictures were cut out and where they stand: say that of meshes, and leave it out"
+        )
+    if pictures is not None and len(pictures) > 1:
+        raise InputError("several pictures are for meshes: put all of them into one folder, and give that")
     sheet_file = None if sheet is None else io.Output(sheet, "picture", overwrite)
     plot_file = None if plot is None else io.Output(plot, "plot", overwrite)
     if plot is not None and sheet is not None and Path(plot) == Path(sheet):
@@ -50,21 +85,20 @@ def score(
         if file is not None:
             file.check()
     if io.is_shape(cube):
-        given = {"--sheet": sheet, "--between": between_pictures, "--robust": robust, "--plot": plot}
-        said = [name for name, value in {"pictures": pictures, **given}.items() if value]
-        _score_shape(cube, said, as_json=as_json)
+        _refuse(cube, "a shape", {"pictures": pictures, **of_cubes})
+        _score_shape(cube, as_json=as_json)
         return
     if io.is_relief(cube):
-        _score_relief(cube, sheet_file, off=robust, refused=pictures or plot or between_pictures, as_json=as_json)
+        _score_relief(cube, sheet_file, off=robust, refused=bool(pictures or plot or between_pictures), as_json=as_json)
         return
-    is_file = is_exported(cube)
+    is_file, given = is_exported(cube), pictures[0] if pictures else None
     if force and not is_file:
         raise InputError("--force is for files that lightcube export wrote: leave it out")
     if is_file:
-        loaded, wanted = exporting.measured(cube, pictures, force=force)
+        loaded, wanted = exporting.measured(cube, given, force=force)
     else:
         loaded = load(cube)
-        wanted = wanted_of(loaded, pictures)
+        wanted = wanted_of(loaded, given)
     with telling("measuring", as_json=False) as tell:  # what is printed is one document
         found = scoring.score(loaded, wanted, tell, between=between_pictures or plot is not None, off=robust)
     drawn: list[tuple[io.Output, Thing]] = []
@@ -83,20 +117,38 @@ def score(
         out.print(line)
 
 
-def _score_shape(path: str, given: list[str], *, as_json: bool) -> None:
+def _refuse(path: str, what: str, given: Mapping[str, object]) -> None:
+    """Raise `InputError` where something is said that is for cubes."""
+    said = next((name for name, value in given.items() if value), None)
+    if said is not None:
+        raise InputError(f"{path} is {what}, and {said} is for cubes: leave it out")
+
+
+def _score_mesh(path: str, sources: list[str], options: Options, how: hulls.Cutting, *, as_json: bool) -> None:
+    """Print how far the shadows of a mesh are silhouettes."""
+    if not sources:
+        raise InputError(f"{path} is a mesh and keeps no pictures: give them after it, or the shape it was made of")
+    silhouettes, grid = meshes.read(sources, options, how)
+    found = meshes.score(path, silhouettes, grid)
+    if as_json:
+        json_document(found.facts)
+        return
+    for line in found.lines:
+        out.print(line)
+
+
+def _score_shape(path: str, *, as_json: bool) -> None:
     """Print how far the shadows of a shape's mesh are its silhouettes."""
-    if given:
-        raise InputError(f"{path} is a shape, and {given[0]} is for cubes: leave it out")
     shape = io.read_shape(path)
     found, pieces = hulls.certificate(path, shape), count_pieces(shape.inside)
     if as_json:
         json_document({"pieces": pieces, "bad_edges": shape.mesh.bad_edges, **found.facts})
         return
-    for line in hulls.results(shape, found, pieces):
+    for line in hull_words.results(shape, found, pieces):
         out.print(line)
 
 
-def _score_relief(path: str, sheet: io.Output | None, *, off: bool, refused: str | bool | None, as_json: bool) -> None:
+def _score_relief(path: str, sheet: io.Output | None, *, off: bool, refused: bool, as_json: bool) -> None:
     """Compare what a relief's lamps show with the pictures that it keeps."""
     if refused:
         raise InputError(

@@ -20,6 +20,7 @@ from lightcube.forward.turning import turn
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Beams
+from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import Transfer
 
 Angles = NDArray[np.float64]
@@ -212,7 +213,7 @@ def filmed(
 def _resting(show: Show, course: Course, stops: int, style: Style, cube: Cube) -> Film:
     """The film of a lamp that comes and goes, from the middle of its first rest on."""
     begun = shows.begun(show, course.fade + course.rest // 2)
-    return Film(begun, style.fps, cube.transfer, _rests(stops, course))
+    return Film(begun, style.fps, cube.transfer, _rests(stops, course, cube))
 
 
 def styled(cube: Cube, show: Show, style: Style, angles_deg: Angles) -> Film:
@@ -246,10 +247,12 @@ def _flows(share: float) -> str:
     )
 
 
-def _rests(stops: int, course: Course) -> str:
+def _rests(stops: int, course: Course, cube: Cube) -> str:
     rest_s, all_s = course.rest / course.fps, stops * course.seconds
-    many = f"at each of {stops} stops" if stops > 1 else "on the one stop"
-    dark = ", and the table turns in the dark to the next" if stops > 1 else ""
+    what = "pictures" if isinstance(cube.grid, Stack) else "stops"
+    many = f"at each of {stops} {what}" if stops > 1 else "on the one stop"
+    next_one = "the next picture is made ready" if isinstance(cube.grid, Stack) else "the table turns"
+    dark = f", and {next_one} in the dark{' to the next' * (not isinstance(cube.grid, Stack))}" if stops > 1 else ""
     return (
         f"{all_s:.0f} s: {many} the lamp fades in, rests for {rest_s:.2g} s and fades out, as a wall shows it under a "
         f"lamp that is dimmed{dark}"

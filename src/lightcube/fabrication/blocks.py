@@ -75,8 +75,6 @@ class Blocks:
     def seen(self, extinction: Reals) -> Reals:
         """Extinction ``(channel, y, x)`` of a layer of blocks of droplets ``(channel, z, y, x)``, 1/mm."""
         high, deep, wide = self.each
-        if (high, deep, wide) == (1, 1, 1):
-            return extinction[:, 0].repeat(self.repeats, axis=1)
         channels, _, rows, columns = extinction.shape
         parts = extinction.reshape(channels, high, rows // deep, deep, columns // wide, wide)
         x, y, z = self.sides_mm
@@ -84,4 +82,4 @@ class Blocks:
         for axis, count, side in ((1, high, z), (3, deep, y), (5, wide, x)):
             along = parts.mean(axis=axis, keepdims=True) * (count * side)
             found -= np.log(np.exp(-along).mean(axis=(1, 3, 5))) / (count * side) / 3
-        return found
+        return found.repeat(self.repeats, axis=1)

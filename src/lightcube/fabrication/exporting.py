@@ -24,12 +24,14 @@ from lightcube.fabrication.schedule import Schedule
 from lightcube.fabrication.shells import Shells
 from lightcube.fabrication.sidecar import Kind
 from lightcube.fabrication.volumes import VolumeFile
+from lightcube.forward.casting import cast
 from lightcube.io._files import check_free, suffix_entry, written_whole
 from lightcube.io._places import Place, place
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.pictures.fitting import targets_of
-from lightcube.scoring.metrics import score as scored
+from lightcube.pictures.targets import Targets
+from lightcube.scoring.metrics import score_pictures
 
 #: What can be made of a cube, and how: the table.
 KINDS: Mapping[Kind, type[How]] = {
@@ -199,12 +201,17 @@ def _predicted(
     held = sidecar.cube_of(path, said, volume, grid or cube.grid)
     found: dict[str, float] = {}
     if planned.is_relit:
-        as_it_was = scored(held, targets)
+        as_it_was = _scored(held, targets)
         found = {f"{name}_of_old_lamps": as_it_was[name] for name in ("psnr_mean", "psnr_min")}
         held = lamps.relit(held, targets)
-    scores = scored(held, targets)
+    scores = _scored(held, targets)
     own = cube.scores.get("psnr_mean")
     found |= {name: scores[name] for name in ("psnr_mean", "psnr_min")}
     if isinstance(own, float):
         found["psnr_mean_of_cube"] = own
     return found, {**said, "lamp_powers": held.powers.tolist()}
+
+
+def _scored(cube: Cube, targets: Targets) -> dict[str, Any]:
+    """What `score` says of pictures; grain and thin beams, which take most of its time, are left out."""
+    return score_pictures(cast(cube), targets)

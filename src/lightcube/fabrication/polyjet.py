@@ -17,7 +17,7 @@ from lightcube.fabrication.planned import AXES, Advance, File, Planned, named
 from lightcube.fabrication.points import check_seed
 from lightcube.fabrication.printers import MODES, Mode, Printing
 from lightcube.fabrication.resins import Mixed, mixed
-from lightcube.fabrication.slices import MOST_VOXELS, Held, Look, palette_of, write_slices
+from lightcube.fabrication.slices import Held, Look, most_voxels, palette_of, write_slices
 from lightcube.io._files import Replaceable
 from lightcube.io._places import Place
 from lightcube.optics.arrays import Volume
@@ -143,7 +143,7 @@ def _check(used: Sequence[int], droplets: Droplets, printing: Printing, mode: Mo
 def _facts(made: Mixed, droplets: Droplets, printing: Printing, how: PolyJet, palette: Any) -> dict[str, Any]:
     """All that is known of slices before they are made."""
     count, sides = droplets.shape[::-1], printing.sides_mm
-    blocks = Blocks.of(droplets.shape, sides, MOST_VOXELS)
+    blocks = Blocks.of(droplets.shape, sides, most_voxels())
     parts = made.amounts.mean(axis=(1, 2, 3), dtype=np.float64)
     names = (CLEAR, *made.dyes.names)
     return {

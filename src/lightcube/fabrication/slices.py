@@ -18,14 +18,20 @@ from PIL import Image
 from lightcube.errors import InputError
 from lightcube.fabrication.blocks import Blocks
 from lightcube.fabrication.droplets import Droplets, Labels
+from lightcube.io._bounds import memory
 from lightcube.optics.arrays import Reals, Volume, locked
 from lightcube.optics.grid import Grid
 from lightcube.wording import counted
 
-#: Voxels that slices are read into, at most: with all that casting takes, two thirds of a GiB.
-MOST_VOXELS = 1 << 24
+#: What is needed of memory for each voxel that slices are read into, bytes, until it is scored the other way round too.
+_PER_VOXEL = 48
 #: The colour of the clear material in slices.
 CLEAR = (224, 240, 255)
+
+
+def most_voxels() -> int:
+    """Voxels that slices are read into, at most, so that all that is done with them takes half of the memory."""
+    return memory() // 2 // _PER_VOXEL
 
 
 def name_of(prefix: str, number: int) -> str:
@@ -125,7 +131,7 @@ class Held:
         forced
             Take the nearest colour of the palette where a slice has others, and slices that are missing for clear.
         """
-        blocks = Blocks.of(self.shape, self.sides_mm, MOST_VOXELS)
+        blocks = Blocks.of(self.shape, self.sides_mm, most_voxels())
         (below, _), *around = blocks.padding(self.shape)
         volume = np.empty((self.extinction.shape[1], *blocks.counts), np.float32)
         for layer in range(blocks.counts[0]):

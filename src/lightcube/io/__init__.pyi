@@ -3,7 +3,9 @@
 from lightcube.io._zarr import HollowCube
 from lightcube.io.cubes import bare_name, read_cube
 from lightcube.io.machine import free_memory
+from lightcube.io.masks import read_mask
 from lightcube.io.materials import material_names, read_dyes
+from lightcube.io.meshes import is_mesh, read_solid
 from lightcube.io.movies import ClippedPictures
 from lightcube.io.outputs import Output, save, write_together
 from lightcube.io.pictures import (
@@ -32,16 +34,19 @@ __all__ = [
     "bare_name",
     "free_memory",
     "is_film",
+    "is_mesh",
     "is_relief",
     "is_shape",
     "is_stage",
     "material_names",
     "read_cube",
     "read_dyes",
+    "read_mask",
     "read_pictures",
     "read_relief",
     "read_scene",
     "read_shape",
+    "read_solid",
     "read_stage",
     "read_stage_targets",
     "save",

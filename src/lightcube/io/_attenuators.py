@@ -113,6 +113,9 @@ class MoveTable(Table):
     def move(self, count: int) -> Move:
         """The same as a value, of so many films."""
         if self.film is None:
+            for key, values in (("order", self.order), ("shift_mm", self.shift_mm), ("turn_deg", self.turn_deg)):
+                if values and len(values) != count:
+                    raise InputError(f"move {self.name!r}: {key} is of {len(values)} films, and the stack has {count}")
             return Move(self.name, self.order, self.shift_mm, self.turn_deg)
         if not 1 <= self.film <= count:
             raise InputError(f"move {self.name!r}: there is no film {self.film}: the stack has {count}")

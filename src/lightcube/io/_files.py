@@ -23,6 +23,8 @@ Replaceable = Callable[[Place], bool] | None
 PARTIAL_SUFFIX = ".partial"
 #: What the names of shapes and of reliefs end with.
 SHAPE_SUFFIX, RELIEF_SUFFIX = ".shape.zarr", ".relief.zarr"
+#: And what follows where they are in one file.
+ZIP_SUFFIX = ".zip"
 
 
 def suffix_entry(path: Place, table: Mapping[str, Entry], what: str) -> Entry:

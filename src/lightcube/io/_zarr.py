@@ -101,14 +101,9 @@ def write_shape(folder: Path, shape: Shape) -> None:
 
 
 def read_shape(path: Path) -> Shape:
-    """Read a shape from a Zarr folder."""
+    """Read a shape from a Zarr folder, or from one in a zip archive."""
     missing: Missing = {}
-
-    async def read() -> Parts:
-        store, size = _folder(path)
-        return await _read(path, store, size, missing, kind=_SHAPE)
-
-    document, field, given, _ = _reading(path, read, _SHAPE)
+    document, field, given, _ = _reading(path, lambda: _read_either(path, missing, _SHAPE), _SHAPE)
     if missing:
         raise _shape_json.damaged(path, f"parts of its array {next(iter(missing))!r} are missing")
     return _shape_json.from_json(path, document, field, given)
@@ -124,14 +119,9 @@ def write_relief(folder: Path, relief: Relief) -> None:
 
 
 def read_relief(path: Path) -> Relief:
-    """Read a relief from a Zarr folder."""
+    """Read a relief from a Zarr folder, or from one in a zip archive."""
     missing: Missing = {}
-
-    async def read() -> Parts:
-        store, size = _folder(path)
-        return await _read(path, store, size, missing, kind=_RELIEF)
-
-    document, heights, wanted, _ = _reading(path, read, _RELIEF)
+    document, heights, wanted, _ = _reading(path, lambda: _read_either(path, missing, _RELIEF), _RELIEF)
     if missing or wanted is None:
         raise _relief_json.damaged(path, "parts of its arrays are missing")
     return _relief_json.from_json(path, document, heights, wanted)
@@ -155,11 +145,15 @@ def _folder(path: Path) -> tuple[LocalStore, Callable[[str], int]]:
     return LocalStore(path, read_only=True), size
 
 
-def write_zarr_zip(file: Path, cube: Cube) -> None:
-    """Write `cube` as a Zarr group in one zip archive, stored as it is: its chunks are compressed already."""
-    folder = file.with_name(file.name + ".unzipped")
-    write_zarr(folder, cube)
-    zip_folder(folder, file)
+def zipped(write: Callable[[Path, Value], None]) -> Callable[[Path, Value], None]:
+    """What writes a Zarr group in one zip archive, stored as it is: its chunks are compressed already."""
+
+    def written(file: Path, thing: Value) -> None:
+        folder = file.with_name(file.name + ".unzipped")
+        write(folder, thing)
+        zip_folder(folder, file)
+
+    return written
 
 
 def zip_folder(folder: Path, file: Path) -> None:
@@ -175,16 +169,26 @@ def zip_folder(folder: Path, file: Path) -> None:
 
 def read_zarr_zip(path: Path) -> Cube:
     """Read a cube from a Zarr group in a zip archive, or from the one folder in it that holds such a group."""
+    return _cube(path, lambda missing: _read_zip(path, missing, _CUBE))
 
-    async def read(missing: Missing) -> Parts:
-        with path.open("rb") as file:
-            if is_crowded(file):
-                raise _metadata.damaged(path, "it lists too many members")
-            with zipfile.ZipFile(file) as archive:
-                sizes = {member.filename: member.file_size for member in archive.infolist()}
-        return await _read(path, ZipStore(path, mode="r"), lambda key: sizes.get(key, 0), missing, _inside(path, sizes))
 
-    return _cube(path, read)
+async def _read_zip(path: Path, missing: Missing, kind: _Kind) -> Parts:
+    """What a zip archive holds of a kind."""
+    with path.open("rb") as file:
+        if is_crowded(file):
+            raise kind.damaged(path, "it lists too many members")
+        with zipfile.ZipFile(file) as archive:
+            sizes = {member.filename: member.file_size for member in archive.infolist()}
+    store, inside = ZipStore(path, mode="r"), _inside(path, sizes)
+    return await _read(path, store, lambda key: sizes.get(key, 0), missing, inside, kind=kind)
+
+
+async def _read_either(path: Path, missing: Missing, kind: _Kind) -> Parts:
+    """What a folder or a zip archive holds of a kind."""
+    if not path.is_dir():
+        return await _read_zip(path, missing, kind)
+    store, size = _folder(path)
+    return await _read(path, store, size, missing, kind=kind)
 
 
 def _cube(path: Path, read: Callable[[Missing], Coroutine[Any, Any, Parts]]) -> Cube:

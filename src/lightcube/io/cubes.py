@@ -7,7 +7,15 @@ from pathlib import Path
 
 from lightcube.errors import InputError, encodable
 from lightcube.io._bounds import check_file
-from lightcube.io._files import PARTIAL_SUFFIX, RELIEF_SUFFIX, SHAPE_SUFFIX, Writer, suffix_entry, system_errors
+from lightcube.io._files import (
+    PARTIAL_SUFFIX,
+    RELIEF_SUFFIX,
+    SHAPE_SUFFIX,
+    ZIP_SUFFIX,
+    Writer,
+    suffix_entry,
+    system_errors,
+)
 from lightcube.io._places import Place, child, fetched, name_of, names_in, place, read_bytes
 from lightcube.optics.cube import Cube
 
@@ -24,7 +32,8 @@ def bare_name(path: str | Path) -> str:
     name = name_of(place(path))
     if not name:
         raise InputError(f"{str(path)!r} names no cube: give a file or folder that ends with {', '.join(_SUFFIXES)}")
-    known = (*_SUFFIXES, SHAPE_SUFFIX, RELIEF_SUFFIX, PARTIAL_SUFFIX)
+    kept = (SHAPE_SUFFIX, RELIEF_SUFFIX)
+    known = (*_SUFFIXES, *kept, *(suffix + ZIP_SUFFIX for suffix in kept), PARTIAL_SUFFIX)
     found = [suffix for suffix in known if name.lower().endswith(suffix)]
     return bare_name(name[: -len(max(found, key=len))]) if found and name.lower() not in found else encodable(name)
 
@@ -72,8 +81,9 @@ def _cubes_in(folder: Place) -> list[str]:
     if not (isinstance(folder, Path) and folder.is_dir()):
         return []
     found = [name for name in names_in(folder) if name.lower().endswith(_SUFFIXES)]
-    kept = [name for name in found if not name.lower().endswith(RELIEF_SUFFIX)]
-    return [str(folder / name) for name in sorted(kept, key=lambda name: name.lower().endswith(SHAPE_SUFFIX))]
+    kept = [name for name in found if not name.lower().removesuffix(ZIP_SUFFIX).endswith(RELIEF_SUFFIX)]
+    kept.sort(key=lambda name: name.lower().removesuffix(ZIP_SUFFIX).endswith(SHAPE_SUFFIX))
+    return [str(folder / name) for name in kept]
 
 
 def _refuse_pictures(at: Place) -> None:
@@ -130,7 +140,7 @@ def _format(suffix: str) -> Format:
 
     return {
         ".zarr": (_zarr.read_zarr, _zarr.write_zarr),
-        ".zarr.zip": (_zarr.read_zarr_zip, _zarr.write_zarr_zip),
+        ".zarr.zip": (_zarr.read_zarr_zip, _zarr.zipped(_zarr.write_zarr)),
     }[suffix]
 
 

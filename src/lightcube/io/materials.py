@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
+import re
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
@@ -77,6 +78,12 @@ class MaterialFile(_Table):
     base: Absorbing | None = None
     ink: Annotated[dict[Line, InkTable], Field(min_length=1, max_length=12)]
 
+    @property
+    def measured(self) -> dict[str, str]:
+        """When and with what it was measured, as far as the file says so."""
+        said = {"date": self.date, "instrument": self.instrument}
+        return {name: str(value) for name, value in said.items() if value is not None}
+
     def dyes(self, called: str) -> Dyes:
         """The dyes themselves; `InputError` that names the file as it is `called`."""
         try:
@@ -143,15 +150,14 @@ def read_dyes(place_or_name: str | Path) -> Dyes:
     return read_material(place_or_name).dyes(Path(place_or_name).name)
 
 
-def as_toml(dyes: Dyes, **said: str) -> str:
-    """The text of a material's file, from which `read_dyes` makes the same dyes again; `said` are more keys of it."""
+def as_toml(dyes: Dyes) -> str:
+    """The text of a material's file, from which `read_dyes` makes the same dyes again."""
     is_ink = dyes.kind == "ink"
     key, unit = ("density", LN10) if is_ink else ("extinction", 1.0)
     lines = [f'calibration = "{dyes.calibration}"', f'kind = "{dyes.kind}"']
-    lines += [f"{name} = {_quoted(value)}" for name, value in said.items()]
     lines += [f"base = {{ {key} = {_numbers(dyes.base / unit)} }}"] if np.any(dyes.base) else []
     for number, name in enumerate(dyes.names):
-        lines += ["", f"[ink.{_quoted(name)}]", f"{key} = {_numbers(dyes.extinction[number] / unit)}"]
+        lines += ["", f"[ink.{_key(name)}]", f"{key} = {_numbers(dyes.extinction[number] / unit)}"]
         curve = dyes.gain[number]
         lines += [] if curve is None else [f"dot_gain = [{', '.join(map(_numbers, curve))}]"]
         lines += [] if dyes.limit[number] == 1 else [f"limit = {dyes.limit[number]:.6g}"]
@@ -162,6 +168,10 @@ def as_toml(dyes: Dyes, **said: str) -> str:
 
 def _numbers(numbers: Reals) -> str:
     return f"[{', '.join(f'{number:.6g}' for number in numbers)}]"
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _quoted(name)
 
 
 def _quoted(text: str) -> str:

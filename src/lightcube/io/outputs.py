@@ -153,9 +153,10 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
           one file), or ``.npz`` (NumPy's own: `extinction`, `targets`, and the rest as JSON in `lightcube`).
         * A mesh, in mm: ``.stl`` (binary), ``.3mf``, ``.obj`` or ``.ply`` (binary), coordinates in float32. It is read
           back before it gets its name, and is then as closed and of the same volume to a millionth.
-        * A relief: ``.relief.zarr`` (a folder with all that is known of it), ``.png`` (its heights, 16 bits, white the
-          highest that it may be), or the mesh of it as above.
-        * A shape: ``.shape.zarr`` (a folder, all of it), or its mesh, standing on z = 0, as meshes are.
+        * A relief: ``.relief.zarr`` (a folder with all that is known of it), ``.relief.zarr.zip`` (the same in one
+          file), ``.png`` (its heights, 16 bits, white the highest that it may be), or the mesh of it as above.
+        * A shape: ``.shape.zarr`` (a folder, all of it), ``.shape.zarr.zip`` (the same in one file), or its mesh,
+          standing on z = 0, as meshes are.
         * Pictures, ``(view, row, column, 3)`` or one ``(row, column, 3)`` after the other, in linear light, 1 = white,
           or 8-bit display levels, which are written as they are:
           ``.png`` for a single one, ``.mp4`` (H.264, visually lossless; at an even `scale` in 4:2:0, which every player

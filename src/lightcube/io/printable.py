@@ -16,18 +16,18 @@ from lightcube.solids.mesh import Mesh
 
 #: How much of its volume a mesh may lose to a file's digits.
 _SAME_VOLUME = 1e-6
-#: By suffix what makes bytes of a mesh, and triangles of such bytes.
-_FORMATS: dict[str, tuple[Callable[[Mesh], bytes], Callable[[bytes], NDArray[np.float64]]]] = {
-    ".stl": (write_stl, lambda data: read_stl(data)[0][0]),
+#: By suffix what makes bytes of a mesh, and faces of such bytes.
+_FORMATS: dict[str, tuple[Callable[[Mesh], bytes], Callable[[bytes], tuple[list[NDArray[np.float64]], str]]]] = {
+    ".stl": (write_stl, read_stl),
     ".3mf": (write_3mf, read_3mf),
-    ".obj": (write_obj, lambda data: read_obj(data)[0][0]),
+    ".obj": (write_obj, read_obj),
     ".ply": (write_ply, read_ply),
 }
 
 
 def read_written(path: Path) -> Mesh:
     """The mesh of a file that this package wrote, vertices at the very same place being one."""
-    triangles = _FORMATS[path.suffix.lower()][1](path.read_bytes())
+    (triangles,), _ = _FORMATS[path.suffix.lower()][1](path.read_bytes())
     return Mesh.of_triangles(triangles.astype(np.float32).astype(np.float64))  # of a text's digits no more are meant
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.io import printable
-from lightcube.io._files import RELIEF_SUFFIX, Writer, system_errors
+from lightcube.io._files import RELIEF_SUFFIX, ZIP_SUFFIX, Writer, system_errors
 from lightcube.io._places import Place, fetched, holds, name_of, place
 from lightcube.io._relief_json import KIND
 from lightcube.optics.checks import checked
@@ -17,11 +17,12 @@ from lightcube.solids.relief import Relief
 from lightcube.solids.relief_mesh import relief_mesh
 
 _MOST_LEVEL = 65535
+_ZIP = RELIEF_SUFFIX + ZIP_SUFFIX
 
 
 def is_relief(path: str | Path) -> bool:
     """Whether a name is that of a relief's file."""
-    return name_of(place(path)).lower().rstrip("/").endswith(RELIEF_SUFFIX)
+    return name_of(place(path)).lower().rstrip("/").endswith((RELIEF_SUFFIX, _ZIP))
 
 
 def is_relief_folder(at: Place) -> bool:
@@ -31,7 +32,7 @@ def is_relief_folder(at: Place) -> bool:
 
 @checked
 def read_relief(path: str | Path) -> Relief:
-    """Read a relief from a folder ``NAME.relief.zarr`` that `lightcube.save` wrote.
+    """Read a relief from ``NAME.relief.zarr``, or in one file ``NAME.relief.zarr.zip``, as `lightcube.save` wrote it.
 
     Raises
     ------
@@ -45,9 +46,9 @@ def read_relief(path: str | Path) -> Relief:
         raise InputError(f"{at} is no relief: give a folder that ends with {RELIEF_SUFFIX}")
     with fetched(at) as local:
         with system_errors(local, "reading"):
-            there = (local / "zarr.json").is_file()
+            there = (local / "zarr.json").is_file() or (local.is_file() and local.name.lower().endswith(_ZIP))
         if not there:
-            raise InputError(f"there is no relief {local}: give a folder that lightcube wrote")
+            raise InputError(f"there is no relief {local}: give one that lightcube wrote")
         return _zarr.read_relief(local)
 
 
@@ -56,6 +57,13 @@ def _write(path: Path, relief: Relief) -> None:
     from lightcube.io import _zarr  # here: Zarr comes with it
 
     _zarr.write_relief(path, relief)
+
+
+def _write_zip(path: Path, relief: Relief) -> None:
+    """Write all of a relief into one file."""
+    from lightcube.io import _zarr
+
+    _zarr.zipped(_zarr.write_relief)(path, relief)
 
 
 def _write_heights(path: Path, relief: Relief) -> None:
@@ -83,6 +91,7 @@ def _printed(write: Writer) -> Writer:
 
 WRITERS: dict[str, Writer] = {
     RELIEF_SUFFIX: _write,
+    _ZIP: _write_zip,
     ".png": _write_heights,
     **{suffix: _printed(write) for suffix, write in printable.WRITERS.items()},
 }

@@ -115,3 +115,37 @@ def carve(
             if landed[view] >= 0:
                 counts[view, landed[view]] -= 1
     return gone
+
+
+@compiled
+def cross(corners: Array, crossed: Array) -> None:
+    """Toggle, for each column of voxels' middles that a triangle meets, the first voxel above the place where it does.
+
+    Columns are moved by less than a thousandth of a voxel, so that edges are met by one of two triangles.
+
+    Parameters
+    ----------
+    corners
+        ``(triangles, 3, 3)``: places z, y, x in voxels.
+    crossed
+        ``(nz + 1, ny, nx)`` of bool, changed.
+    """
+    nz, ny, nx = crossed.shape[0] - 1, crossed.shape[1], crossed.shape[2]
+    off_y, off_x = 7.31e-4, 4.17e-4
+    for number in range(len(corners)):
+        az, ay, ax = corners[number, 0]
+        bz, by, bx = corners[number, 1]
+        cz, cy, cx = corners[number, 2]
+        area = (by - ay) * (cx - ax) - (bx - ax) * (cy - ay)
+        if area == 0:
+            continue
+        for y in range(max(0, math.floor(min(ay, by, cy))), min(ny - 1, math.ceil(max(ay, by, cy))) + 1):
+            for x in range(max(0, math.floor(min(ax, bx, cx))), min(nx - 1, math.ceil(max(ax, bx, cx))) + 1):
+                v, u = y + off_y, x + off_x
+                b = ((v - ay) * (cx - ax) - (u - ax) * (cy - ay)) / area
+                c = ((by - ay) * (u - ax) - (bx - ax) * (v - ay)) / area
+                if b < 0 or c < 0 or b + c > 1:
+                    continue
+                at = az + b * (bz - az) + c * (cz - az)
+                first = min(max(math.ceil(at), 0), nz)
+                crossed[first, y, x] = not crossed[first, y, x]

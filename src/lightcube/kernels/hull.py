@@ -228,3 +228,37 @@ def cast_triangles(first: int, last: int, vertices: Array, faces: Array, matrice
                     c = ((bc - ac) * (row - ar) - (br - ar) * (column - ac)) / area
                     if a >= 0 and b >= 0 and c >= 0:
                         out[view, row, column] = True
+
+
+@compiled
+def shade_triangles(corners: Array, bright: Array, faces: Array, depth: Array, out: Array) -> None:
+    """Draw triangles, the nearest in front, brightness between corners linear.
+
+    Parameters
+    ----------
+    corners
+        ``(vertices, 3)``: column, row and how near each is.
+    depth
+        ``(rows, columns)``: how near what is drawn is, changed.
+    out
+        ``(rows, columns)``: how bright it is, changed.
+    """
+    rows, columns = out.shape
+    for face in range(len(faces)):
+        ac, ar, an = corners[faces[face, 0]]
+        bc, br, bn = corners[faces[face, 1]]
+        cc, cr, cn = corners[faces[face, 2]]
+        area = (bc - ac) * (cr - ar) - (br - ar) * (cc - ac)
+        if area == 0:
+            continue
+        for row in range(max(0, math.ceil(min(ar, br, cr))), min(rows - 1, math.floor(max(ar, br, cr))) + 1):
+            for column in range(max(0, math.ceil(min(ac, bc, cc))), min(columns - 1, math.floor(max(ac, bc, cc))) + 1):
+                a = ((cc - bc) * (row - br) - (cr - br) * (column - bc)) / area
+                b = ((ac - cc) * (row - cr) - (ar - cr) * (column - cc)) / area
+                c = 1 - a - b
+                near = a * an + b * bn + c * cn
+                if a >= 0 and b >= 0 and c >= 0 and near > depth[row, column]:
+                    depth[row, column] = near
+                    out[row, column] = (
+                        a * bright[faces[face, 0]] + b * bright[faces[face, 1]] + c * bright[faces[face, 2]]
+                    )

@@ -50,7 +50,7 @@ def _is_in(place: Array, shape: tuple[int, int, int]) -> bool:
 
 
 @compiled
-def _lacking(
+def lacking(
     distances: Array, matrices: Array, widths: Array, view: int, place: Array, enough: float
 ) -> tuple[float, int]:
     """What the silhouettes but one lack most at a place, in voxels, and which does; at least `enough` if that much."""
@@ -109,7 +109,7 @@ def depths(
             for layer in range(shape[axis]):
                 place[:] = start + layer * way
                 if _is_in(place, shape):
-                    most, worst = _lacking(distances, matrices, widths, view, place, best)
+                    most, worst = lacking(distances, matrices, widths, view, place, best)
                     if most < best:
                         best, who, where = most, worst, layer
             depth[view, row, column] = best

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,8 +17,12 @@ from lightcube.optics.stack import MOST_FILMS, Stack
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.wording import counted
 
-#: The steepest slope of lamps along each side of the films, where nothing says where they are: 23 degrees.
-_STEEPEST = math.tan(math.radians(23))
+#: The steepest slope of lamps along each side of the films, where nothing says where they are: 40 degrees.
+_STEEPEST = math.tan(math.radians(40))
+#: And of films that no page holds: 32 degrees.
+_MODERATE = math.tan(math.radians(32.01))
+#: Short and long side of what a printer prints on A4, mm; films a little too large are as large.
+_PAGE_MM, _SAME_MM = (198.0, 285.0), 1e-6
 #: A film has no more cells along a side, and a pixel no more of them.
 _MOST_CELLS, _MOST_A_PIXEL = 4096, 16
 #: The name of the only screen, and of the lamp of films that are moved by hand.
@@ -71,6 +76,7 @@ class Films:
             "cells_a_pixel": (self.cells_a_pixel, 1, _MOST_A_PIXEL),
             "gap_mm": (self.gap_mm, 0, 1e5),
             "size_mm": (self.size_mm, 1e-3, 1e5),
+            "index": (self.index, 1, 3),
             "screen_mm": (self.screen_mm or 0.0, 0, 1e5),
         }
         for name, (value, least, most) in bounds.items():
@@ -124,7 +130,7 @@ def attenuator(
     aspect
         Width / height of the pictures.
     lamps
-        Where light comes from; none = a lamp for each picture, up to 23 degrees off upright along either side (for
+        Where light comes from; none = a lamp for each picture, up to 40 degrees off upright along either side (for
         pictures of films that are moved, one upright lamp, aslant where their order changes).
     lit
         Names of each picture's lamps; none = each picture has its own, in order, or all have the only one.
@@ -141,9 +147,9 @@ def attenuator(
     >>> import lightcube as lc
     >>> stage = lc.attenuator(["spring", "summer", "autumn", "winter"], lc.Films(count=5, gap_mm=12))
     >>> stage.grid
-    <stack of 5 films of 72 x 72 cells of 2.5 mm>
+    <stack of 5 films of 80 x 76 cells of 2.5 mm>
     >>> [tuple(round(part, 2) for part in lamp.direction) for lamp in stage.lamps]
-    [(-0.42, 0.42, -1.0), (0.42, 0.42, -1.0), (-0.42, -0.42, -1.0), (0.42, -0.42, -1.0)]
+    [(-0.62, 0.83, -1.0), (0.62, 0.83, -1.0), (-0.62, -0.83, -1.0), (0.62, -0.83, -1.0)]
     """
     films, names = films or Films(), list(names)
     if not names:
@@ -153,7 +159,7 @@ def attenuator(
     if not 1e-3 <= aspect <= 1e3:
         raise InputError(f"pictures are 0.001 to 1000 times as wide as high, not {aspect:g}")
     placed = [*moves] or [None] * len(names)
-    given = tuple(lamps) or _usual_lamps(films, len(names), placed)
+    given = tuple(lamps) or _usual_lamps(films, len(names), aspect, placed)
     shown = [tuple(each) for each in lit] or _own(given, len(names))
     if len(shown) != len(names):
         raise InputError(f"lamps of {counted(len(shown), 'picture')} for {len(names)}: say which lamp each one has")
@@ -172,42 +178,53 @@ def attenuator(
     return replace(stage, grid=replace(bare, shape=(bare.shape[0], *_cells(stage, bare))))
 
 
-def _usual_lamps(films: Films, count: int, moves: Sequence[Move | None]) -> tuple[Lamp, ...]:
+def _usual_lamps(films: Films, count: int, aspect: float, moves: Sequence[Move | None]) -> tuple[Lamp, ...]:
     """Lamps of which nothing is said: one for each picture, or one for all where films are moved."""
     if any(moves):
         aslant = any(move is not None and move.order for move in moves)
-        return (Lamp(ONLY, direction=(0.42 if aslant else 0.0, 0.0, -1.0)),)
+        return (Lamp(ONLY, direction=(0.83, 0.42, -1.0) if aslant else (0.0, 0.0, -1.0)),)
     return tuple(
         Lamp(f"lamp {number}", direction=(float(x), float(y), -1.0))
-        for number, (x, y) in enumerate(outside(lattice(films, count), films.index), 1)
+        for number, (x, y) in enumerate(outside(lattice(films, count, aspect), films.index), 1)
     )
 
 
-def lattice(films: Films, count: int) -> Reals:
-    """``(count, 2)``: slopes between the films of so many lamps, as far apart as 23 degrees allow, in rows.
+def lattice(films: Films, count: int, aspect: float = 1.0) -> Reals:
+    """``(count, 2)``: slopes between the films of so many lamps, in rows, for pictures of so much width / height.
 
-    From one film to the next their light moves by whole cells where films are so far apart: pixels then fall into cells
-    only, a few beams are the exact mean, and pictures are the better for it (docs/films.md).
+    As far apart as 40 degrees to either side allow, or less so that films fit on a sheet of A4: the farther, the better
+    pictures are (docs/films.md). Where they fit on none, 32 degrees. From one film to the next their light moves by
+    whole cells where films are so far apart: pixels then fall into cells only, and are exact with few beams.
     """
     across = math.ceil(math.sqrt(count))
     rows = math.ceil(count / across)
     places = np.array([(column, row) for row in range(rows) for column in range(across)], np.float64)[:count]
-    middle = np.array([across - 1, rows - 1]) / 2
-    steps = np.where(np.array([across, rows]) > 1, _step(films, np.array([across, rows])), 0.0)
-    slopes = (places - middle) * steps
+    counts = np.array([across, rows])
+    high, wide = films.picture_shape(aspect)
+    sides_mm, deep = np.array([wide, high]) * films.pixel_mm, 2 * float(np.max(np.abs(films.heights)))
+    tried = [np.array(steps) for steps in itertools.product(*(_steps(films, int(each)) for each in counts))]
+    fitting = [
+        steps
+        for steps in tried
+        if np.all(np.sort(sides_mm + (counts - 1) / 2 * steps * deep) <= np.add(_PAGE_MM, _SAME_MM))
+    ]
+    moderate = [steps for steps in tried if np.all((counts - 1) / 2 * steps <= _MODERATE + _SAME_MM)]
+    best = max(
+        fitting or moderate or tried[:1], key=lambda steps: (np.min(steps[counts > 1], initial=1), np.sum(steps))
+    )
+    slopes = (places - (counts - 1) / 2) * best
     return np.asarray(np.where(slopes == 0, 0.0, slopes * (1, -1)))
 
 
-def _step(films: Films, counts: Reals) -> Reals:
-    """From one lamp's slope to the next, of so many along each side."""
-    widest = 2 * _STEEPEST / np.maximum(counts - 1, 1)
+def _steps(films: Films, count: int) -> list[float]:
+    """From one lamp's slope to the next, of so many along a side: what may be chosen, in whole cells if that can be."""
+    if count == 1:
+        return [0.0]
+    widest = 2 * _STEEPEST / (count - 1)
     apart = float(np.min(np.diff(films.heights))) if len(films.heights) > 1 else 0.0
-    if apart <= 0:
-        return np.asarray(widest)
-    cell = films.cell_mm / apart
-    grain = np.where(counts % 2 == 0, 2, 1)  # of an even number none is upright: steps of two cells
-    whole = np.floor(widest / cell / grain + 1e-9) * grain
-    return np.asarray(np.where(whole > 0, whole * cell, widest))
+    grain = (films.cell_mm / apart if apart > 0 else math.inf) * (2 if count % 2 == 0 else 1)  # of two none is upright
+    whole = math.floor(widest / grain + 1e-9)
+    return [grain * number for number in range(1, whole + 1)] or [widest / 2, widest]
 
 
 def snapped(lamps: Sequence[Lamp], films: Films) -> tuple[Lamp, ...]:

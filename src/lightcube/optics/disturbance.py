@@ -1,6 +1,6 @@
-"""A set-up that is a little off: turned, moved, too bright, coarse, not quite black."""
+"""A set-up that is a little off: turned, moved, too bright, coarse, not quite black; films that lie or print wrong."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -83,3 +83,91 @@ DISTURBANCES = {
     "near": Disturbance(further=-0.05),
     "all": Disturbance(0.2, 0.5, 0.5, 0.02, 255, 0.01),
 }
+
+
+@dataclass(frozen=True)
+class FilmsOff:
+    """How films that were printed and put together differ from those that were solved for.
+
+    Parameters
+    ----------
+    shift_mm, height_mm
+        How far each film lies off along either side, and in height, root of the mean square.
+    stretch
+        By how much each film is printed too large, root of the mean square, as a part of its size.
+    lamp_deg
+        By how many degrees every lamp stands off, all the same way.
+    disc_deg
+        Angular diameter of lamps that should have none, degrees.
+    ink, ink_each
+        By how much all ink is too strong, and each colour of each film, root of the mean square.
+    gain
+        Dot gain at half coverage: so much more of the film is covered than was asked for.
+    levels
+        Of coverage, highest of the whole numbers that it is rounded to; 0 = not rounded.
+    ghosts
+        Light that was reflected between films, evenly spread, as a part of a picture's mean.
+    """
+
+    shift_mm: float = 0.0
+    height_mm: float = 0.0
+    stretch: float = 0.0
+    lamp_deg: float = 0.0
+    disc_deg: float = 0.0
+    ink: float = 0.0
+    ink_each: float = 0.0
+    gain: float = 0.0
+    levels: int = 0
+    ghosts: float = 0.0
+
+    def __post_init__(self) -> None:
+        numbers = [getattr(self, each.name) for each in fields(self)]
+        least = min(number for each, number in zip(fields(self), numbers, strict=True) if each.name != "ink")
+        if not np.all(np.abs(numbers) <= _MOST) or least < 0 or self.ink <= -1 or self.disc_deg >= 90:
+            raise InputError(f"no films are off by {self!r}: give numbers of at least 0, ink above -1, disc below 90")
+
+    @property
+    def is_random(self) -> bool:
+        """Whether it is another thing each time."""
+        return bool(self.shift_mm or self.height_mm or self.stretch or self.ink_each)
+
+    def __str__(self) -> str:
+        said = {
+            f"films {self.shift_mm:g} mm off": self.shift_mm,
+            f"heights {self.height_mm:g} mm off": self.height_mm,
+            f"each film's size {100 * self.stretch:g} % off": self.stretch,
+            f"lamps {self.lamp_deg:g}° off": self.lamp_deg,
+            f"lamps of {self.disc_deg:g}°, as the sun": self.disc_deg,
+            f"all ink {100 * self.ink:+g} %": self.ink,
+            f"each ink of each film {100 * self.ink_each:g} % off": self.ink_each,
+            f"dot gain {100 * self.gain:g} %": self.gain,
+            f"{self.levels + 1} levels of ink": self.levels,
+            f"ghosts {100 * self.ghosts:g} % of the mean light": self.ghosts,
+        }
+        return ", ".join(words for words, number in said.items() if number) or "as made"
+
+
+#: No number of films that are off is larger.
+_MOST = 1e6
+#: What is tried of films, by name.
+FILMS_OFF = {
+    "undisturbed": FilmsOff(),
+    "shifted": FilmsOff(shift_mm=0.1),
+    "shifted-more": FilmsOff(shift_mm=0.2),
+    "heights": FilmsOff(height_mm=0.2),
+    "heights-more": FilmsOff(height_mm=0.5),
+    "stretched": FilmsOff(stretch=0.002),
+    "lamps": FilmsOff(lamp_deg=0.2),
+    "lamps-more": FilmsOff(lamp_deg=0.5),
+    "sun": FilmsOff(disc_deg=0.53),
+    "ink": FilmsOff(ink=-0.05),
+    "ink-each": FilmsOff(ink_each=0.05),
+    "gain": FilmsOff(gain=0.05),
+    "gain-more": FilmsOff(gain=0.1),
+    "levels": FilmsOff(levels=255),
+    "ghosts": FilmsOff(ghosts=0.02),
+    "ghosts-more": FilmsOff(ghosts=0.08),
+    "together": FilmsOff(shift_mm=0.2, ink_each=0.05, ghosts=0.02),
+}
+#: What each disturbance is, by name, for people.
+SAID = {name: str(each) for name, each in {**DISTURBANCES, **FILMS_OFF}.items()}

@@ -148,8 +148,8 @@ class Dyes:
         """The same dyes by their extinction, 1/mm, in a grid's voxels: inks lie on films, one for each slice."""
         if self.kind != "ink":
             return self
-        thick_mm = grid.voxel_mm if isinstance(grid, Stack) else grid.slice_mm  # along which extinction is counted
-        extinction, base = self.extinction / thick_mm, self.base / thick_mm
+        film_mm = grid.voxel_mm if isinstance(grid, Stack) else grid.slice_mm
+        extinction, base = self.extinction / film_mm, self.base / film_mm
         return replace(self, extinction=extinction, base=base, kind="resin")
 
     def mixed(self, amounts: Floats) -> Volume:

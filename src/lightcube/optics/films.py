@@ -139,8 +139,8 @@ def paths(stack: Stack, rig: Rig) -> Paths:
 
 
 def are_exact(stack: Stack, rig: Rig) -> bool:
-    """Whether means over pixels can be taken exactly: cells' sides run along pixels', and lamps have no disc."""
-    return not np.any(rig.sums.disc_deg) and paths(stack, rig).are_aligned
+    """Whether means over pixels can be taken exactly: cells' sides run along pixels'."""
+    return paths(stack, rig).are_aligned
 
 
 def _refracted(slopes: Reals, index: float) -> Reals:

@@ -137,9 +137,9 @@ def bundle(light: Light, *, in_slices: bool) -> tuple[Reals, Reals]:
 def judged(rig: Rig, grid: Grid) -> Rig:
     """Each view as those that what is cast is judged by: 55 points a pixel, 16 in a row, times 16 of a lamp's disc.
 
-    Or exact means, where they can be had.
+    Or exact means, where they can be had, times as many of a disc.
     """
-    return rig.squared(1.0) if is_exact(rig, grid) else _judged(rig, judge_points(rig, grid))
+    return discs_sampled(rig).squared(1.0) if is_exact(rig, grid) else _judged(rig, judge_points(rig, grid))
 
 
 def judged_one_by_one(rig: Rig, grid: Grid) -> list[Rig]:
@@ -169,7 +169,7 @@ def in_parts(rig: Rig, grid: Grid, beams: Beams, zoom: int, *, around: bool = Fa
     row, exact = is_in_slices(rig, grid), beams != "thin" and is_exact(rig, grid)
     middles = (np.arange(zoom) + 0.5) / zoom - 0.5
     points = np.zeros((1, 2)) if beams == "thin" or exact else _part_points(zoom, row=row, around=around)
-    cut = _split if beams == "thin" or exact else _judged
+    cut = _split if beams == "thin" else _judged
     rigs = [[cut(rig, points / zoom + (across, down)) for across in middles] for down in ([0.0] if row else middles)]
     return [[part.squared(1 / zoom) for part in line] for line in rigs] if exact else rigs
 

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from lightcube.drawing import charts
 from lightcube.drawing.stage import drawing
 from lightcube.optics.cube import Cube
-from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.disturbance import SAID
 from lightcube.optics.told import remembered
 from lightcube.planning.feasibility import facts
 from lightcube.planning.prediction import MOST_DB
-from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
+from lightcube.report.html import element, figure, figure_tiles, image, number, pairs, sentences, sideways, table, text
 from lightcube.report.measuring import EXACT, Findings, gain
 from lightcube.report.words import span
 from lightcube.scoring.between import LOBE_DB
@@ -45,13 +45,9 @@ def figures(found: Findings, compared: str) -> str:
     if "mat_rms" in scores:
         beyond = f"; beyond it {number(scores['beyond_rms'], 2)}" if "beyond_rms" in scores else ""
         tiles["mat"] = (number(scores["mat_rms"], 3), f"off its tone; 0 is calm{beyond}")
-    shown = "".join(
-        element("div", text("dt", name) + text("dd", value, class_="figure") + text("dd", more, class_="more"))
-        for name, (value, more) in tiles.items()
-    )
     return "\n".join(
         [
-            element("dl", shown, class_="tiles"),
+            figure_tiles(tiles),
             text("p", f"{compared} {_LADDER}", class_="note"),
             sideways(_table(found), "The figures"),
         ]
@@ -265,13 +261,17 @@ def disturbances(found: Findings) -> str:
     """What is left of the pictures in a set-up that is not perfect."""
     best = found.robust["undisturbed"]["psnr_mean"]
     rows = [
-        (str(DISTURBANCES[name]), number(left["psnr_mean"]), number(left["psnr_min"]), number(best - left["psnr_mean"]))
+        (SAID[name], number(left["psnr_mean"]), number(left["psnr_min"]), number(best - left["psnr_mean"]))
         for name, left in found.robust.items()
     ]
     heads = ("what is off", "mean PSNR, dB", "worst, dB", "costs, dB")
     parts = [table("What is left of the pictures", heads, rows, "figures")]
     darkest = float(found.cube.extinction.max()) * found.cube.grid.voxel_mm
-    if found.robust["extinction"]["psnr_mean"] < best - _COARSE_DB and darkest > 1.1 * _DARK:
+    if (
+        "extinction" in found.robust
+        and found.robust["extinction"]["psnr_mean"] < best - _COARSE_DB
+        and darkest > 1.1 * _DARK
+    ):
         bound = number(_DARK / found.cube.grid.voxel_mm)
         parts.append(
             element(

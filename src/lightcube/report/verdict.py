@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from lightcube.optics.disturbance import DISTURBANCES
+from lightcube.optics.disturbance import SAID
 from lightcube.report.measuring import Findings
 from lightcube.scoring.between import LOBE_DB
 from lightcube.scoring.metrics import GOOD_DB, grain_word, mark
@@ -34,7 +34,7 @@ def good(found: Findings) -> Iterator[str]:
         yield f"Every picture stands while the table turns by {curve.lobes_deg.min():.1f}° or more."
     borne = [name for name in _alone(found) if mark(found.robust[name]["psnr_mean"]) == "good"]
     if borne:
-        yield f"It bears, one at a time: {_listed(str(DISTURBANCES[name]) for name in borne)}."
+        yield f"It bears, one at a time: {_listed(SAID[name] for name in borne)}."
 
 
 def wanting(found: Findings) -> Iterator[str]:
@@ -57,7 +57,7 @@ def wanting(found: Findings) -> Iterator[str]:
             f"{_AT_EASE:g}° of turn (below {LOBE_DB:g} dB): the table has to stop where it should."
         )
     for kind in _SHORT_OF_GOOD:
-        harm = [str(DISTURBANCES[name]) for name in _alone(found) if mark(found.robust[name]["psnr_mean"]) == kind]
+        harm = [SAID[name] for name in _alone(found) if mark(found.robust[name]["psnr_mean"]) == kind]
         if harm and mark(found.scores["psnr_mean"]) != kind:
             yield f"Pictures become {kind} where the set-up is off by: {_listed(harm)}."
     if found.advice:
@@ -70,7 +70,7 @@ def _psnr(found: Findings) -> list[float]:
 
 def _alone(found: Findings) -> list[str]:
     """Names of what was tried by itself; of the two turns the one that is the same for every size of cube."""
-    return [name for name in found.robust if name not in ("undisturbed", "turned-as-64", "all")]
+    return [name for name in found.robust if name not in ("undisturbed", "turned-as-64", "all", "together")]
 
 
 def _alike(best: int, well: int) -> str:

@@ -11,9 +11,11 @@ from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.rig import soft
+from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
+from lightcube.scoring import films
 from lightcube.scoring.metrics import check_same_views, psnr
 
 
@@ -73,7 +75,8 @@ def robust(cube: Cube, targets: Targets, *, callback: Callable[[int, int], None]
     The `disturbances` are: none, the cube turned by 0.2 degrees, by 0.2 degrees times 64 / n of its n voxels across,
     half a voxel to the right, half a voxel up, every lamp power 2 % too high, extinction in 8 bits, a screen's black of
     1 % of white, on a turntable a lamp of half a degree, under lamps that are near or have a disc screens 5 % of the
-    cube's width too far and too near, and all at once but the lamp's size, the screens and the second turn.
+    cube's width too far and too near, and all at once but the lamp's size, the screens and the second turn. Those of
+    films are `lightcube.scoring.films.robust`'s.
 
     Parameters
     ----------
@@ -86,6 +89,8 @@ def robust(cube: Cube, targets: Targets, *, callback: Callable[[int, int], None]
         Where the targets do not fit the cube's views.
     """
     check_same_views(cube, targets)
+    if isinstance(cube.grid, Stack):
+        return films.robust(cube, targets, callback)
     wanted = encode(targets.pictures, targets.transfer)
     figures, tried = {}, disturbances(cube)
     for number, (name, disturbance) in enumerate(tried.items()):

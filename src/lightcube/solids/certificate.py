@@ -67,8 +67,9 @@ def cast_mesh(mesh: Mesh, rig: Rig) -> Flags:
 
 @checked
 def certify(mesh: Mesh, silhouettes: Silhouettes) -> Certificate:
-    """Cast a mesh, in mm around the block's middle, by its triangles, and compare with the silhouettes."""
-    cast, given = cast_mesh(mesh, silhouettes.rig), silhouettes.inside
+    """Cast a mesh, in mm around the block's middle, by its triangles, and compare with the silhouettes, on screens."""
+    rig, given = silhouettes.rig, silhouettes.inside
+    cast = cast_mesh(mesh, rig) & rig.inside.repeat(FINE, axis=1).repeat(FINE, axis=2)
     shared, wanted = (np.count_nonzero(each, axis=(1, 2)) for each in (cast & given, given))
     either = np.count_nonzero(cast | given, axis=(1, 2))
     return Certificate(locked(shared / either), locked(1 - shared / wanted), locked((either - wanted) / wanted))

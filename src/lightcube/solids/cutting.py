@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -52,6 +53,8 @@ class Cut:
         How many small pieces and holes were taken for dirt and removed.
     border
         Which part of the picture's border the shape covers.
+    kept
+        ``(row, column)``: above 0.5 what is there stays where it is when pictures are bent, if it can; None = nothing.
     """
 
     name: str
@@ -61,10 +64,15 @@ class Cut:
     near: float
     specks: int
     border: float
+    kept: Images | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)
-        keep(self, coverage=np.float32)
+        keep(self, coverage=np.float32, kept=np.float32)
+        if self.kept is not None and self.kept.shape != self.coverage.shape:
+            raise InputError(
+                f"what is kept of {self.name} has shape {self.kept.shape}, not {self.coverage.shape} as its picture"
+            )
 
     def __repr__(self) -> str:
         rows, columns = self.coverage.shape
@@ -77,13 +85,23 @@ class Cut:
 
     def mirrored(self) -> Cut:
         """The same, left and right exchanged."""
-        return replace(self, coverage=self.coverage[:, ::-1].copy())
+        return self._moved(lambda each: each[:, ::-1])
+
+    def turned(self, quarters: int) -> Cut:
+        """The same, turned counter-clockwise by so many quarters."""
+        return self._moved(lambda each: np.rot90(each, quarters))
 
     def trimmed(self) -> Cut:
         """The same without the rows and columns around the shape that are empty."""
         inside = self.inside
         rows, columns = (np.flatnonzero(inside.any(axis=axis)) for axis in (1, 0))
-        return replace(self, coverage=self.coverage[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].copy())
+        return self._moved(lambda each: each[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1])
+
+    def _moved(self, way: Callable[[Images], Images]) -> Cut:
+        """The same, its pixels moved."""
+        return replace(
+            self, coverage=way(self.coverage).copy(), kept=None if self.kept is None else way(self.kept).copy()
+        )
 
 
 @checked

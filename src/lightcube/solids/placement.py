@@ -1,4 +1,4 @@
-"""Which of three pictures goes onto which of three walls, and which is mirrored: what can be built depends on it.
+"""Which of three pictures is seen from above, and how it is turned: what can be built depends on it.
 
 On three walls a pixel of one picture is cast by the hull where some pixel of each of the two others lies on its ray: a
 product of boolean matrices for each picture, and no voxel is touched.
@@ -19,8 +19,6 @@ from lightcube.solids.cutting import Cut
 
 #: Placements are compared on pictures of so many pixels a side: whatever the block's proportions, it is the same.
 _SIDE = 64
-#: Which walls' pictures are mirrored, front, side and top: with front and top mirrored, all is seen in a mirror.
-_MIRRORED = ((False, False, False), (True, False, False), (False, True, False), (True, True, False))
 #: Pieces that are tried, the largest first.
 _TRIED = 3
 
@@ -33,8 +31,9 @@ class Placement:
     ----------
     order
         The numbers of those at the front, the side and the top.
-    mirrored
-        Whether each is mirrored: its lamp stands on the other side, and the wall is looked at from behind.
+    is_mirrored, quarters
+        Whether the top's is mirrored (its lamp stands below, or the floor is looked at from beneath), and by how many
+        quarters it is turned then, counter-clockwise.
     share
         Which part of them no object casts.
     is_one_piece
@@ -42,36 +41,45 @@ class Placement:
     """
 
     order: tuple[int, ...]
-    mirrored: tuple[bool, ...]
+    is_mirrored: bool
+    quarters: int
     share: float
     is_one_piece: bool
 
     def of(self, cuts: Sequence[Cut]) -> tuple[Cut, ...]:
         """Shapes as they are placed, front, side and top."""
-        placed = zip((cuts[number] for number in self.order), self.mirrored, strict=True)
-        return tuple(one.mirrored() if mirrored else one for one, mirrored in placed)
+        front, side, top = (cuts[number] for number in self.order)
+        return front, side, (top.mirrored() if self.is_mirrored else top).turned(self.quarters)
 
 
 def placements(cuts: Sequence[Cut]) -> list[Placement]:
     """All 24 placements of three shapes on three walls, the given one first, all others from the best to the worst.
 
-    The best are in one piece, and of those the ones of which least is lost.
+    One of three is on top, mirrored or not, in four quarter turns. With that all ways are tried in which upright ones
+    are mirrored or change places: to mirror the front, or the side, is to mirror the top, seen in a mirror; and who
+    walks around a corner sees front and side change places, one of them mirrored, and the top turned by a quarter. The
+    best are in one piece, and of those the ones of which least is lost.
     """
     if len(cuts) != 3:
         raise InputError(f"three walls take three pictures, not {len(cuts)}: give three")
     given = [_square(one) for one in cuts]
     found = []
-    for order in itertools.permutations(range(3)):
-        for mirrored in _MIRRORED:
-            ways = zip((given[number] for number in order), mirrored, strict=True)
-            placed = [picture[:, ::-1] if way else picture for picture, way in ways]
-            found.append(_placement(order, mirrored, placed))
-    return [found[0], *sorted(found[1:], key=lambda one: (not one.is_one_piece, one.share))]
+    for order in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):
+        front, side, top = (given[number] for number in order)
+        for is_mirrored, quarters in itertools.product((False, True), range(4)):
+            turned = np.rot90(top[:, ::-1] if is_mirrored else top, quarters)
+            found.append(_placement(order, (front, side, turned), is_mirrored, quarters))
+    return [found[0], *sorted(found[1:], key=_rank)]
+
+
+def _rank(one: Placement) -> tuple[bool, float, bool, int]:
+    """The better the less; of those that are as good the one that is turned least."""
+    return not one.is_one_piece, one.share, one.is_mirrored, one.quarters % 4 and 1
 
 
 def best(found: Sequence[Placement]) -> Placement:
     """The best of what `placements` found: the given one where no other is better."""
-    return min(found, key=lambda one: (not one.is_one_piece, one.share))
+    return min(found, key=_rank)
 
 
 def reachable(front: Flags, side: Flags, top: Flags) -> tuple[Flags, Flags, Flags]:
@@ -86,12 +94,13 @@ def reachable(front: Flags, side: Flags, top: Flags) -> tuple[Flags, Flags, Flag
     return one, two, three
 
 
-def _placement(order: tuple[int, ...], mirrored: tuple[bool, ...], placed: Sequence[Flags]) -> Placement:
+def _placement(
+    order: tuple[int, ...], placed: tuple[Flags, Flags, Flags], is_mirrored: bool, quarters: int
+) -> Placement:
     """How good a placement of square pictures is."""
-    front, side, top = placed
-    shown = reachable(front, side, top)
+    shown = reachable(*placed)
     kept, given = (sum(int(np.count_nonzero(each)) for each in pictures) for pictures in (shown, placed))
-    return Placement(order, mirrored, 1 - kept / given, _is_one_piece(*shown))
+    return Placement(order, is_mirrored, quarters, 1 - kept / given, _is_one_piece(*shown))
 
 
 def _is_one_piece(front: Flags, side: Flags, top: Flags) -> bool:

@@ -1,6 +1,7 @@
 """Whether a body can be printed and stand: how thick its walls are, and where its weight lies over its foot."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from lightcube.solids.shape import Shape
 _FINE, _SLACK = 0.25, 0.75
 #: What is so near to the ground that a body stands on it, mm.
 _FOOT_MM = 0.5
+#: Thin places that are listed, at most.
+_LISTED = 5
 
 
 def thickest_wall_mm(shape: Shape, lost: float = 0.005) -> float:
@@ -21,7 +24,7 @@ def thickest_wall_mm(shape: Shape, lost: float = 0.005) -> float:
     """
     from scipy import ndimage  # here: whoever prints nothing does without
 
-    box = tuple(slice(int(each.min()), int(each.max()) + 1) for each in np.nonzero(shape.inside))
+    box = _box(shape)
     inside = np.pad(shape.inside[box], 1)
     deep = ndimage.distance_transform_edt(inside)
     whole = np.count_nonzero(landed(shape.inside, shape))
@@ -41,6 +44,55 @@ def thickest_wall_mm(shape: Shape, lost: float = 0.005) -> float:
         low, high = (middle, high) if keeps(middle * _FINE) else (low, middle)
     # so deep a voxel is that far from the first one outside, which begins half a voxel before its middle
     return max(2 * low * _FINE - 1, 0.0) * shape.grid.voxel_mm
+
+
+def _box(shape: Shape) -> tuple[slice, slice, slice]:
+    """The part of the block that a body fills."""
+    z, y, x = (slice(int(each.min()), int(each.max()) + 1) for each in np.nonzero(shape.inside))
+    return z, y, x
+
+
+@dataclass(frozen=True)
+class Thin:
+    """Where a body is thinner than walls are to be.
+
+    Parameters
+    ----------
+    share
+        Which part of its volume no ball of that width inside of it reaches.
+    places_mm
+        The middles ``(x, y, z)`` of the largest such parts, around the block's middle, and the volume of each, mm³.
+    """
+
+    share: float
+    places_mm: tuple[tuple[tuple[float, float, float], float], ...]
+
+
+def thin_places(shape: Shape, wall_mm: float) -> Thin:
+    """What of a body no ball of `wall_mm` reaches that stays inside of it, but for its edges.
+
+    Edges and corners, which no ball reaches, count where they are further than `_SLACK` voxels from one.
+    """
+    from scipy import ndimage
+
+    box = _box(shape)
+    inside = np.pad(shape.inside[box], 1)
+    radius = wall_mm / 2 / shape.grid.voxel_mm + 0.5  # the first voxel outside begins half a voxel before its middle
+    core = ndimage.distance_transform_edt(inside) >= radius - _FINE
+    near = ndimage.distance_transform_edt(~core) if np.any(core) else np.full(inside.shape, np.inf)
+    left = (inside & (near > radius + _SLACK))[1:-1, 1:-1, 1:-1]
+    labels, count = ndimage.label(left, np.ones((3, 3, 3)))
+    sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
+    largest = [int(number) + 1 for number in np.argsort(-sizes, kind="stable")[:_LISTED]]
+    middles = ndimage.center_of_mass(left, labels, largest)
+    halves = (np.array(shape.grid.shape) - 1) / 2 - [each.start for each in box]
+    sides = shape.grid.sides_mm
+    voxel_mm3 = float(np.prod(sides))
+    places = []
+    for number, middle in zip(largest, middles, strict=True):
+        x, y, z = ((np.array(middle) - halves)[::-1] * sides).tolist()
+        places.append(((x, y, z), float(sizes[number - 1]) * voxel_mm3))
+    return Thin(int(sizes.sum()) / max(int(np.count_nonzero(shape.inside)), 1), tuple(places))
 
 
 def stands(mesh: Mesh) -> bool:

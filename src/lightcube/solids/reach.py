@@ -47,6 +47,8 @@ class Reach:
     gap
         By how many voxels all silhouettes must grow until one piece does, to 1/16; 0 where one does, None where 8 do
         not suffice, or there is no piece at all.
+    parting
+        The picture that lacks most where pieces are nearest to each other, and so keeps them apart; -1 where none does.
     """
 
     given: Flags
@@ -56,11 +58,14 @@ class Reach:
     pieces: int
     is_one_piece: bool
     gap: float | None
+    parting: int = -1
 
     def __post_init__(self) -> None:
         check_fields(self)
         if self.gap is not None and not 0 <= self.gap <= _MOST_GAP:
             raise InputError(f"a gap between pieces is a number of voxels from 0 to 8, not {self.gap:g}")
+        if not -1 <= self.parting < len(self.given):
+            raise InputError(f"pieces are parted by a picture below {len(self.given)}, or -1, not {self.parting}")
         keep(self, given=np.bool_, depth=np.float32, culprit=np.intp, places=np.float32)
 
     def __repr__(self) -> str:
@@ -129,7 +134,8 @@ def reach(silhouettes: Silhouettes, grid: Grid) -> Reach:
     field = hull_field(silhouettes, grid, is_skipping=False)
     numbers, count, common = _in_pieces(field < 0, silhouettes, through)
     gap = 0.0 if common else _gap(field, numbers, silhouettes, through) if count else None
-    return Reach(given, depth, culprit, places, count, common, gap)
+    parting = _parting(field, gap, silhouettes, grid) if gap else -1
+    return Reach(given, depth, culprit, places, count, common, gap, parting)
 
 
 def count_pieces(inside: Flags) -> int:
@@ -185,6 +191,40 @@ def _gap(field: Images, met: Integers, silhouettes: Silhouettes, through: Reals)
         middle = (low + high) // 2
         low, high = (low, middle) if suffices(middle * _FINE_GAP) else (middle, high)
     return high * _FINE_GAP
+
+
+def _parting(field: Images, gap: float, silhouettes: Silhouettes, grid: Grid) -> int:
+    """The picture that lacks most where pieces meet when all grow by `gap`, the larger pieces counting for more."""
+    from lightcube.kernels import reach as kernels
+
+    places, worth = _meetings(field, gap)
+    onto = projections.of_voxels(projections.matrices(silhouettes.rig), grid)
+    widths = projections.voxels_a_pixel(silhouettes.rig, grid)
+    votes = np.zeros(len(silhouettes))
+    for place, weight in zip(places.astype(np.float64), worth, strict=True):
+        _, who = kernels.lacking(silhouettes.distances, onto, widths, -1, place, np.inf)
+        votes[who] += weight
+    return int(np.argmax(votes)) if len(places) else -1
+
+
+def _meetings(field: Images, gap: float) -> tuple[Integers, Integers]:
+    """Voxels ``(z, y, x)`` at which pieces meet first that `gap` just joins, and the voxels of the smaller piece."""
+    from scipy import ndimage
+
+    labels, count = ndimage.label(field < gap - _FINE_GAP)
+    sizes = np.bincount(labels.ravel(), minlength=count + 1)
+    faces, nothing = ndimage.generate_binary_structure(3, 1), count + 1
+    between = (labels == 0) & (field < gap)
+    while True:
+        most = ndimage.maximum_filter(labels, footprint=faces)
+        least = ndimage.minimum_filter(np.where(labels == 0, nothing, labels), footprint=faces)
+        met = between & (most > 0) & (least < most)
+        if np.any(met):
+            return np.argwhere(met).astype(np.int64), np.minimum(sizes[least[met]], sizes[most[met]]).astype(np.int64)
+        reached = between & (labels == 0) & (most > 0)
+        if not np.any(reached):  # no two pieces are joined: one grew into what was lacking
+            return np.empty((0, 3), np.int64), np.empty(0, np.int64)
+        labels = np.where(reached, most, labels)
 
 
 def thin_part(silhouettes: Silhouettes, grid: Grid) -> Reals:

@@ -80,13 +80,15 @@ class Building:
             "unreachable": found.share,
             "pieces": found.pieces,
             "gap": found.gap,
+            "parting": None if found.parting < 0 else names[found.parting],
             "wall_mm": self.wall_mm,
             "repaired": None if self.repaired is None else making.facts(self.repaired),
             "reach": pictures,
             "placements": [
                 {
                     "order": [self.wanted.cuts[number].name for number in one.order],
-                    "mirrored": list(one.mirrored),
+                    "top_mirrored": one.is_mirrored,
+                    "top_turned_deg": 90 * one.quarters,
                     "unreachable": one.share,
                     "one_piece": one.is_one_piece,
                 }
@@ -127,7 +129,7 @@ def lines(building: Building) -> list[str]:
             continue
         ways = ", ".join(_way(names, who, part) for who, part in found.blamed(number) if part >= _SMALL)
         said.append(f"{name}: {lost:.1%} cannot be cast, up to {_deep(found, number)}; in the way: {ways}")
-    return [*said, _pieces(found), *_walls(building), *_placed(building), _verdict(building)]
+    return [*said, _pieces(found, names), *_walls(building), *_placed(building), _verdict(building)]
 
 
 def _way(names: Sequence[str], who: int, part: float) -> str:
@@ -150,7 +152,7 @@ def _deep(found: Reach, number: int) -> str:
     return "all of the way" if deepest is None else f"{counted(max(1, math.ceil(deepest)), 'voxel')} deep"
 
 
-def _pieces(found: Reach) -> str:
+def _pieces(found: Reach, names: Sequence[str]) -> str:
     """Whether it hangs together."""
     if found.pieces == 0:
         return "nothing is left that casts shadows in all of them"
@@ -162,7 +164,8 @@ def _pieces(found: Reach) -> str:
         if found.gap is None
         else f"one would if all silhouettes grew by {found.gap:.1f} voxels"
     )
-    return f"it falls into {counted(found.pieces, 'piece')}, of which none casts all; {far}"
+    who = "" if found.parting < 0 else f"; where they are nearest {names[found.parting]} keeps them apart: thicken it"
+    return f"it falls into {counted(found.pieces, 'piece')}, of which none casts all; {far}{who}"
 
 
 def _walls(building: Building) -> list[str]:

@@ -155,7 +155,7 @@ def told(document: Mapping[str, Any]) -> list[str]:
     lines += _cast(document.get("predicted") or {})
     blocks = document.get("cast_in", {})
     if "predicted" in document and any(count > 1 for count in blocks.values()):
-        lines.append(f"cast in blocks of {_along(blocks)} droplets, which are too many one by one: up to 2 dB too low")
+        lines.append(f"cast in blocks of {_along(blocks)} droplets, for which the memory does: some 3 dB too good")
     white = document.get("one_white_lamp")
     if white:
         lines.append(f"one constant white lamp instead, of power {white['power']:.3g}: {_mean(white)}")

@@ -1,4 +1,4 @@
-"""What `hull` does: from pictures or a stage to silhouettes, to the shape that casts them, to what its file casts."""
+"""What `hull` does: from pictures or a stage to silhouettes, and what a shape's file casts."""
 
 import math
 import warnings
@@ -8,39 +8,34 @@ from pathlib import PurePath
 from typing import Any, Literal, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Counts, locked
+from lightcube.optics.arrays import Flags, Images, locked
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
-from lightcube.optics.transfer import Transfer
-from lightcube.pictures.fitting import Fit
+from lightcube.optics.transfer import Transfer, encode
+from lightcube.pictures.fitting import Fit, fill
 from lightcube.pictures.pictures import Pictures
 from lightcube.solids.certificate import Certificate, certify
-from lightcube.solids.cutting import Cut, cut, plain_ground
+from lightcube.solids.cutting import Cut, cut
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.placement import Placement, best, placements
-from lightcube.solids.printing import stands
 from lightcube.solids.reach import thin_part
 from lightcube.solids.shape import Shape
 from lightcube.solids.silhouettes import FINE, Silhouettes
-from lightcube.solids.standing import silhouettes
+from lightcube.solids.standing import held, silhouettes
 from lightcube.solids.walls import WALLS, block, walls
 from lightcube.verbs import solving
 from lightcube.verbs.options import Options
 from lightcube.wording import counted
 
-#: Bytes that a voxel takes, and a small pixel of a silhouette: field and its surface; silhouettes and their distances.
-_VOXEL_BYTES, _SMALL_BYTES = 12, 4
+#: Bytes that a voxel takes at most (measured at 160 voxels: field, pieces, distances to the surface, the mesh and its
+#: file), and a small pixel of a silhouette: silhouettes and their distances.
+_VOXEL_BYTES, _SMALL_BYTES = 48, 4
 #: Around shapes on three walls is so much room on either side, in parts of the longest side.
 _ROOM = 0.08
-#: Pictures stretched by less than this part are not worth a word.
-_STRETCHED = 0.005
-#: Parts of pictures that are worth a word: near the threshold, in strokes that are too thin, not cast.
-_MANY_NEAR, _MANY_THIN, _SOME = 0.02, 0.01, 0.0005
-
-
 #: Whether pictures stand on three walls as they are given, or as least of them is lost.
 Place = Literal["given", "best"]
 #: Whatever reading gives.
@@ -49,13 +44,17 @@ Read = TypeVar("Read")
 
 @dataclass(frozen=True)
 class Cutting:
-    """How shapes are cut out of pictures, as `lightcube.cut` takes it, and if they stand on walls or are fitted."""
+    """How shapes are cut out of pictures, as `lightcube.cut` takes it, and if they stand on walls or are fitted.
+
+    `keep` names pictures that are not to be bent, or ``NAME=MASK``, a picture that is light where it is not to be.
+    """
 
     threshold: float | None = None
     invert: bool | None = None
     is_walls: bool = False
     fit: Fit | None = None
     placement: Place = "given"
+    keep: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -72,6 +71,8 @@ class Wanted:
         By which part pictures on three walls were stretched, at most.
     placed
         Which picture stands on which of three walls, in words, where that was chosen.
+    held
+        ``(picture, row, column)``: what is to stay where it is when pictures are bent; None = nothing.
     """
 
     silhouettes: Silhouettes
@@ -79,6 +80,7 @@ class Wanted:
     cuts: tuple[Cut, ...]
     stretched: float = 0.0
     placed: str = ""
+    held: Flags | None = None
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -117,7 +119,7 @@ def read(sources: Sequence[str], options: Options, how: Cutting) -> Wanted:
     if stages:
         return _of_stage(stages[0], options, how)
     pictures = _pictures(sources, options)
-    cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
+    cuts = _kept(cut(pictures, threshold=how.threshold, invert=how.invert), how.keep)
     if how.is_walls and how.fit is not None:
         raise InputError("--fit is for a turntable, and pictures for --walls are stretched to a block: leave out --fit")
     if how.placement != "given" and not how.is_walls:
@@ -133,8 +135,47 @@ def _of_stage(source: str, options: Options, how: Cutting) -> Wanted:
     """The silhouettes of a stage file."""
     solving.refuse_beside_stage(source, options)
     stage, pictures, ways = _on_white(lambda: io.read_stage(source, transfer=options.transfer))
-    cuts = cut(pictures, threshold=how.threshold, invert=how.invert)
+    cuts = _kept(cut(pictures, threshold=how.threshold, invert=how.invert), how.keep)
     return _standing(cuts, stage.rig(), stage.grid, ways)
+
+
+def _kept(cuts: tuple[Cut, ...], keep: Sequence[str]) -> tuple[Cut, ...]:
+    """Shapes with what is to be kept of each: all of those that are named, of others what is light in a mask."""
+    kept: dict[str, Images] = {}
+    by_name = {one.name: one for one in cuts}
+    for said in keep:
+        name, _, mask = (said, "", "") if said in by_name else said.partition("=")
+        if name not in by_name:
+            raise InputError(f"--keep {said}: there is no such picture: name one of {', '.join(by_name)}")
+        of = by_name[name].coverage.shape
+        found = _mask(mask, of) if mask else np.ones(of, np.float32)
+        kept[name] = np.maximum(kept[name], found) if name in kept else found
+    return tuple(replace(one, kept=locked(kept[one.name])) if one.name in kept else one for one in cuts)
+
+
+def _mask(path: str, of: tuple[int, ...]) -> NDArray[np.float32]:
+    """How light each pixel of a mask is, in display values, 0 where it is transparent; made as large as its picture."""
+    read = _read_one(path, "srgb")
+    if len(read) != 1:
+        raise InputError(f"--keep: {path} holds {counted(len(read), 'picture')}: give one mask")
+    (image,), (rows, columns) = read.images, of
+    own = image.shape[:2]
+    if abs(own[0] * columns - own[1] * rows) > max(own[0], own[1], rows, columns):
+        raise InputError(
+            f"--keep: {path} has {own[0]} x {own[1]} pixels and its picture {rows} x {columns}: give a mask in its "
+            "proportions"
+        )
+    grey = encode(np.clip(image, 0, 1), "srgb").mean(axis=2)
+    grey *= 1 if read.opacities is None or read.opacities[0] is None else read.opacities[0]
+    area = np.zeros((rows, columns, 1), np.float32)
+    fill(
+        area,
+        np.zeros((rows, columns), np.float32),
+        np.ascontiguousarray(grey[..., None], np.float32),
+        "stretch",
+        (0.5, 0.5),
+    )
+    return area[..., 0]
 
 
 def _on_turntable(pictures: Pictures, cuts: tuple[Cut, ...], options: Options, fit: Fit) -> Wanted:
@@ -167,11 +208,12 @@ def _on_walls(cuts: tuple[Cut, ...], options: Options, placement: Place) -> Want
 
 
 def on_which_wall(placed: Placement, cuts: Sequence[Cut]) -> str:
-    """Which picture stands on which of three walls, and whether it is mirrored."""
-    return ", ".join(
-        f"{wall} = {cuts[number].name}{' mirrored' if way else ''}"
-        for wall, number, way in zip(WALLS, placed.order, placed.mirrored, strict=True)
-    )
+    """Which picture stands on which of three walls, and how the one on top is turned."""
+    said = ", ".join(f"{wall} = {cuts[number].name}" for wall, number in zip(WALLS, placed.order, strict=True))
+    ways = [" mirrored"] if placed.is_mirrored else []
+    if placed.quarters:
+        ways.append(("", " turned left by 90°", " turned by 180°", " turned right by 90°")[placed.quarters])
+    return said + " and".join(ways)
 
 
 def _with_room(wanted: Wanted) -> Wanted:
@@ -184,16 +226,21 @@ def _with_room(wanted: Wanted) -> Wanted:
     rows, columns = (FINE * side for side in rig.picture_shape)
     inside = np.zeros((len(given), rows, columns), np.bool_)
     room = FINE * more
+    held = None if wanted.held is None else np.zeros((len(given), *rig.picture_shape), np.bool_)
     for picture, shape, (high, wide) in zip(inside, given.inside, FINE * given.rig.stops.window, strict=True):
         picture[room : room + high, room : room + wide] = shape[:high, :wide]
-    return Wanted(Silhouettes(locked(inside), rig, given.names), grid, wanted.cuts)
+    if held is not None and wanted.held is not None:
+        for picture, kept, (high, wide) in zip(held, wanted.held, given.rig.stops.window, strict=True):
+            around = np.pad(kept[:high, :wide], more, mode="edge")
+            picture[: around.shape[0], : around.shape[1]] = around
+    return Wanted(Silhouettes(locked(inside), rig, given.names), grid, wanted.cuts, held=held)
 
 
 def _standing(cuts: Sequence[Cut], rig: Rig, grid: Grid, ways: Fit | Sequence[Fit]) -> Wanted:
     """Shapes put onto a rig; `InputError` where that, or the block, does not fit into the memory."""
     small = len(rig) * math.prod(rig.picture_shape) * FINE**2
     solving.check_memory(_VOXEL_BYTES * math.prod(grid.shape) + _SMALL_BYTES * small)
-    return Wanted(silhouettes(cuts, rig, ways), grid, tuple(cuts))
+    return Wanted(silhouettes(cuts, rig, ways), grid, tuple(cuts), held=held(cuts, rig, ways))
 
 
 def _pictures(sources: Sequence[str], options: Options) -> Pictures:
@@ -238,98 +285,3 @@ def certificate(output: str, shape: Shape) -> Certificate:
     mesh = io.written_mesh(output)
     low = shape.mesh.vertices_mm[:, 2].min() - mesh.vertices_mm[:, 2].min()
     return certify(Mesh(locked(mesh.vertices_mm + np.array([0.0, 0.0, low])), mesh.faces), shape.silhouettes)
-
-
-def doubts(wanted: Wanted) -> list[str]:
-    """What may be wrong with the pictures, a sentence each."""
-    said = []
-    for name, one, thin in zip(wanted.silhouettes.names, wanted.cuts, wanted.thin, strict=True):
-        if not plain_ground(one):
-            other = "leave out --invert" if one.by == "light" else "--invert takes the other"
-            said.append(f"{name}: its shape covers {one.border:.0%} of its border, so it may be the ground: {other}")
-        elif one.border:
-            said.append(f"{name}: its shape touches the border of its picture, and may be cut off there")
-        if one.near > _MANY_NEAR:
-            said.append(
-                f"{name}: {one.near:.0%} of its pixels lie near the threshold of {one.threshold:.2f}: edges are soft"
-            )
-        if one.specks:
-            said.append(f"{name}: {counted(one.specks, 'speck')} removed")
-        if thin > _MANY_THIN:
-            said.append(f"{name}: {thin:.0%} of its shape is thinner than two voxels, and may be lost: take more (--n)")
-    return [*said, *_emptied(wanted)]
-
-
-def _emptied(wanted: Wanted) -> list[str]:
-    """Pictures that wipe out rows of others: those in which a height is empty at which others have something."""
-    given, heights = wanted.silhouettes, _heights(wanted.silhouettes.rig)
-    if heights is None or len(heights) < 2:
-        return []
-    held = np.asarray(given.pixels()[heights].any(axis=2))
-    said = []
-    for number, own in zip(heights, held, strict=True):
-        wiped = float(np.mean(held.any(axis=0) & ~own) / max(np.mean(held.any(axis=0)), 1e-9))
-        if wiped > _MANY_THIN:
-            said.append(
-                f"{given.names[number]}: it is empty over {wiped:.0%} of the height that others fill, "
-                "and nothing can stand there: make shapes as high as each other"
-            )
-    return said
-
-
-def _heights(rig: Rig) -> Counts | None:
-    """The pictures whose rows are heights, under level light on upright screens; None where their rows differ."""
-    views = rig.views
-    level = (views.lamps[:, 3] == 0) & (np.abs(views.lamps[:, 2]) < 1e-9)
-    upright = np.all(np.abs(views.row_steps_mm[:, :2]) < 1e-9, axis=1)
-    (chosen,) = np.nonzero(level & upright)
-    places = np.column_stack([views.row_steps_mm[chosen, 2], views.origins_mm[chosen, 2]])
-    return chosen if len(chosen) and np.allclose(places, places[0]) else None
-
-
-def in_short(wanted: Wanted) -> list[str]:
-    """How the pictures were read and where they stand, for people."""
-    said = []
-    for by, words in (("dark", "dark on light"), ("light", "light on dark"), ("opacity", "cut by their transparency")):
-        at = [one.threshold for one in wanted.cuts if one.by == by]
-        if at:
-            bounds = f"{min(at):.2f}" if max(at) - min(at) < 0.005 else f"{min(at):.2f} to {max(at):.2f}"
-            said.append(f"{counted(len(at), 'shape')} {words}, threshold {bounds}")
-    if wanted.placed:
-        said.append(f"placed as {wanted.placed}")
-    nz, ny, nx = wanted.grid.shape
-    size = " x ".join(f"{length:.4g}" for length in wanted.grid.size_mm)
-    said.append(f"block of {nz} x {ny} x {nx} voxels, {size} mm (z, y, x)")
-    if wanted.stretched >= _STRETCHED:
-        said.append(f"pictures are stretched by {wanted.stretched:.0%} so that they share this block")
-    return said
-
-
-def _promised(shape: Shape) -> str:
-    """What a shape's silhouettes are."""
-    repair = shape.provenance.get("repair")
-    way = repair.get("way") if isinstance(repair, dict) else None
-    return {"warp": "the bent pictures", "grow": "the pictures with what was added"}.get(str(way), "what was given")
-
-
-def results(shape: Shape, found: Certificate, pieces: int) -> list[str]:
-    """What a hull is and what its file casts, for people."""
-    mesh = shape.mesh
-    x, y, z = mesh.size_mm
-    closed = "watertight" if mesh.is_watertight else f"{counted(mesh.bad_edges, 'bad edge')}"
-    size = f"{x:.4g} x {y:.4g} x {z:.4g} mm, {mesh.volume_mm3 / 1000:.3g} cm³"
-    overlap = f"{found.overlap.mean():.2%}, the worst by {found.overlap.min():.2%}"
-    said = [
-        f"{size}, {counted(len(mesh), 'face')}, {closed}, {counted(pieces, 'piece')}",
-        f"shadows of the file overlap {_promised(shape)} by {overlap}",
-    ]
-    if not stands(mesh):
-        said.append("it tips over where it stands: lay it down, or glue it to a foot that no lamp sees")
-    worst = int(np.argmax(found.missing))
-    if found.missing[worst] > 0.005:
-        better = ", and which placement is better" if shape.rig.screens.names == WALLS else ""
-        said.append(
-            f"no object casts {found.missing[worst]:.1%} of {shape.names[worst]} while it keeps to the others: "
-            f"lightcube check --opaque says where and why{better}"
-        )
-    return said

@@ -1,22 +1,29 @@
 """What `hull` makes of silhouettes: bent, trimmed or added to where they contradict each other, then carved."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from lightcube.errors import InputError
-from lightcube.optics.arrays import Flags
 from lightcube.solids import projections
+from lightcube.solids.base import with_base
 from lightcube.solids.carving import Carving, carve
+from lightcube.solids.printing import stands
 from lightcube.solids.repair import MOST_BENT, Repaired, Way, repair
+from lightcube.solids.shape import Shape
 from lightcube.solids.walls import WALLS
 from lightcube.verbs.hulls import Wanted
 from lightcube.wording import counted
 
 #: What is left out of silhouettes is worth a word above this part of one, and advice above that.
 _SOME, _MUCH = 0.0005, 0.05
+#: How thick a base is where nobody says so, in longest sides of the block.
+_BASE = 0.03
+
+#: How thick a base is, in mm, or whether there is none, or one where a solid would tip over.
+Base = float | Literal["auto", "none"]
 
 
 @dataclass(frozen=True)
@@ -25,34 +32,53 @@ class Making:
 
     Parameters
     ----------
-    way, keep
-        How they are made to agree, and the names of pictures that stay as they are if they can.
+    way
+        How they are made to agree.
     wall_mm
         How thick walls are to be.
     carving, deep, drain_mm
-        What is taken out, as `lightcube.carve` takes it; None = nothing.
+        What is taken out, as `lightcube.carve` takes it.
+    base_mm
+        How thick a base is on which it stands; "auto" where it would tip over.
     """
 
     way: Way = "auto"
-    keep: Sequence[str] = ()
     wall_mm: float = 1.2
-    carving: Carving | None = None
+    carving: Carving = "none"
     deep: int = 3
     drain_mm: float = 3.0
+    base_mm: Base = "auto"
 
 
 def make(wanted: Wanted, how: Making, told: Callable[[int, int], None] | None = None) -> Repaired:
     """The solid that casts what is wanted, or what that had to become."""
     if not how.wall_mm >= 0:
         raise InputError(f"--wall is how thick walls are, 0 mm or more, not {how.wall_mm:g}")
-    held, wall_px = _held(wanted, how.keep), _wall_px(wanted, how.wall_mm)
-    found = repair(wanted.silhouettes, wanted.grid, how.way, wall_px=wall_px, held=held, told=told)
+    wall_px = _wall_px(wanted, how.wall_mm)
+    found = repair(wanted.silhouettes, wanted.grid, how.way, wall_px=wall_px, held=wanted.held, told=told)
     shape = found.shape
-    if how.carving is not None:
+    if how.carving != "none":
         shape = carve(shape, how.carving, wall_mm=how.wall_mm, drain_mm=how.drain_mm, deep=how.deep)
+    shape, base_mm = _standing(shape, how.base_mm)
     cuts = {name: fact for name, fact in wanted.facts.items() if name in ("pictures", "stretched")}
-    made = {"command": "hull", **cuts, "repair": facts(found), "carving": how.carving}
+    made = {"command": "hull", **cuts, "repair": facts(found), "carving": how.carving, "base_mm": base_mm}
+    made["wall_mm"] = how.wall_mm
     return replace(found, shape=replace(shape, provenance=made))
+
+
+def _standing(shape: Shape, base_mm: Base) -> tuple[Shape, float]:
+    """A solid with a base, where one is asked for or it would tip over and one helps, and how thick that is."""
+    if base_mm == "none":
+        return shape, 0.0
+    if base_mm != "auto":
+        return with_base(shape, base_mm), base_mm
+    if stands(shape.mesh):
+        return shape, 0.0
+    thick_mm = max(_BASE * shape.grid.longest * shape.grid.voxel_mm, 2 * float(shape.grid.sides_mm[2]))
+    try:
+        return with_base(shape, thick_mm), thick_mm
+    except InputError:  # what stands on nothing that is hidden is left as it is, and told to tip over
+        return shape, 0.0
 
 
 def _wall_px(wanted: Wanted, wall_mm: float) -> float:
@@ -61,19 +87,6 @@ def _wall_px(wanted: Wanted, wall_mm: float) -> float:
         return 0.0
     pixel_mm = wanted.grid.voxel_mm * float(np.mean(projections.voxels_a_pixel(wanted.silhouettes.rig, wanted.grid)))
     return wall_mm / 2 / pixel_mm + 0.5
-
-
-def _held(wanted: Wanted, keep: Sequence[str]) -> Flags | None:
-    """The pictures that stay as they are."""
-    names = wanted.silhouettes.names
-    for name in keep:
-        if name not in names:
-            raise InputError(f"--keep {name}: there is no such picture: name one of {', '.join(names)}")
-    if not keep:
-        return None
-    held = np.zeros((len(names), *wanted.silhouettes.rig.picture_shape), np.bool_)
-    held[[name in keep for name in names]] = True
-    return held
 
 
 def facts(found: Repaired) -> dict[str, Any]:
@@ -109,6 +122,8 @@ def in_words(found: Repaired, *, is_placed: bool) -> list[str]:
         said.append(f"what no object casts is left out: of what was drawn it casts {each}")
     if said and changed:
         said.append(f"as drawn, {', '.join(changed)} had other parts or holes: look at it (--overlay)")
+    if thick_mm := found.shape.provenance.get("base_mm"):
+        said.append(f"it stands on a base of {thick_mm:.2g} mm, below its pictures' lowest row and in none of them")
     if found.way == "trim" and 1 - worst > _MUCH and len(names) > MOST_BENT:
         many = counted(len(names), "picture")
         said.append(

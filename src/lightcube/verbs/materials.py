@@ -63,7 +63,8 @@ def amounts(cube: Cube) -> dict[str, Any]:
         "amount_mean": cube.amounts.mean(axis=(1, 2, 3), dtype=np.float64).tolist(),
         "amount_max": cube.amounts.max(axis=(1, 2, 3)).tolist(),
         "full_voxels": float(full.mean()),
-        "overfull_voxels": float(np.mean(cube.amounts.sum(axis=0) > 1)),
+        # inks lie over each other, what fills a place does not
+        "overfull_voxels": float(np.mean(cube.amounts.sum(axis=0) > 1)) if cube.dyes.kind != "ink" else 0.0,
     }
 
 
@@ -92,7 +93,7 @@ def reach(cube: Cube, dyes: Dyes) -> dict[str, Any]:
 def reach_in_words(known: dict[str, Any], names: Sequence[str]) -> str:
     """The same in a sentence."""
     if not known["out_of_reach_worst"]:
-        return f"{', '.join(names)} can make all of it"
+        return f"{', '.join(names)} can make all of it, to within a twentieth"
     return (
         f"{known['out_of_reach_voxels']:.1%} of the voxels that are not clear ask for what {', '.join(names)} cannot "
         f"make, {known['out_of_reach_extinction']:.1%} of all extinction, most of it where they are to absorb "

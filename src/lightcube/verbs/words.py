@@ -1,5 +1,6 @@
 """What is said of plans, jobs and cubes, in sentences: what is well, what is wrong, what to do."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -9,8 +10,10 @@ import numpy as np
 from lightcube.backward.recipe import recipe_of
 from lightcube.backward.solution import Solution
 from lightcube.jobs.publishing import Published
+from lightcube.optics.grid import Grid
 from lightcube.optics.light import MOST_GRAIN, Beams, Light
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.optics.tables import POWER_MOST
 from lightcube.pictures.fitting import cut_off, fit_report, said_sizes
 from lightcube.planning.consistency import advice, check
@@ -36,6 +39,9 @@ _FROM_NEAR = {
     "fine": "from close up, the pictures look a little grainy, like fine film",
     "coarse": "from close up, the pictures look grainy, like coarse film: stand further back",
 }
+#: Films that are laid by hand lie so far off, mm. Off by so many cells, pictures are about as good as this, dB, solved
+#: as if they lay right or for films that lie off (docs/films.md).
+_BY_HAND_MM, _LAID, _LAID_DB = 0.2, 0.08, (31.0, 34.0)
 #: So many times as much is tried against grain as a cube was made with, and so much where that was nothing.
 _SMOOTHER, _LITTLE = 3, 0.01
 
@@ -47,13 +53,22 @@ def in_short(planned: Plan, order: "Order | None") -> list[str]:
     return [
         _wanted(planned),
         *_cropped(planned),
-        f"cube of {voxels(planned.grid.shape)} voxels, {planned.grid.size_mm[2]:.3g} mm wide{held}",
+        f"{block(planned.grid)}{held}",
         *expected(planned),
         *gain(planned, order),
         *([] if planned.recipe.dyes is None else materials.in_words(planned.recipe.dyes)),
         *(f"doubtful: {sentence}" for sentence in planned.doubtful),
         *unsampled(rig, "thin" if planned.recipe.beams.is_thin else "area"),
     ]
+
+
+def block(grid: Grid) -> str:
+    """What is to be made, and how large it is."""
+    if not isinstance(grid, Stack):
+        return f"cube of {voxels(grid.shape)} voxels, {grid.size_mm[2]:.3g} mm wide"
+    high, *sides = grid.size_mm
+    across = " x ".join(f"{side:.4g}" for side in reversed(sides))
+    return f"{counted(grid.shape[0], 'film')} of {across} mm in cells of {grid.voxel_mm:.3g} mm, {high:.3g} mm deep"
 
 
 def voxels(shape: tuple[int, int, int]) -> str:
@@ -70,9 +85,10 @@ def _wanted(planned: Plan) -> str:
         "picture": len(rig),
         "screen": len(rig.screens.names),
         "lamp": len(rig.lamps.names),
-        "stop": len(planned.stage.stops_deg),
+        "stop": 0 if isinstance(planned.grid, Stack) else len(planned.stage.stops_deg),
+        "move": len({shot.move for shot in planned.stage.shots if shot.move is not None}),
     }
-    return ", ".join(counted(count, name) for name, count in counts.items())
+    return ", ".join(counted(count, name) for name, count in counts.items() if count)
 
 
 def _cropped(planned: Plan) -> list[str]:
@@ -97,11 +113,21 @@ def unsampled(rig: Rig, light: Beams) -> list[str]:
 
 def expected(planned: Plan) -> list[str]:
     """What the pictures will be like, as far as it is known."""
+    if isinstance(planned.grid, Stack):
+        return [_laid(planned)]
     prediction, by = planned.prediction, " (by method display)" * (planned.recipe.method != "display")
     if prediction.is_known:
         return [f"{judged(planned.targets.names, prediction.psnr, 'will be', planned.targets.rig)}{by}"]
     told = planned.impossible or is_measured(planned.targets.rig, planned.grid)
     return [] if told else ["how good the pictures become was not measured in rooms like this"]
+
+
+def _laid(planned: Plan) -> str:
+    """What becomes of pictures when films are laid by hand: what counts is how far they lie off in cells (measured)."""
+    off_mm, cell_mm = planned.recipe.assembly_mm or _BY_HAND_MM, planned.grid.voxel_mm
+    decibels = _LAID_DB[planned.recipe.assembly_mm > 0] - 18 * math.log10(off_mm / cell_mm / _LAID)
+    helps = "" if planned.recipe.assembly_mm else f"; --assembly-mm {off_mm:g} gains about 3 dB there"
+    return f"with films {off_mm:g} mm off pictures will be {nearness(decibels)}, about {decibels:.0f} dB{helps}"
 
 
 def judged(names: Sequence[str], psnr: Iterable[float], are: str, rig: Rig) -> str:
@@ -223,6 +249,9 @@ def solved(solution: Solution) -> list[str]:
         lines.append(
             f"lamp: at most {power:.3g} times as strong as one that makes the bare wall white ({in_ev(power)})"
         )
+    if isinstance(cube.grid, Stack):
+        near = "from close up, pixels fall into coloured cells, whose light adds up further back"
+        return [*lines, *materials.held(cube), near]
     return [*lines, *materials.held(cube), from_near(scores["grain_rms"], recipe_of(cube).beams)]
 
 

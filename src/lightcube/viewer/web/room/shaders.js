@@ -1,6 +1,7 @@
 // The renderer's programs in GLSL ES 3.00: light through the cube, what the screens show, and the room.
 
 import { JUDGED } from "../model/area.js";
+import { BODY } from "./solid.js";
 
 const HEAD = `#version 300 es
 precision highp float;
@@ -183,10 +184,14 @@ void shine(vec3 dense, float piece) {
 `;
 
 /**
- * The room. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
+ * The room, around glass or around a body. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
  * light behind the cube's glass, or on a veil before it. The things' layout is gpu.js's `thingTable`.
  */
-export const ROOM = `${HEAD}${TRANSFER}${EMBERS}${GLASS}
+export function roomProgram(solid) {
+  return `${HEAD}precision highp sampler3D;\n${solid ? "#define SOLID\n" : ""}${ROOM}`;
+}
+
+const ROOM = `${TRANSFER}${EMBERS}${GLASS}
 const int MOST_BEAMS = ${MOST_BEAMS};
 uniform vec2 canvas;      // pixels
 uniform mat3 sight;       // to the right edge, to the upper edge, ahead
@@ -220,7 +225,12 @@ vec3 way, stepX, stepY;   // of this pixel, and on to its neighbours
 vec3 light;               // behind the glass
 vec4 veil;                // before it: light, and the part that it lets through
 float solid, enter, leave;
+float first, last;        // where the ray is in the block, whatever stands there
 bool onPicture;           // whether the ray ends there, where nothing may cover the exact light
+
+#ifdef SOLID
+${BODY}
+#endif
 
 struct Place { float depth; vec2 at; vec2 grain; };
 
@@ -409,7 +419,7 @@ void drawBeams() {
     for (int k = 0; k < STEPS; k++) {
       float t = met.x + (float(k) + noise) * piece;
       vec3 place = t * way;
-      if (t > enter && t < leave) continue;
+      if (t > first && t < last) continue;
       vec3 source = beams[i].w == 0.0 ? beams[i].xyz : place - beams[i].xyz;
       float left = dot(corner.xyz - place, facing.xyz) / dot(source, facing.xyz);
       if (left < 0.0) continue; // behind the screen
@@ -480,14 +490,24 @@ void main() {
   onPicture = false;
   for (int i = 0; i < counts.x; i++) drawScreen(i);
   bool plain = solid == open;
+  first = enter;
+  last = leave;
+#ifdef SOLID
+  enter = leave = NEVER;
+  drawBody();
+#endif
   if (!(enter < leave && enter < solid)) enter = leave = NEVER;
   drawTable(plain ? 0.68 : 0.1);
   for (int i = 0; i < counts.z; i++) drawLine(counts.x + counts.y + i);
   for (int i = 0; i < counts.y; i++) drawLamp(counts.x + i);
   vec2 sheetMet = metSheet();
   drawBeams();
+#ifdef SOLID
+  lay(markTone, sheetMet.x, sheetMet.y);
+#else
   drawGlass(sheetMet);
   drawSheen();
+#endif
   vec3 seen = toDisplay(clamp(veil.rgb + veil.a * light, 0.0, 1.0));
   // gradients without steps: noise of half a level (J. Jimenez, Next generation post processing, 2014)
   float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;

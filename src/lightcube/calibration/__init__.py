@@ -1,0 +1,1 @@
+"""What inks really do: a page to print, found again in a photograph, and fitted."""
