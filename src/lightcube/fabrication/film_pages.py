@@ -135,11 +135,11 @@ def _film_page(canvas: Any, sheets: Sheets, film: int) -> None:
     for x, y in where.pins_mm:
         canvas.circle(x, y, PIN_MM)
         _cross(canvas, x, y, PIN_MM / 2)
-    large, top = min(_LARGE, width / 10), bottom + height + 4
-    canvas.setFont(_FONT, large / 0.72)  # capitals are so high
-    canvas.drawCentredString(left + 0.47 * width, top, str(film + 1))
-    canvas.drawCentredString(left + 0.77 * width, top, "F")
-    _arrow(canvas, left + 0.62 * width, top, large)
+    (first, wide), top = where.marks_mm, bottom + height + 4
+    canvas.setFont(_FONT, _LARGE / 0.72)  # capitals are so high
+    canvas.drawCentredString(first + 0.47 * wide, top, str(film + 1))
+    canvas.drawCentredString(first + 0.77 * wide, top, "F")
+    _arrow(canvas, first + 0.62 * wide, top, _LARGE)
     side = ", printed side down" if sheets.is_mirrored else ""
     which = f"film {film + 1} of {len(sheets.levels)}, {sheets.assembly.heights[film]}"
     told = f"{which}: print at 100 %, this side up{side}, arrow away from you"

@@ -38,7 +38,9 @@ _SOME_DPI = (300, 1200)
 _OFF_MM = 0.01
 #: Crosses stand so far from a film's edge and in from its sides, pin holes in the same rows; and how large both are.
 _OUT_MM, _IN_MM, ARM_MM, PIN_MM = 8.0, 6.0, 3.0, 2.5
-#: Where pin holes are, as parts of a film's width, above and below: no turn and no mirror takes them to each other.
+#: Marks go so far from left to right at least.
+_MARKS_MM = 90.0
+#: Where pin holes are, as parts of that, above and below: no turn and no mirror takes them to each other.
 _PINS = (0.25, 0.6)
 #: More dots on a page than this fill the memory.
 _MOST_DOTS = 1 << 28
@@ -83,18 +85,23 @@ class Layout:
         return round((width - wide) / 2 / dot) * dot, round((height - high) / 2 / dot) * dot
 
     @property
+    def marks_mm(self) -> tuple[float, float]:
+        """Where marks begin from the left, and how far they go: as wide as the film, or where that is small, wider."""
+        wide = max(self.size_mm[0], _MARKS_MM)
+        return self.corner_mm[0] + (self.size_mm[0] - wide) / 2, wide
+
+    @property
     def crosses_mm(self) -> tuple[tuple[float, float], ...]:
-        """Middles of four crosses, above and below the film."""
-        (left, bottom), (width, height) = self.corner_mm, self.size_mm
-        inset = min(_IN_MM, width / 4)
-        return tuple(
-            (x, y) for y in (bottom - _OUT_MM, bottom + height + _OUT_MM) for x in (left + inset, left + width - inset)
-        )
+        """Middles of four crosses, above and below the film, on whole dots."""
+        (_, bottom), (_, height), (left, width) = self.corner_mm, self.size_mm, self.marks_mm
+        across = left + _IN_MM, left + width - _IN_MM
+        along, dot = (bottom - _OUT_MM, bottom + height + _OUT_MM), _INCH / self.dpi
+        return tuple((round(x / dot) * dot, round(y / dot) * dot) for y in along for x in across)
 
     @property
     def pins_mm(self) -> tuple[tuple[float, float], ...]:
         """Middles of two pin holes, one above the film and one below."""
-        (left, bottom), (width, height) = self.corner_mm, self.size_mm
+        (_, bottom), (_, height), (left, width) = self.corner_mm, self.size_mm, self.marks_mm
         above, below = _PINS
         return (left + above * width, bottom + height + _OUT_MM), (left + below * width, bottom - _OUT_MM)
 
