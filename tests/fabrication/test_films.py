@@ -90,9 +90,9 @@ def test_crosses_stand_where_they_are_said_to(printed: tuple[Path, Any, dict[str
     finally:
         document.close()
     dark = 255.0 - bitmap.reshape(bitmap.shape[0], -1)
-    tall = dark.shape[0]
+    (tall, wide), (width, height) = dark.shape, said["film"]["page_mm"]
     for x, y in said["crosses_mm"]:
-        column, row = x * 600 / 25.4, tall - y * 600 / 25.4
+        column, row = x / width * wide, tall - y / height * tall  # of pages that are not whole dots pixels are smaller
         near = dark[int(row) - 60 : int(row) + 60, int(column) - 60 : int(column) + 60]
         at = np.arange(120) + 0.5
         up, across = (each - each.min() for each in (near.sum(axis=0), near.sum(axis=1)))  # of one line each

@@ -93,7 +93,7 @@ def export(
 
     Examples
     --------
-    >>> import lightcube as lc, tempfile, os
+    >>> import lightcube as lc, numpy as np, tempfile, os
     >>> grid = lc.Grid((4, 6, 6))
     >>> cube = lc.Cube(np.ones((3, 4, 6, 6), np.float32), grid, lc.turntable(grid, [20, 80], picture_shape=(4, 4)))
     >>> with tempfile.TemporaryDirectory() as folder:
