@@ -10,6 +10,7 @@ from PIL import Image
 
 import lightcube as lc
 from lightcube.optics.stack import Stack
+from lightcube.optics.transfer import encode
 from tests.cli.test_cli import run
 
 __all__ = ["run"]
@@ -92,3 +93,31 @@ def test_what_cannot_be_is_one_sentence(run: Any, photos: str, more: tuple[str, 
     assert said in " ".join(done.err.split())
     assert "Traceback" not in done.err
     assert not Path("stack.zarr").exists()
+
+
+def test_a_photograph_of_the_real_thing_is_compared_with_what_was_promised(run: Any, photos: str) -> None:
+    """A camera that looks straight on, at a picture in the dark."""
+    assert run("solve", photos, *FEW, "-o", "stack.zarr").code == 0
+    promised = list(lc.cast(lc.load("stack.zarr")))[1]
+    wall = np.zeros((200, 260, 3), np.uint8)
+    shown = np.clip(encode(0.7 * promised), 0, 1).repeat(20, axis=0).repeat(20, axis=1)
+    wall[40 : 40 + len(shown), 50 : 50 + shown.shape[1]] = np.rint(255 * shown)
+    Image.fromarray(wall).save("wall.png")
+    found = json.loads(run("score", "stack.zarr", "--photo", "wall.png", "--stop", "2", "--json").out)
+    assert found["promised"]["psnr"] > 30
+    assert found["exposure_ev"] == pytest.approx([np.log2(0.7)] * 3, abs=0.05)
+    said = run("score", "stack.zarr", "--photo", "wall.png", "--stop", "2", "--sheet", "sheet.png")
+    assert "beside what was promised" in said.out
+    with Image.open("sheet.png") as sheet:
+        assert sheet.size[0] > 300
+    for more, what in (
+        (("--photo", "wall.png"), "belong together"),
+        (("--stop", "2"), "belong together"),
+        (("--photo", "wall.png", "--stop", "3"), "there is no picture 3"),
+        (("--photo", "no.png", "--stop", "2"), "no.png"),
+        (("--photo", "wall.png", "--stop", "2", "--corners", "1,2,3"), "eight numbers"),
+        (("--photo", "wall.png", "--stop", "2", "--robust"), "take --sheet only"),
+    ):
+        refused = run("score", "stack.zarr", *more)
+        assert refused.code == 2
+        assert what in " ".join(refused.err.split())

@@ -20,7 +20,7 @@ def promised(seed: int = 0) -> np.ndarray:
     rows, columns = SHAPE
     y, x = np.mgrid[0:rows, 0:columns] / (rows, columns)[0]
     waves = [0.35 + 0.25 * np.sin(a * x + b * y + c) for a, b, c in random.uniform(1, 7, (3, 3))]
-    return np.clip(np.stack(waves, axis=-1) + random.uniform(0, 0.1, (*SHAPE, 3)), 0.01, 0.95).astype(np.float32)
+    return np.clip(np.stack(waves, axis=-1) + random.uniform(0, 0.3, (*SHAPE, 3)), 0.01, 0.95).astype(np.float32)
 
 
 def taken(picture: np.ndarray, corners: np.ndarray = CORNERS, noise: float = 0.0) -> np.ndarray:

@@ -21,7 +21,7 @@ from lightcube.scoring.metrics import delta_e, psnr, ssim
 #: Points along each side of a pixel at which a photograph is looked at.
 _POINTS = 3
 #: Corners are moved at so many pixels a side, and by such steps in sides of the picture, from coarse to fine.
-_LEVELS = ((6, 0.03), (12, 0.012), (24, 0.004))
+_LEVELS = ((6, 0.03), (12, 0.012), (24, 0.004), (64, 0.001))
 #: A photograph that is less like the promise, correlated, was not found.
 _ALIKE = 0.7
 #: Values from here on may be clipped.
@@ -196,7 +196,8 @@ def _moved(
     def off(moves: Reals) -> Reals:
         return np.asarray((seen(moves) - goal).ravel())
 
-    found = least_squares(off, np.ones(8), diff_step=np.full(8, step))  # parts of numbers, which therefore begin at 1
+    # steps are parts of numbers, which therefore begin at 1
+    found = least_squares(off, np.ones(8), jac="3-point", diff_step=np.full(8, step))
     return _likeness(seen(found.x), goal), corners + side * (found.x.reshape(4, 2) - 1)
 
 
