@@ -285,7 +285,7 @@ def _wedge_page(canvas: Any, sheets: Sheets) -> None:
         top = height - MARGIN_MM - _HEADING
         room = width - 2 * MARGIN_MM
         _words(canvas, MARGIN_MM, top, "Wedge: even steps of each ink", room, _HEADING, font=_BOLD)
-        told = "what steps let through, measured or photographed on the screen's own light, shows how it is printed"
+        told = "how this printer prints; the page by which its inks are measured is that of lightcube calibrate wedge"
         _words(canvas, MARGIN_MM, top - 7, told, room)
         patch = min(_PATCH_MM, (width - 2 * MARGIN_MM - 24) / _STEPS)
         for row, (name, colour) in enumerate(_inks(sheets.printed)):
