@@ -123,6 +123,7 @@ def test_every_module_has_a_room() -> None:
         *("pydantic", "pydantic_core", "matplotlib", "fsspec", "llvmlite", "torch", "astra", "dask", "distributed"),
         "pi_heif",
         *("anywidget", "traitlets"),
+        "reportlab",
     }
 
 

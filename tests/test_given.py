@@ -3,7 +3,7 @@
 import inspect
 import re
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ GRID = lc.Grid((3, 5, 7))
 RIG = lc.turntable(GRID, [20, 70], elevation_deg=35, picture_shape=(3, 3))
 TARGETS = lc.Targets(np.full((2, 3, 3, 3), 0.5, np.float32), RIG)
 CUBE = lc.Cube(np.ones((3, 3, 5, 7), np.float32), GRID, RIG)
+MADE = replace(CUBE, targets=np.full((2, 3, 3, 4), 30_000, np.uint16))
 PICTURES = samples.photographs(2)
 RECIPE = lc.Recipe(passes=2)
 PREDICTION = lc.Prediction(np.ones(2), 20)
@@ -102,6 +103,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "load": {"path": "no.zarr"},
     "page": {"cube": CUBE, "label": "a"},
     "plan": {"pictures": PICTURES, "n": 6, "picture_width": 0.5},
+    "as_films": {"cube": MADE, "films": 2},
     "export": {"cube": CUBE, "path": "/no/such/folder/a.vdb", "kind": "volume"},
     "film": {"cube": CUBE},
     "read_export": {"path": "no.vdb"},

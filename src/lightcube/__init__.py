@@ -14,6 +14,7 @@ __getattr__, __dir__, __all__ = when_used(
         "threads": "cores",
         "InputError": "errors",
         "export": "fabrication.exporting",
+        "as_films": "fabrication.thinning",
         "read_export": "fabrication.reading",
         "cast": "forward.casting",
         "play": "forward.casting",

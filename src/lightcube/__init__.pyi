@@ -9,6 +9,7 @@ from lightcube.drawing.films import film
 from lightcube.errors import InputError
 from lightcube.fabrication.exporting import export
 from lightcube.fabrication.reading import read_export
+from lightcube.fabrication.thinning import as_films
 from lightcube.forward.casting import cast, play, player
 from lightcube.io import (
     read_dyes,
@@ -106,6 +107,7 @@ __all__ = [
     "Views",
     "Warped",
     "as_cube",
+    "as_films",
     "attenuator",
     "best_order",
     "carve",

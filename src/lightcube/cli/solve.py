@@ -13,6 +13,7 @@ from lightcube.cli.console import Stopped, compiling, done, err, json_line, list
 from lightcube.cli.fields import one_by_one
 from lightcube.cli.making import Movie
 from lightcube.cli.options import JSON, OUT, OVERWRITE, PICTURES, VERBOSE, threaded
+from lightcube.cli.prints import Prints
 from lightcube.drawing.poster import Format
 from lightcube.errors import InputError
 from lightcube.jobs import cluster, publishing, running
@@ -78,6 +79,9 @@ def solve(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Compute the cube whose shadows are the pictures; what was stopped or killed goes on where it was."""
+    prints = Prints(output, overwrite=overwrite)
+    prints.check(in_part=unit is not None)
+    output = prints.cube
     publishing.check_output(output, overwrite=overwrite)
     check_partial(output)
     if unit is not None and (memory is not None or scheduler is not None):
@@ -94,6 +98,7 @@ def solve(
     if units is None:
         job = solving.divided(job, output, workers, budget)
     movie.check_job(job)
+    prints.check_job(job)
     if dry_run:
         with err.status("timing a smaller cube"), compiling(as_json=as_json):
             needs = solving.needs(job)
@@ -123,7 +128,7 @@ def solve(
     if which is None:
         with compiling(as_json=as_json):
             solution = publishing.finish(job, store, output, overwrite=overwrite).solution
-        made = movie.write(solution.cube, as_json=as_json)
+        made = [*movie.write(solution.cube, as_json=as_json), *prints.write(solution.cube, as_json=as_json)]
         seconds = time.monotonic() - began
         if as_json:
             json_line("result", out=output, seconds=seconds, **printing.facts(solution))

@@ -16,6 +16,7 @@ from typing import Any
 from lightcube.errors import InputError
 from lightcube.events import Tell, counting
 from lightcube.fabrication import lamps, sidecar
+from lightcube.fabrication.films import FilmPages
 from lightcube.fabrication.planned import Advance, File, How, Planned
 from lightcube.fabrication.points import PointCloud
 from lightcube.fabrication.polyjet import PolyJet
@@ -39,6 +40,7 @@ KINDS: Mapping[Kind, type[How]] = {
     "points": PointCloud,
     "polyjet": PolyJet,
     "schedule": Schedule,
+    "film": FilmPages,
 }
 
 
@@ -65,6 +67,7 @@ def export(
         * ``"shell"``: surfaces around what is darkest, as ``.3mf`` (parts of one object, and an STL each) or ``.ply``.
         * ``"points"``: for a laser that marks glass inside, ``.ply``; an ornament.
         * ``"polyjet"``: a folder of PNG slices for a printer of coloured droplets.
+        * ``"film"``: a ``.pdf`` with a page for each film of a stack.
         * ``"schedule"``: when the table turns and how bright lamps are, ``.csv`` or ``.json``.
     overwrite
         Whether what stands there may be replaced.
@@ -76,7 +79,8 @@ def export(
         Is told how much is written.
     **options
         Of a volume `unit`, of shells `levels`, of points `spacing_um` and `seed`, of polyjet `resins`, `mode`, `seed`,
-        `flips` and `prefix`; as the class that `lightcube.fabrication.exporting.KINDS` has for the kind.
+        `flips` and `prefix`, of films `paper`, `dpi`, `inks`, `mirror`, `scale_x`, `scale_y` and `halftone`; as
+        the class that `lightcube.fabrication.exporting.KINDS` has for the kind.
 
     Returns
     -------
@@ -89,7 +93,7 @@ def export(
 
     Examples
     --------
-    >>> import lightcube as lc, tempfile, os
+    >>> import lightcube as lc, numpy as np, tempfile, os
     >>> grid = lc.Grid((4, 6, 6))
     >>> cube = lc.Cube(np.ones((3, 4, 6, 6), np.float32), grid, lc.turntable(grid, [20, 80], picture_shape=(4, 4)))
     >>> with tempfile.TemporaryDirectory() as folder:

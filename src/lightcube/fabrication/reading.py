@@ -8,6 +8,7 @@ from typing import Any
 
 from lightcube.errors import InputError
 from lightcube.fabrication import sidecar
+from lightcube.fabrication.film_file import laid, stack_of
 from lightcube.fabrication.polyjet import held_of
 from lightcube.fabrication.sidecar import Sidecar
 from lightcube.fabrication.volumes import FORMATS
@@ -23,20 +24,29 @@ from lightcube.optics.grid import Grid
 _SILENT = {".3mf": "shells", ".ply": "shells or points", ".stl": "a shell", ".csv": "a schedule"}
 
 
+#: What the name of printed films ends with.
+_FILMS = ".pdf"
+
+
 def is_exported(path: str | Path) -> bool:
-    """Whether a place is named as exported volumes are, or holds slices, or is another thing that was exported."""
+    """Whether a place is named as exported volumes and films are, or holds slices, or another thing was exported."""
     at = place(path)
     suffix = _suffix(at)
-    if suffix in FORMATS:
+    if suffix in FORMATS or suffix == _FILMS:
         return True
     if suffix in _SILENT:
         return _is_known(at)
     return isinstance(at, Path) and (at / sidecar.INSIDE).is_file()
 
 
+def is_film(path: str | Path) -> bool:
+    """Whether a place is named as pages of films are."""
+    return _suffix(place(path)) == _FILMS
+
+
 @checked
 def read_export(path: str | Path, *, like: Cube | None = None, force: bool = False) -> Cube:
-    """Read what an exported volume or a folder of slices holds as a cube, without targets.
+    """Read what an exported volume, a folder of slices or pages of films hold as a cube, without targets.
 
     Lamps and screens are those that the sidecar says, ``NAME.json`` beside a file and ``slices.json`` in a folder.
 
@@ -55,14 +65,16 @@ def read_export(path: str | Path, *, like: Cube | None = None, force: bool = Fal
     """
     at = place(path)
     folder, said = is_folder(at), _sidecar_of(at)
-    if said is not None and (said.cube is None or said.kind not in ("volume", "polyjet")):
+    if said is not None and (said.cube is None or said.kind not in ("volume", "polyjet", "film")):
         what = {"shell": "shells cast", "points": "points scatter light and cast"}.get(said.kind, "a schedule casts")
         raise InputError(f"{at}: {what} no picture of the cube, so there is nothing to score or to play: give the cube")
     with fetched(at) as local, system_errors(local, "reading"):
         if said is not None and not force:
             names = local if folder else local.parent
             sidecar.check_files(sidecar.place_of(at, is_folder=folder), said, names)
-        return _slices(local, said, force=force) if folder else _volume(local, at, said, like)
+        if folder:
+            return _slices(local, said, force=force)
+        return _films(local, at, said) if is_film(path) else _volume(local, at, said, like)
 
 
 def _slices(folder: Path, said: Sidecar | None, *, force: bool) -> Cube:
@@ -73,6 +85,20 @@ def _slices(folder: Path, said: Sidecar | None, *, force: bool) -> Cube:
         )
     volume, grid = held_of(folder, said).volume(forced=force)
     return sidecar.cube_of(folder, said.cube, volume, grid)
+
+
+def _films(file: Path, at: Place, said: Sidecar | None) -> Cube:
+    """The stack of films that pages hold."""
+    if not check_file(file).is_file():
+        raise InputError(f"there is no {at}: give a file that lightcube export wrote")
+    if said is None or said.cube is None or said.film is None:
+        raise InputError(
+            f"{at} does not say how high its films lie and which lamps are for them, and there is no "
+            f"{name_of(sidecar.place_of(at, is_folder=False))} beside it that does: keep both together, or export again"
+        )
+    films = said.cube["films"]
+    volume, stack, off_mm = stack_of(file, said.film, tuple(films["heights_mm"]), films["index"])
+    return laid(sidecar.cube_of(at, said.cube, volume, stack), off_mm)
 
 
 def _volume(file: Path, at: Place, said: Sidecar | None, like: Cube | None) -> Cube:

@@ -16,6 +16,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lightcube.errors import InputError
+from lightcube.fabrication.film_file import FilmFacts
 from lightcube.io import _metadata
 from lightcube.io._places import Place, beside, child, name_of, read_bytes
 from lightcube.optics.arrays import Volume
@@ -23,7 +24,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 
 #: What can be made of a cube.
-Kind = Literal["volume", "shell", "points", "polyjet", "schedule"]
+Kind = Literal["volume", "shell", "points", "polyjet", "schedule", "film"]
 #: In a folder of slices the sidecar stands among them: so it goes where they go.
 INSIDE = "slices.json"
 #: No sidecar of this package is longer: the beams of a large rig, and the names of ten thousand slices.
@@ -56,6 +57,8 @@ class Sidecar(BaseModel):
         All that its file says of a cube but its arrays; None where nothing is cast.
     palette
         The materials of slices.
+    film
+        Where films lie on their pages, and what they are printed with.
     droplets, pitch_mm
         Of slices: how many droplets there are along x, y and z, and their sides.
     made_from, made_from_sha256
@@ -73,6 +76,7 @@ class Sidecar(BaseModel):
     droplets: dict[Literal["x", "y", "z"], _Count] | None = None
     pitch_mm: dict[Literal["x", "y", "z"], _Positive] | None = None
     palette: list[_Material] | None = None
+    film: FilmFacts | None = None
     cube: dict[str, Any] | None = None
     made_from: str | None = None
     made_from_sha256: str = ""

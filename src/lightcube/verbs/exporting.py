@@ -117,9 +117,16 @@ def said_of_score(path: str, found: Turned | None, psnr_mean: float) -> list[str
         ways = " and ".join(_WAYS[axis] for axis in found.axes)
         lines.append(
             f"the other way round, {ways} exchanged, it would be {found.psnr_mean:.2f} dB instead of {psnr_mean:.2f}: "
-            f"the file is mirrored or reversed, export with --flip {found.axes} or put it right"
+            f"the file is mirrored or reversed, {_remedy(path, found.axes)}"
         )
     return lines
+
+
+def _remedy(path: str, axes: str) -> str:
+    """What to do with a file that lies the other way round."""
+    if not reading.is_film(path):
+        return f"export with --flip {axes} or put it right"
+    return "put its pages in the order of their numbers" if axes == "z" else "export it again, or with --mirror"
 
 
 def made_from(cube: str, output: str) -> str | None:
@@ -127,6 +134,13 @@ def made_from(cube: str, output: str) -> str | None:
     if "://" in cube or "://" in output:
         return None
     return os.path.relpath(cube, Path(output).absolute().parent)
+
+
+def said_of_films(stack: Cube) -> list[str]:
+    """What solving a cube anew for films gains."""
+    found, slices = stack.scores["psnr_mean"], stack.provenance["psnr_of_slices"]
+    films = counted(stack.grid.shape[0], "film")
+    return [f"{films}, solved for themselves: mean PSNR {found:.1f} dB; the cube's slices as they are {slices:.1f}"]
 
 
 def told(document: Mapping[str, Any]) -> list[str]:
@@ -169,6 +183,9 @@ def _how(document: Mapping[str, Any]) -> str:
     if "droplets" in document:
         um = {axis: 1000 * mm for axis, mm in document["pitch_mm"].items()}
         return f": {_along(document['droplets'])} droplets of {_along(um)} micrometres, seed {document['seed']}"
+    if "films" in document:
+        films, dots = counted(document["films"], "film"), counted(document["dots_a_cell"], "dot")
+        return f": {films} on {document['paper']}, a cell is {dots} at {document['dpi'][0]} dpi"
     if "voxels" in document:
         return f": {_along(document['voxels'])} voxels of {_along(document['pitch_mm'])} mm"
     return f", about {document['about']} points" if "about" in document else ""
