@@ -296,7 +296,7 @@ def _measured(x: float, top: float, bottom: float, said: str) -> Iterator[str]:
 
 def _table(room: _Films, y: float) -> Iterator[str]:
     """A line for each picture: its name, its lamps, where these stand, and how the films lie."""
-    moves, lamps = moves_of(room.stack, room.rig), lamps_of(room.rig)
+    moves, lamps = moves_of(room.rig), lamps_of(room.rig)
     columns = (_MARGIN + 4.0, 270.0, 420.0, 640.0)
     heads = ("picture", "lamp", "where it stands", "films" if any(moves) else "")
     yield from (text(x, y + 6, head, _GREY) for x, head in zip(columns, heads, strict=True))

@@ -85,6 +85,12 @@ def films_at(stack: Stack, rig: Rig, angle_deg: float) -> Reals:
     return np.column_stack([matrices.reshape(count, 4), offsets, heights])
 
 
+def are_moved(stack: Stack, rig: Rig) -> bool:
+    """Whether films lie otherwise for one picture than for another."""
+    places = places_of(stack, rig)
+    return not np.allclose(places, places[:1], rtol=0, atol=1e-9)
+
+
 def sheets(stack: Stack, places: Reals) -> Reals:
     """``(films, 4, 3)``: the corners of films that lie somewhere, in order around each, mm."""
     half = np.array(stack.size_mm[:0:-1]) / 2

@@ -7,9 +7,7 @@ import math
 import numpy as np
 
 from lightcube.optics.arrays import Reals
-from lightcube.optics.moves import places_of
 from lightcube.optics.rig import Rig
-from lightcube.optics.stack import Stack
 
 #: Shifts smaller than this, mm, and turns smaller than this, degrees, are none.
 _LEAST = 1e-6
@@ -17,16 +15,22 @@ _LEAST = 1e-6
 _NAMED = 2
 
 
-def told_apart(stack: Stack, rig: Rig) -> list[str]:
-    """What each picture has that others have not: ``"under lamp 1"``, ``"film 2 slid 5 mm right"``.
+def is_dial(rig: Rig) -> bool:
+    """Whether stops are only a dial that tells pictures apart: nothing turns."""
+    return not np.any(rig.turning.turns) and bool(np.ptp(rig.stops.angle_deg) > 0)
 
-    Nothing where all pictures have the same lamps and films are not moved.
+
+def told_apart(rig: Rig) -> list[str]:
+    """What tells each picture from the others: ``"under lamp 1"``, ``"film 2 slid 5 mm right"``, or ``"22.5°"``.
+
+    The turntable's angle where anything turns, and where nothing else tells pictures apart.
     """
-    lamps, moves = lamps_of(rig), moves_of(stack, rig)
-    parts = ([f"under {own}" for own in lamps] if len(set(lamps)) > 1 else [""] * len(lamps), moves)
-    if any(moves):
-        parts = (parts[0], [own or "films as they are" for own in moves])
-    return [", ".join(part for part in both if part) for both in zip(*parts, strict=True)]
+    if not is_dial(rig):
+        return [f"{round(angle_deg, 2):g}°" for angle_deg in rig.stops.angle_deg.tolist()]
+    lamps, moves = lamps_of(rig), moves_of(rig)
+    lit = [f"under {own}" for own in lamps] if len(set(lamps)) > 1 or not any(moves) else [""] * len(lamps)
+    lie = [own or "films as they are" for own in moves] if any(moves) else moves
+    return [", ".join(part for part in both if part) for both in zip(lit, lie, strict=True)]
 
 
 def lamps_of(rig: Rig) -> list[str]:
@@ -37,9 +41,9 @@ def lamps_of(rig: Rig) -> list[str]:
     ]
 
 
-def moves_of(stack: Stack, rig: Rig) -> list[str]:
-    """How films are moved for each picture: order, slides, turns; nothing where they lie as the stack has them."""
-    return [_moved(stack, places) for places in places_of(stack, rig)]
+def moves_of(rig: Rig) -> list[str]:
+    """How films are moved for each picture: order, slides, turns; nothing where they lie as their stack has them."""
+    return [_moved(places) for places in rig.stops.films]
 
 
 def shifts_of(places: Reals) -> tuple[Reals, Reals]:
@@ -55,18 +59,10 @@ def shifts_of(places: Reals) -> tuple[Reals, Reals]:
     return np.asarray(shifts), np.asarray(np.degrees(np.arctan2(places[..., 1], places[..., 0])))
 
 
-def order_of(stack: Stack, places: Reals) -> list[int]:
-    """Numbers of the films from the lowest to the highest; as they are numbered where heights are the stack's."""
-    heights = places[:, 6]
-    if np.allclose(heights, stack.heights_mm):
-        return list(range(1, len(heights) + 1))
-    return (np.argsort(heights, kind="stable") + 1).tolist()
-
-
-def _moved(stack: Stack, places: Reals) -> str:
+def _moved(places: Reals) -> str:
     """How the films lie for one picture."""
     shifts, turns = shifts_of(places)
-    order = order_of(stack, places)
+    order = (np.argsort(places[:, 6], kind="stable") + 1).tolist()
     said = []
     if order != sorted(order):
         said.append(f"films {', '.join(map(str, order))} from below")
