@@ -181,7 +181,40 @@ def test_scores_and_what_is_in_the_file(run, kept: Path, tmp_path: Path) -> None
     assert "on the right" in run("info", kept).out
 
 
-def test_a_relief_is_no_cube(run, kept: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    for words in (("view", kept, "-o", tmp_path / "a.html"), ("report", kept, "-o", tmp_path / "a.html")):
-        done = run(*words)
-        assert (done.code, "is a relief, no cube" in done.err) == (2, True)
+def test_view_writes_a_page_and_a_picture_of_it(run, kept: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    page, picture = tmp_path / "plate.html", tmp_path / "plate.png"
+    done = run("view", kept, "-o", page, "--preview", "--title", "Three", "--json")
+    assert done.code == 0, done.err
+    assert json.loads(done.out)["shape"] == [12, 12]
+    assert "<title>Three</title>" in page.read_text(encoding="utf-8")
+    with Image.open(picture) as drawn:
+        assert drawn.size == (1200, 630)
+    page.unlink()
+    refused = run("view", kept, "-o", page, "--full")
+    assert (refused.code, page.exists()) == (2, False)
+    assert "leave out --full" in refused.err
+
+
+def test_a_dry_run_says_what_is_to_be_expected_and_writes_nothing(run, photos: list[Path], tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    wish = (*photos[:2], "--columns", 16, "--relief", 4, "--sweeps", 60)
+    done = run("relief", *wish, "--dry-run", "--json")
+    assert done.code == 0, done.err
+    told = json.loads(done.out)
+    made = run("relief", *wish, "-o", tmp_path / "a.relief.zarr", "--json")
+    came = json.loads(made.out.splitlines()[-1])["scores"]
+    assert told["sweeps"] == 6
+    assert came["psnr_mean"] - 8 < told["psnr_mean"] < came["psnr_mean"]
+    assert told["seconds"] > 0
+    said = run("relief", *wish, "--dry-run", "-o", tmp_path / "b.stl")
+    assert "with 6 sweeps already" in said.out
+    assert "nothing is written" in said.out
+    assert not (tmp_path / "b.stl").exists()
+    refused = run("relief", *wish)
+    assert (refused.code, "say where the relief goes" in refused.err) == (2, True)
+
+
+def test_bounce_is_kept(run, photos: list[Path], tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    place = tmp_path / "plate.relief.zarr"
+    assert run("relief", *photos[:2], "-o", place, *SMALL, "--bounce", 0.1).code == 0
+    assert read_relief(place).recipe.bounce == 0.1
+    assert json.loads(run("info", place, "--json").out)["bounce"] == 0.1

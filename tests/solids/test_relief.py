@@ -20,7 +20,7 @@ from lightcube.solids import relief_annealing as annealing
 from lightcube.solids import relief_light, relief_local
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.relief import LAMPS_DEG, Relief, ReliefRecipe, darkest, display
-from lightcube.solids.relief_light import relief_shadow, shown
+from lightcube.solids.relief_light import bounced, relief_shadow, shown, unbounced
 from lightcube.solids.relief_making import relief
 from lightcube.solids.relief_mesh import relief_mesh
 from lightcube.solids.relief_pictures import CroppedPictures, DarkPictures
@@ -345,3 +345,38 @@ def test_nothing_is_said_of_pictures_that_fit() -> None:
         warnings.simplefilter("error")
         relief(ramps(1), QUICK)
     assert annealing.reach(QUICK) == 10
+
+
+def test_a_plate_throws_a_part_of_its_mean_light_into_its_shadows() -> None:
+    heights, wanted = np.random.default_rng(3).uniform(0, 5, (9, 11)), np.full((1, 9, 11), 0.6)
+    plain, bright = (Relief(heights, wanted, ReliefRecipe(black=0.5, bounce=bounce)) for bounce in (0.0, 0.2))
+    for azimuth in (0.0, 130.0):
+        lit, shown_ = relief_shadow(plain, azimuth), relief_shadow(bright, azimuth)
+        np.testing.assert_allclose(shown_, lit + 0.2 * (1 - lit) * lit.mean(), rtol=1e-12)
+        assert shown_.max() == 1.0
+        assert shown_.min() > lit.min()
+
+
+@pytest.mark.parametrize("bounce", [0.0, 0.05, 0.3, 0.5])
+def test_what_is_unbounced_bounces_back(bounce: float) -> None:
+    shown_ = np.random.default_rng(4).uniform(0.35, 1, (3, 8, 5))
+    lit = unbounced(shown_, bounce)
+    np.testing.assert_allclose(bounced(lit, bounce), shown_, rtol=1e-9)
+    assert bool(np.all(lit < shown_)) == (bounce > 0)
+    assert unbounced(np.zeros((1, 4, 4)), bounce).min() == 0  # darker than such a plate can be
+
+
+def test_who_knows_that_light_bounces_comes_nearer() -> None:
+    pictures = ramps(2)
+    asked = ReliefRecipe(side=24, relief_px=6, sweeps=40, black=0.55, bounce=0.3)
+    blind = relief(pictures, replace(asked, bounce=0.0))
+    knows = relief(pictures, asked)
+    under = replace(blind, recipe=asked)
+    assert score_relief(knows)["psnr_mean"] > score_relief(under)["psnr_mean"] + 1
+
+
+def test_black_is_lighter_where_light_bounces() -> None:
+    levels = [ReliefRecipe(bounce=bounce).black_level for bounce in (0.0, 0.1, 0.3)]
+    assert levels == sorted(set(levels))
+    with pytest.raises(InputError, match=r"throws 0 to 0\.5 of its light into its shadows, not 0\.6"):
+        ReliefRecipe(bounce=0.6)

@@ -240,7 +240,7 @@ def test_the_slider_is_a_real_one(visit: Open) -> None:
 
 TICKS = """argument.map((count) => {
   const stops = Array.from({ length: count }, (_, i) => (i * 360) / count);
-  const { element } = createControls({}, stops, { play() {}, speed() {} });
+  const { element } = createControls(stops, { play() {}, speed() {} }, "Angle", []);
   return element.querySelector(".slider path").getAttribute("d").match(/[0-9.]+ /g).map(Number);
 })"""
 

@@ -325,5 +325,5 @@ def test_the_example_runs(tmp_path: Path) -> None:
     assert {output.output_type for output in outputs} == {"stream", "execute_result"}
     assert {output.get("name", "stdout") for output in outputs} == {"stdout"}
     shown = [output.data for output in outputs if "data" in output]
-    assert sum(WIDGET in each for each in shown) == 2
-    assert sum("image/png" in each for each in shown) == 6
+    assert sum(WIDGET in each for each in shown) == 3
+    assert sum("image/png" in each for each in shown) == 8

@@ -20,7 +20,9 @@ COMMANDS: Mapping[str, str] = {
     "relief": "Make one relief that shows a picture under each of up to four low lamps.",
     "play": "Cast the cube's shadows: a movie, a folder of PNGs, or .npy, by suffix.",
     "score": "Compare what a cube, a shape or a relief really casts with what was wanted.",
-    "view": "Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail.",
+    "view": (
+        "Write a page in which the cube, or a relief's lamp, is turned by hand: one HTML file, to keep or to mail."
+    ),
     "report": (
         "Write all that is known of a cube into one HTML file, to keep and to print: pictures, curves, how it was made."
     ),

@@ -6,7 +6,7 @@ import typer
 
 from lightcube import io
 from lightcube.cli import arguments
-from lightcube.cli.console import compiling, err, json_line, out, telling
+from lightcube.cli.console import compiling, done, err, json_line, out, telling
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.drawing.relief_sheet import relief_sheet
 from lightcube.errors import InputError
@@ -24,7 +24,7 @@ _DEFAULT = ReliefRecipe()
 def relief(
     pictures: Annotated[list[str], typer.Argument(help="One to four pictures, or a folder of them.")],
     outputs: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(
             "-o",
             "--out",
@@ -32,7 +32,7 @@ def relief(
             "It may be said several times.",
             rich_help_panel="Output",
         ),
-    ],
+    ] = None,
     sheet: Annotated[
         str | None,
         typer.Option(
@@ -88,6 +88,13 @@ def relief(
     tolerance_deg: Annotated[
         float, typer.Option(help="How much too high or too low they may stand, in degrees.", rich_help_panel="Lamp")
     ] = _DEFAULT.tolerance_deg,
+    bounce: Annotated[
+        float,
+        typer.Option(
+            help="How much of its mean light the plate throws into its own shadows, 0 to 0.5.",
+            rich_help_panel="Lamp",
+        ),
+    ] = _DEFAULT.bounce,
     method: Annotated[
         Method,
         typer.Option(
@@ -102,6 +109,9 @@ def relief(
         float, typer.Option(help="How much steps between columns count.", rich_help_panel="Quality")
     ] = _DEFAULT.smooth,
     seed: Annotated[int, typer.Option(help="Of the random numbers.", rich_help_panel="Quality")] = _DEFAULT.seed,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what is to be expected, no more.", rich_help_panel="Output")
+    ] = False,
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
@@ -115,6 +125,7 @@ def relief(
         tolerance_deg=tolerance_deg,
         pitch_mm=pitch_mm,
         layer_mm=layer_mm,
+        bounce=bounce,
         **({} if steepest is None else {"steepest_px": steepest}),
         smooth=smooth,
         sweeps=sweeps,
@@ -122,8 +133,17 @@ def relief(
         base_mm=base_mm,
         frame_mm=frame_mm,
     )
-    files, drawn = _files(outputs, sheet, overwrite=overwrite)
+    if not outputs and not dry_run:
+        raise InputError("say where the relief goes (-o plate.stl), or ask for --dry-run")
+    files, drawn = _files(outputs or [], sheet, overwrite=overwrite)
     read = reliefs.read(pictures)
+    if dry_run:
+        with compiling(as_json=as_json):
+            expected = reliefs.expected(read, recipe, colour=colour)
+        for line in [] if as_json else reliefs.foretold(expected):
+            out.print(line)
+        done(as_json, "nothing is written: this was a dry run", **expected)
+        return
     with telling("shaping", as_json=as_json) as tell:
         made = relief_making.relief(read, recipe, colour=colour, tell=tell)
     with compiling(as_json=as_json):
@@ -131,13 +151,14 @@ def relief(
     things: list[tuple[io.Output, Thing]] = [(file, made) for file in files]
     things += [(file, relief_sheet(made, scores, _title(made))) for file in drawn]
     io.write_together(*things)
+    names = outputs or []
     if as_json:
-        json_line("result", out=outputs, **relief_facts.facts(made), scores=scores)
+        json_line("result", out=names, **relief_facts.facts(made), scores=scores)
         return
-    out.print(f"{' and '.join(outputs)} {'is' if len(outputs) == 1 else 'are'} ready")
+    out.print(f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} ready")
     for line in reliefs.told(made, scores):
         out.print(line)
-    if not any(io.is_relief(output) for output in outputs):
+    if not any(io.is_relief(output) for output in names):
         err.print("note: -o NAME.relief.zarr too keeps what lightcube play, score and info want")
 
 

@@ -15,9 +15,9 @@ from lightcube.viewer.label import Label
 
 @threaded
 def report(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
+    cube: Annotated[str, typer.Argument(help="A cube, a shape, or a relief.")],
     pictures: Annotated[
-        str | None, typer.Argument(help="The pictures it was made from; default its own targets.")
+        str | None, typer.Argument(help="The pictures a cube was made from; default its own targets.")
     ] = None,
     output: Annotated[
         str | None,
@@ -34,17 +34,34 @@ def report(
     label = Label(io.bare_name(cube) if title is None else title, by, note)
     page_file = io.Output(target, "page", overwrite)
     page_file.check()
-    if io.is_shape(cube):
-        raise InputError(f"{cube} is a shape, and reports are of cubes: lightcube score and view take it")
+    if io.is_shape(cube) or io.is_relief(cube):
+        if pictures is not None:
+            raise InputError(f"{cube} keeps its own pictures: leave out {pictures}")
+        _solid(cube, label, page_file, as_json=as_json)
+        return
     loaded = load(cube)
     with telling("measuring", as_json=as_json) as tell:
         made = reporting.report(loaded, cube, pictures, tell, label)
-    page_file.write(made.text)
+    _written(page_file, made, as_json=as_json)
+
+
+def _solid(path: str, label: Label, page: io.Output, *, as_json: bool) -> None:
+    """Report on a shape or a relief."""
+    with telling("measuring", as_json=as_json) as tell:
+        if io.is_shape(path):
+            made = reporting.shape_report(io.read_shape(path), path, label, tell)
+        else:
+            made = reporting.relief_report(io.read_relief(path), path, label, tell)
+    _written(page, made, as_json=as_json)
+
+
+def _written(page: io.Output, made: reporting.Report, *, as_json: bool) -> None:
+    """Write a report, and say how good the thing is."""
+    page.write(made.text)
     size, scores = len(made.text.encode()), made.scores
-    done(
-        as_json,
-        f"{target}, {size / 1e6:.1f} MB: mean PSNR {scores['psnr_mean']:.2f} dB (worst {scores['psnr_min']:.2f})",
-        out=target,
-        bytes=size,
-        **{name: value for name, value in scores.items() if name != "pictures"},
-    )
+    if "overlap_mean" in scores:
+        how = f"shadows overlap by {scores['overlap_mean']:.2%} (worst {scores['overlap_min']:.2%})"
+    else:
+        how = f"mean PSNR {scores['psnr_mean']:.2f} dB (worst {scores['psnr_min']:.2f})"
+    kept = {name: value for name, value in scores.items() if name != "pictures"}
+    done(as_json, f"{page.path}, {size / 1e6:.1f} MB: {how}", out=str(page.path), bytes=size, **kept)

@@ -7,17 +7,21 @@ from typing import Annotated
 import typer
 
 from lightcube import io
-from lightcube.cli.console import done, err, telling
+from lightcube.cli.console import compiling, done, err, telling
 from lightcube.cli.options import BY, JSON, NOTE, OVERWRITE, TITLE, threaded
+from lightcube.drawing.relief_sheet import relief_preview
+from lightcube.errors import InputError
 from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
+from lightcube.solids.relief import Relief
 from lightcube.verbs import viewing
 from lightcube.viewer.label import Label
+from lightcube.viewer.page import relief_page
 
 
 @threaded
 def view(
-    cube: Annotated[str, typer.Argument(help="A cube.")],
+    cube: Annotated[str, typer.Argument(help="A cube, a shape, or a relief.")],
     output: Annotated[
         str | None, typer.Option("-o", "--out", help="The page to write.  [default: the cube's name with .html, here]")
     ] = None,
@@ -34,7 +38,7 @@ def view(
     overwrite: Annotated[bool, OVERWRITE] = False,
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
-    """Write a page in which the cube is turned by hand: one HTML file, for any browser, to keep or to mail."""
+    """Write a page in which the cube, or a relief's lamp, is turned by hand: one HTML file, to keep or to mail."""
     target = f"{io.bare_name(cube)}.html" if output is None else output
     picture = f"{target.removesuffix('.html').removesuffix('.htm')}.png" if preview else ""
     label = Label(io.bare_name(cube) if title is None else title, by, note, PurePosixPath(picture).name)
@@ -43,6 +47,12 @@ def view(
     page_file.check()
     if preview:
         picture_file.check()
+    if io.is_relief(cube):
+        if full:
+            raise InputError(f"{cube} is a relief, of which a page keeps all: leave out --full")
+        _view_relief(io.read_relief(cube), label, page_file, picture_file if preview else None, as_json=as_json)
+        _show(target, show=show)
+        return
     loaded = load(cube)
     is_smaller = viewing.is_solved_anew(loaded, full=full)
     doing = "solving a smaller cube for the page" if is_smaller else "putting the page together"
@@ -68,6 +78,25 @@ def view(
         worst_levels=page.worst_levels,
         rms_levels=page.rms_levels,
     )
+    _show(target, show=show)
+
+
+def _view_relief(relief: Relief, label: Label, page: io.Output, picture: io.Output | None, *, as_json: bool) -> None:
+    """Write the page of a relief, and a picture of it where one is asked for."""
+    with compiling(as_json=as_json):
+        text = relief_page(relief, label)
+    things: list[tuple[io.Output, Thing]] = [(page, text)]
+    if picture is not None:
+        things.append((picture, relief_preview(relief)))
+    io.write_together(*things)
+    rows, columns = relief.heights_px.shape
+    size, shape = len(text.encode()), (rows, columns)
+    told = f"{page.path}, {size / 1e6:.1f} MB; {columns} x {rows} columns, whose light the page casts exactly"
+    done(as_json, told, out=str(page.path), bytes=size, shape=shape)
+
+
+def _show(target: str, *, show: bool) -> None:
+    """Open a page in a browser, if that is asked for."""
     if show:
         webbrowser.open(target if "://" in target else Path(target).absolute().as_uri())
 

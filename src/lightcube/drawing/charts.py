@@ -1,7 +1,7 @@
 """Curves and bars of a report as inline SVG, whose colours are those of the page (`style.css`)."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
 
@@ -15,6 +15,8 @@ Reals = NDArray[np.float64]
 
 #: Of a chart in its own units, and what is left free for the numbers at its edges.
 _WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 720.0, 230.0, 46.0, 10.0, 16.0, 38.0
+#: Names at the ends of lines stand so far apart.
+_LETTERS = 12.0
 #: At most so many ticks along an axis.
 _TICKS = 9
 
@@ -115,6 +117,32 @@ def lamp_powers(places: Reals, powers: Reals, most: float, label: str) -> str:
         side = 0.16 * (colour - (powers.shape[1] - 1) / 2)
         kind = f'class="colour-{colour}"' if powers.shape[1] == 3 else 'class="stop"'
         chart.parts += [_mark(place, colour, size, kind) for place in chart.at(places + side, values)]
+    return chart.drawing(label)
+
+
+def shares(edges: Reals, parts: Reals, names: tuple[str, str], label: str) -> str:
+    """Bars ``parts`` (per cent) over the stretches between `edges`; `names` are those of the axes."""
+    chart = _Chart((float(edges[0]), float(edges[-1])), (0.0, 1.06 * max(float(parts.max()), 1e-9)))
+    chart.axes(_ticks(*chart.across), _ticks(*chart.up), names)
+    for low, high, part in zip(edges[:-1], edges[1:], parts, strict=True):
+        corners = chart.at(np.array([low, low, high, high]), np.array([0, part, part, 0]))
+        chart.parts.append(polygon(corners, 'class="bar"', f"{low:.3g} to {high:.3g}: {part:.1f} %"))
+    return chart.drawing(label)
+
+
+def scored_lines(places: Reals, lines: Mapping[str, Reals], across: str, label: str) -> str:
+    """PSNR of some pictures against one number, each by its name."""
+    every = np.concatenate(list(lines.values()))
+    low = max(0.0, 5 * math.floor(float(every.min()) / 5) - 5)
+    chart = _Chart((float(places[0]), float(places[-1])), (low, float(every.max()) + 2))
+    chart.axes(_ticks(*chart.across), _ticks(*chart.up), (across, "PSNR, dB"))
+    ends = {name: chart.at(places[-1], values[-1])[0] for name, values in lines.items()}
+    free = math.inf
+    for name in sorted(ends, key=lambda each: -ends[each][1]):  # from below, so that no name lies on another
+        free = min(free - _LETTERS, ends[name][1] - 4)
+        chart.parts.append(text(ends[name][0] - 4, free, name, 'text-anchor="end"'))
+    for number, values in enumerate(lines.values()):
+        chart.parts.append(path(list(chart.at(places, values)), f'class="curve-{number % 2}"'))
     return chart.drawing(label)
 
 

@@ -27,16 +27,16 @@ def overlays(found: Repaired, title: str = "") -> NDArray[np.uint8]:
     """
     windows = FINE * found.given.rig.stops.window
     pairs = zip(found.given.inside, found.shape.silhouettes.inside, windows, strict=True)
-    tiles = [_tile(given[:rows, :columns], cast[:rows, :columns]) for given, cast, (rows, columns) in pairs]
-    high, wide = (max(tile.size[axis] for tile in tiles) for axis in (1, 0))
+    tiles = [tile(given[:rows, :columns], cast[:rows, :columns]) for given, cast, (rows, columns) in pairs]
+    high, wide = (max(each.size[axis] for each in tiles) for axis in (1, 0))
     said = [(name, f"overlap {overlap:.0%}") for name, overlap in zip(found.given.names, found.overlaps, strict=True)]
     how = "dark: given and cast; orange: given, not cast; blue: cast beside it"
     head = title or f"{counted(len(tiles), 'silhouette')}, outlines moved by {found.moved_px:.1f} pixels"
-    return np.asarray(laid_out([_in_middle(tile, wide, high) for tile in tiles], said, (head, how)))
+    return np.asarray(laid_out([_in_middle(each, wide, high) for each in tiles], said, (head, how)))
 
 
-def _tile(given: Flags, cast: Flags) -> Image.Image:
-    """One silhouette, each of its small pixels as large as the others."""
+def tile(given: Flags, cast: Flags) -> Image.Image:
+    """One silhouette as given over what is cast in its place, each of its small pixels as large as the others."""
     levels = np.full((*given.shape, 3), PAPER, np.uint8)
     for where, colour in ((given & cast, _BOTH), (given & ~cast, _LOST), (cast & ~given, _ADDED)):
         levels[where] = colour
@@ -44,8 +44,8 @@ def _tile(given: Flags, cast: Flags) -> Image.Image:
     return Image.fromarray(levels.repeat(times, axis=0).repeat(times, axis=1))
 
 
-def _in_middle(tile: Image.Image, wide: int, high: int) -> Image.Image:
-    """A tile on paper of some size."""
+def _in_middle(picture: Image.Image, wide: int, high: int) -> Image.Image:
+    """A picture on paper of some size."""
     paper = Image.new("RGB", (wide, high), PAPER)
-    paper.paste(tile, ((wide - tile.width) // 2, (high - tile.height) // 2))
+    paper.paste(picture, ((wide - picture.width) // 2, (high - picture.height) // 2))
     return paper

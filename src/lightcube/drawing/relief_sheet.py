@@ -19,6 +19,10 @@ from lightcube.solids.relief_light import coloured, shown
 
 #: Longer side that pictures are enlarged to by whole pixels; and that which larger ones are drawn at.
 _SIDE, _LONGEST = 256, 400
+#: A usual size of pictures where pages are shared, its ground, and the gap between pictures on it.
+_SHARED, _DARK, _SHARED_GAP = (1200, 630), (18, 19, 22), 24
+#: So many pictures stand in a square, fewer side by side.
+_SQUARE = 4
 #: How the lamp of the third picture stands wrong.
 _WRONG = "3 deg higher"
 
@@ -37,6 +41,23 @@ def relief_sheet(relief: Relief, scores: Mapping[str, Any], title: str) -> NDArr
         ]
     lines = (title, "left what was wanted, middle what the lamp shows, right what a lamp shows that is 3° too high")
     return np.asarray(sheet.laid_out(tiles, said, lines))
+
+
+def relief_preview(relief: Relief) -> NDArray[np.uint8]:
+    """What a relief's lamps show, side by side in the dark, ``(630, 1200, 3)`` levels: for who shares its page."""
+    pictures = as_seen(relief, shown(relief))
+    rows, columns = pictures.shape[1:3]
+    across = len(pictures) if len(pictures) < _SQUARE else _SQUARE // 2
+    counts = across, -(-len(pictures) // across)
+    room = (side // count - _SHARED_GAP for side, count in zip(_SHARED, counts, strict=True))
+    scale = min(space / side for space, side in zip(room, (columns, rows), strict=True))
+    size = round(columns * scale), round(rows * scale)
+    place, step = Image.new("RGB", _SHARED, _DARK), [side + _SHARED_GAP for side in size]
+    first = [(w - count * s + _SHARED_GAP) // 2 for w, count, s in zip(_SHARED, counts, step, strict=True)]
+    for number, picture in enumerate(pictures):
+        at = first[0] + number % across * step[0], first[1] + number // across * step[1]
+        place.paste(Image.fromarray(to_uint8(picture)).resize(size, Image.Resampling.BICUBIC), at)
+    return np.asarray(place)
 
 
 def in_words(near: float, far: float) -> str:

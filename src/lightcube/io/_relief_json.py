@@ -16,8 +16,8 @@ from lightcube.optics.arrays import locked
 from lightcube.solids.relief import Relief, ReliefRecipe
 
 KIND = "relief"
-#: Of the files that this version writes.
-_VERSION = 1
+#: Of the files that this version writes; those of version 1 know of no bounce.
+_VERSION = 2
 
 
 def to_json(relief: Relief) -> dict[str, Any]:

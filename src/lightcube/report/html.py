@@ -78,6 +78,15 @@ def pairs(facts: Mapping[str, object]) -> str:
     return element("dl", "\n".join(element("div", text("dt", k) + text("dd", v)) for k, v in facts.items()))
 
 
+def figure_tiles(tiles: Mapping[str, tuple[str, str]]) -> str:
+    """Large figures with their names, and a word on each."""
+    shown = "".join(
+        element("div", text("dt", name) + text("dd", value, class_="figure") + text("dd", more, class_="more"))
+        for name, (value, more) in tiles.items()
+    )
+    return element("dl", shown, class_="tiles")
+
+
 def sentences(said: Iterable[str]) -> str:
     """A list of plain sentences."""
     return element("ul", "".join(text("li", sentence) for sentence in said))

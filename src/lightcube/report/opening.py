@@ -30,13 +30,17 @@ class Heading:
     note: str = ""
 
 
+def titled(kind: str, heading: Heading) -> list[str]:
+    """What kind of thing it is, what it is called, by whom and when it was made."""
+    lines = [text("p", kind, class_="kind"), text("h1", heading.title)]
+    signed = " · ".join(filter(None, (heading.by, heading.date)))
+    return [*lines, text("p", signed, class_="signed")] if signed else lines
+
+
 def opening(found: Findings, heading: Heading) -> str:
     """Title, date, what it is, and the cube in its room."""
     cube = found.cube
-    lines = [text("p", "Light cube", class_="kind"), text("h1", heading.title)]
-    signed = " · ".join(filter(None, (heading.by, heading.date)))
-    if signed:
-        lines.append(text("p", signed, class_="signed"))
+    lines = titled("Light cube", heading)
     if cube.status != "complete":
         warning = "This cube is unfinished: its solver was stopped early, or it is still being made."
         lines.insert(0, text("p", warning, class_="warning"))

@@ -2,7 +2,7 @@
 
 import hashlib
 import platform
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from importlib.resources import files
@@ -87,20 +87,25 @@ def page(found: Findings, heading: Heading, compared: str, command: Command, ori
         "Before solving": sections.before(found),
         "How it was made": _provenance(found.cube, command, origins),
     }
+    return document(heading.title, opening(found, heading), parts)
+
+
+def document(title: str, head: str, parts: Mapping[str, str]) -> str:
+    """The text of a report: what stands at its head, links, and its parts by name."""
     body = [
-        element("header", opening(found, heading)),
+        element("header", head),
         element("nav", "".join(_link(name) for name in parts), aria_label="Parts of this report"),
         *(element("section", text("h2", name, id=_anchor(name)) + inside) for name, inside in parts.items()),
     ]
-    head = [
+    inside_head = [
         '<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
         '<meta name="color-scheme" content="light dark">',
-        text("title", f"{heading.title} – light cube report"),
+        text("title", f"{title} – light cube report"),
         element("style", files("lightcube.report").joinpath("style.css").read_text(encoding="utf-8")),
     ]
-    lines = ["<!doctype html>", '<html lang="en">', "<head>", *head, "</head>", "<body>"]
+    lines = ["<!doctype html>", '<html lang="en">', "<head>", *inside_head, "</head>", "<body>"]
     whole = "\n".join([*lines, element("main", "\n".join(body)), "</body>", "</html>"]) + "\n"
     return whole.encode("utf-8", "replace").decode("utf-8")  # names of files may hold what is no letter
 
@@ -120,7 +125,7 @@ def _link(name: str) -> str:
 
 def _provenance(cube: Cube, command: Command, origins: Sequence[Origin]) -> str:
     """The command, what is recorded, and the files."""
-    return "\n".join([*_again(cube, command), *_recorded(cube), *_files(origins)])
+    return "\n".join([*_again(cube, command), *recorded(cube.provenance), *read_files(origins)])
 
 
 def _again(cube: Cube, command: Command) -> Iterator[str]:
@@ -140,16 +145,22 @@ def _again(cube: Cube, command: Command) -> Iterator[str]:
     yield element("pre", text("code", _CHECK))
 
 
-def _recorded(cube: Cube) -> Iterator[str]:
-    """All that the cube remembers of how it was made, as it is written in its file."""
-    yield text("h3", "Recorded in the cube")
-    facts = {name: value for name, value in cube.provenance.items() if name != "predicted"}
-    yield pairs({name.replace("_", " "): plain(value) for name, value in facts.items()})
+def recorded(provenance: Mapping[str, object], what: str = "cube") -> Iterator[str]:
+    """All that a thing remembers of how it was made, as it is written in its file."""
+    facts = {name: value for name, value in provenance.items() if name != "predicted"}
+    if facts:
+        yield text("h3", f"Recorded in the {what}")
+        yield pairs({name.replace("_", " "): plain(value) for name, value in facts.items()})
+    yield from written_by()
+
+
+def written_by() -> Iterator[str]:
+    """What wrote the report."""
     yield text("h3", "This report")
     yield pairs({"lightcube": version("lightcube"), "Python": platform.python_version(), "NumPy": np.__version__})
 
 
-def _files(origins: Sequence[Origin]) -> Iterator[str]:
+def read_files(origins: Sequence[Origin]) -> Iterator[str]:
     """Names, sizes and checksums of the files."""
     rows = [(each.role, each.name, each.count, f"{each.size:,}".replace(",", " "), each.sha256) for each in origins]
     if not rows:

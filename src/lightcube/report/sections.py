@@ -14,7 +14,7 @@ from lightcube.optics.disturbance import SAID
 from lightcube.optics.told import remembered
 from lightcube.planning.feasibility import facts
 from lightcube.planning.prediction import MOST_DB
-from lightcube.report.html import element, figure, image, number, pairs, sentences, sideways, table, text
+from lightcube.report.html import element, figure, figure_tiles, image, number, pairs, sentences, sideways, table, text
 from lightcube.report.measuring import EXACT, Findings, gain
 from lightcube.report.words import span
 from lightcube.scoring.between import LOBE_DB
@@ -45,13 +45,9 @@ def figures(found: Findings, compared: str) -> str:
     if "mat_rms" in scores:
         beyond = f"; beyond it {number(scores['beyond_rms'], 2)}" if "beyond_rms" in scores else ""
         tiles["mat"] = (number(scores["mat_rms"], 3), f"off its tone; 0 is calm{beyond}")
-    shown = "".join(
-        element("div", text("dt", name) + text("dd", value, class_="figure") + text("dd", more, class_="more"))
-        for name, (value, more) in tiles.items()
-    )
     return "\n".join(
         [
-            element("dl", shown, class_="tiles"),
+            figure_tiles(tiles),
             text("p", f"{compared} {_LADDER}", class_="note"),
             sideways(_table(found), "The figures"),
         ]

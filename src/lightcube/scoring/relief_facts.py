@@ -30,6 +30,7 @@ def facts(relief: Relief) -> dict[str, Any]:
         "elevation_deg": recipe.elevation_deg,
         "tolerance_deg": recipe.tolerance_deg if recipe.method == "global" else 0.0,
         "black": recipe.black,
+        "bounce": recipe.bounce,
         "method": recipe.method,
         **({"sweeps": recipe.sweeps, "seed": recipe.seed} if recipe.method == "global" else {}),
         **relief.provenance,

@@ -55,6 +55,8 @@ class ReliefRecipe:
         A column's side.
     layer_mm
         Heights are whole layers of a printer; None: any.
+    bounce
+        How much of its mean light a plate throws into its own shadows, 0 to 0.5; 0: none.
     steepest_px
         The greatest step between neighbouring columns (global).
     smooth
@@ -75,6 +77,7 @@ class ReliefRecipe:
     tolerance_deg: float = 3.0
     pitch_mm: float = 0.8
     layer_mm: float | None = None
+    bounce: float = 0.0
     steepest_px: float = math.inf
     smooth: float = 0.002
     sweeps: int = 400
@@ -88,6 +91,7 @@ class ReliefRecipe:
         self._check_lamps()
         _within("a relief is {} to {} columns high, not {}", 0.5, self.relief_px, 200)
         _within("black is a display value from {} to {}, not {}", 0, self.black or 0, 0.95)
+        _within("a plate throws {} to {} of its light into its shadows, not {}", 0, self.bounce, 0.5)
         _within("columns are offered heights {} to {} times, not {}", 1, self.sweeps, 100_000)
         _within("steps count {} to {} beside the pictures, not {}", 0, self.smooth, 10)
         _within("a seed is a whole number from {0} on, not {2}", 0, self.seed, math.inf)
@@ -141,7 +145,8 @@ class ReliefRecipe:
         """The display value of black."""
         if self.black is not None:
             return self.black
-        return min(0.95, math.ceil(100 * display(_EASE * darkest(self.relief_px / max(self.slopes)))) / 100)
+        least = filled(_EASE * darkest(self.relief_px / max(self.slopes)), self.bounce)
+        return min(0.95, math.ceil(100 * display(least)) / 100)
 
 
 def _within(sentence: str, least: float, value: float, most: float) -> None:
@@ -161,6 +166,11 @@ def darkest(relief_px: float) -> float:
     No shadow is longer than the relief is high, and what throws it is lit: of ``relief_px + 1`` columns one, at least.
     """
     return 1.0 / (relief_px + 1.0)
+
+
+def filled(light: float, bounce: float) -> float:
+    """Light of a dark area, and what a plate that is half lit throws there."""
+    return light + bounce * (1 - light) / 2
 
 
 def display(light: float) -> float:

@@ -15,6 +15,7 @@ import numpy as np
 from lightcube.events import Interrupted, Progress, Tell
 from lightcube.optics.arrays import Integers, Reals, locked
 from lightcube.solids.relief import LAMPS_DEG, ReliefRecipe
+from lightcube.solids.relief_light import unbounced
 
 #: How far an eye blurs, in columns, and over how many on either side that is reckoned.
 BLUR, RADIUS = 1.0, 2
@@ -86,9 +87,11 @@ def annealed(wanted: Reals, recipe: ReliefRecipe, tell: Tell | None = None) -> R
     heights = _begun(random, (rows, columns), recipe)
     both = np.stack([heights.ravel(), heights.T.ravel()])
     horizon = kernel.horizons(both, lamps.axes, lamps.signs, lamps.slopes, lengths)
-    everywhere = np.tile(wanted, (len(recipe.slopes), 1, 1))
-    error = lamps.laid(blurred(light_of(heights, count, recipe.slopes) - everywhere))
-    weight = lamps.laid(seen(blurred(everywhere))) * np.repeat(shares(recipe), count)[:, None]
+    times = len(recipe.slopes), 1, 1
+    error = lamps.laid(
+        blurred(light_of(heights, count, recipe.slopes) - np.tile(unbounced(wanted, recipe.bounce), times))
+    )
+    weight = lamps.laid(seen(blurred(np.tile(wanted, times)))) * np.repeat(shares(recipe), count)[:, None]
     bounds = np.array([recipe.relief_px, recipe.steepest_px])
     groups, work = tiles((rows, columns), reach(recipe)), rows * columns * len(lamps.axes) * _WORK
     dice = np.empty((rows, columns, 5))

@@ -21,7 +21,8 @@ _WORK = 12
 def relief_shadow(relief: Relief, azimuth_deg: float, elevation_deg: float | None = None) -> Reals:
     """Linear light ``(row, column)`` of a relief's pixels, each the mean over its area, seen from above.
 
-    Tops of columns under no shadow are 1 under any lamp: a camera or an eye takes the lightest as white.
+    Tops of columns under no shadow are 1 under any lamp: a camera or an eye takes the lightest as white. Shadows get
+    what the recipe's `bounce` throws into them.
 
     Parameters
     ----------
@@ -50,7 +51,23 @@ def relief_shadow(relief: Relief, azimuth_deg: float, elevation_deg: float | Non
     work = light.size * JUDGE * _WORK
     run(kernel.cast, len(light), work, relief.heights_px, to_lamp, _points(), light)
     rows, columns = (relief.cell * side for side in relief.wanted.shape[1:])
+    light = bounced(light, relief.recipe.bounce)
     return in_cells(light[:rows, :columns], relief.cell)
+
+
+def bounced(light: Reals, bounce: float) -> Reals:
+    """What lit columns ``(..., row, column)`` show of a plate that throws a part of its mean light into its shadows."""
+    return np.asarray(light + bounce * light.mean(axis=(-2, -1), keepdims=True) * (1 - light))
+
+
+def unbounced(shown: Reals, bounce: float) -> Reals:
+    """How columns ``(..., row, column)`` must be lit so that `bounced` makes them `shown`, as far as they can be."""
+    if not bounce:
+        return shown
+    mean = shown.mean(axis=(-2, -1), keepdims=True)
+    whole = 1 + bounce  # with the mean m of what is lit, that of what is shown is m + bounce m (1 - m)
+    thrown = (whole - np.sqrt(whole**2 - 4 * bounce * mean)) / 2
+    return np.asarray(np.clip((shown - thrown) / (1 - thrown), 0, 1))
 
 
 def in_cells(light: Reals, cell: int) -> Reals:

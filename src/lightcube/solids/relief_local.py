@@ -16,7 +16,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Reals, locked
 from lightcube.optics.transfer import decode
-from lightcube.solids.relief import ReliefRecipe, darkest, display
+from lightcube.solids.relief import ReliefRecipe, darkest, display, filled
 from lightcube.wording import counted
 
 #: The pictures that there can be: one for each side of the walls.
@@ -35,7 +35,8 @@ def width_of(recipe: ReliefRecipe) -> int:
 
 def black_of(recipe: ReliefRecipe) -> float:
     """The display value of black: what is asked for, or a pixel's whose floor is dark all over."""
-    return display(darkest(width_of(recipe))) if recipe.black is None else recipe.black
+    least = filled(darkest(width_of(recipe)), recipe.bounce)
+    return display(least) if recipe.black is None else recipe.black
 
 
 def walled(wanted: Reals, width: int) -> tuple[Reals, float]:

@@ -11,6 +11,7 @@ from lightcube.pictures.pictures import Pictures
 from lightcube.solids import relief_local as local
 from lightcube.solids.relief import Relief, ReliefRecipe
 from lightcube.solids.relief_annealing import annealed
+from lightcube.solids.relief_light import unbounced
 from lightcube.solids.relief_pictures import wanted_of
 
 
@@ -62,6 +63,6 @@ def relief(
     side, width = local.check_local(len(pictures), wishes, colour=colour), local.width_of(wishes)
     wishes = replace(wishes, black=local.black_of(wishes))
     wanted, names = wanted_of(pictures, wishes, side, colour=False)
-    heights, drift = local.walled(wanted, width)
+    heights, drift = local.walled(unbounced(wanted, wishes.bounce), width)
     local.check_height(heights, drift, wishes)
     return Relief(heights, wanted, wishes, names, cell=width + 1, provenance={**origin, "drift_px": drift}).layered()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -14,12 +16,17 @@ from lightcube.drawing.relief_sheet import as_seen, in_words
 from lightcube.errors import InputError
 from lightcube.pictures.pictures import Pictures
 from lightcube.scoring.metrics import mark
-from lightcube.solids.relief import MOST, Relief, side_of
+from lightcube.scoring.reliefs import score_relief
+from lightcube.solids.relief import MOST, Relief, ReliefRecipe, side_of
 from lightcube.solids.relief_light import relief_shadow, shown
+from lightcube.solids.relief_making import relief
+from lightcube.verbs.words import duration
 from lightcube.wording import counted
 
 #: Pictures of a lamp that goes round once; and for how many it rests where a picture stands.
 ROUND, REST = 240, 40
+#: Sweeps are as many times fewer where it is only asked what is to be expected.
+QUICK = 10
 
 
 def read(sources: Sequence[str]) -> Pictures:
@@ -31,6 +38,40 @@ def read(sources: Sequence[str]) -> Pictures:
     if len(images) > MOST:
         raise InputError(f"a relief shows 1 to {MOST} pictures, not {len(images)}: give fewer")
     return Pictures(images, tuple(name for pictures in each for name in pictures.names), transfer=each[0].transfer)
+
+
+def expected(pictures: Pictures, recipe: ReliefRecipe, *, colour: bool) -> dict[str, Any]:
+    """What a relief would be at least, and how long it takes: it is made and scored with a tenth of the sweeps.
+
+    Takes and raises what `lightcube.relief` does.
+    """
+    share = QUICK if recipe.method == "global" and recipe.sweeps >= QUICK else 1
+    relief(pictures, replace(recipe, sweeps=1), colour=colour)  # what is to be compiled is, before the clock runs
+    began = perf_counter()
+    made = relief(pictures, replace(recipe, sweeps=recipe.sweeps // share), colour=colour)
+    seconds, scores = share * (perf_counter() - began), score_relief(made, off=True)
+    kept = ("psnr_mean", "psnr_min", "near_psnr_mean", "near_psnr_min", "black", "off")
+    wide, deep, _ = made.size_mm
+    size_mm = [wide, deep, recipe.base_mm + recipe.top_mm]
+    return {
+        "seconds": seconds,
+        "size_mm": size_mm,
+        "sweeps": made.recipe.sweeps,
+        **{each: scores[each] for each in kept},
+    }
+
+
+def foretold(expected: Mapping[str, Any]) -> list[str]:
+    """What is to be expected, in sentences."""
+    wide, deep, high = expected["size_mm"]
+    higher, lower = expected["off"]["3 deg higher"], expected["off"]["3 deg lower"]
+    size = f"plate {wide:.4g} x {deep:.4g} x {high:.3g} mm at most, black {expected['black']:.2f}"
+    good = in_words(expected["near_psnr_mean"], expected["psnr_mean"])
+    return [
+        f"{size}; it takes about {duration(expected['seconds'])}",
+        f"pictures, with {counted(expected['sweeps'], 'sweep')} already: {good}",
+        f"lamps 3° too high or too low: {higher:.1f} and {lower:.1f} dB from afar",
+    ]
 
 
 def course(relief: Relief, *, even: bool) -> NDArray[np.float64]:

@@ -14,6 +14,10 @@ from lightcube.optics.cube import Cube
 from lightcube.report.measuring import Findings, measure
 from lightcube.report.opening import Heading
 from lightcube.report.page import page
+from lightcube.report.reliefs import measure_relief, relief_page
+from lightcube.report.shapes import measure_shape, shape_page
+from lightcube.solids.relief import Relief
+from lightcube.solids.shape import Shape
 from lightcube.verbs.refitting import wanted_of
 from lightcube.verbs.reproducing import origins, reproducing
 from lightcube.viewer.label import Label
@@ -27,7 +31,7 @@ _MONTHS = (
 
 @dataclass(frozen=True, eq=False)
 class Report:
-    """A report: the whole HTML file, and the scores in it as `lightcube.score` gives them."""
+    """A report: the whole HTML file, and the scores in it as `score` gives them, of a cube, a shape or a relief."""
 
     text: str
     scores: dict[str, Any]
@@ -60,6 +64,20 @@ def report(cube: Cube, place: str, source: str | None, tell: Tell, label: Label 
     heading = Heading(label.title, label.by, _day(place), label.note)
     text = page(found, heading, _compared(found, source), command, [*origins(place, source)])
     return Report(text, found.scores)
+
+
+def shape_report(shape: Shape, place: str, label: Label, tell: Tell) -> Report:
+    """Measure all that is known of a shape and put it into one page; `place` is where it was read from."""
+    found = measure_shape(shape, counting(tell))
+    heading = Heading(label.title, label.by, _day(place), label.note)
+    return Report(shape_page(found, heading, [*origins(place, None, "shape")]), found.certificate.facts)
+
+
+def relief_report(relief: Relief, place: str, label: Label, tell: Tell) -> Report:
+    """Measure all that is known of a relief and put it into one page; `place` is where it was read from."""
+    found = measure_relief(relief, counting(tell))
+    heading = Heading(label.title, label.by, _day(place), label.note)
+    return Report(relief_page(found, heading, [*origins(place, None, "relief")]), dict(found.scores))
 
 
 def _day(place: str) -> str:

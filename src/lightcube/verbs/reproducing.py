@@ -334,16 +334,16 @@ def _number(value: float) -> str:
     return repr(float(value)).removesuffix(".0")
 
 
-def origins(cube: str, targets: str | None) -> Iterator[Origin]:
-    """The files on this disk that were read."""
-    read = [("cube", Path(cube))]
+def origins(cube: str, targets: str | None, role: str = "cube") -> Iterator[Origin]:
+    """The files on this disk that were read; `role` is what the first one is."""
+    read = [(role, Path(cube))]
     if targets is not None and io.is_stage(targets):
         read += [("stage", Path(targets)), *(("pictures", path) for path in io.stage_pictures(targets))]
     elif targets is not None:
         read.append(("pictures", Path(targets)))
-    for role, path in read:
+    for what, path in read:
         if path.exists():
-            yield _origin(role, path)
+            yield _origin(what, path)
 
 
 def _origin(role: str, path: Path) -> Origin:

@@ -16,6 +16,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.light import discs_sampled
 from lightcube.optics.rig import Rig
 from lightcube.scoring import metrics
+from lightcube.scoring.overlap import overlaps
 from lightcube.solids.shape import is_opaque
 from lightcube.viewer.label import Label
 from lightcube.viewer.packing import Packed, lost
@@ -50,6 +51,7 @@ def describe(cube: Cube, packed: Packed, label: str | Label) -> dict[str, Any]:
     wanted = _wanted(cube)
     return {
         "format": FORMAT,
+        "kind": "cube",
         "title": label.title if cube.status == "complete" else f"{label.title} (unfinished)",
         "by": label.by,
         "note": label.note,
@@ -102,7 +104,7 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
     own = len(cube.names)
     scores = cube.scores.get("pictures", [])
     if is_opaque(cube):  # a decibel says little of black and white
-        scores = own * [{"psnr": None}]
+        scores = [{"psnr": None, "overlap": each} for each in (overlaps(cube) if wanted else own * [None])]
     elif len(scores) != own:
         scores = metrics.score(cube)["pictures"] if wanted else own * [{"psnr": None}]
     return [
@@ -114,6 +116,7 @@ def _pictures(cube: Cube, names: tuple[str, ...], rig: Rig, wanted: bool) -> lis
             "wanted": i % own if wanted else None,
             "mirrored": i >= own,
             "psnr": scores[i % own]["psnr"],
+            "overlap": scores[i % own].get("overlap"),
         }
         for i, name in enumerate(names)
     ]
@@ -159,13 +162,14 @@ def _wanted(cube: Cube) -> list[str]:
         images.append(Image.fromarray(np.dstack([colours, np.where(picture[..., -1:] > 0, 255, 0).astype(np.uint8)])))
     exact: list[str] = []
     for image in images:
-        exact.append(_encoded(image, "png", optimize=True))
+        exact.append(encoded(image, "png", optimize=True))
         if sum(map(len, exact)) > _EXACT:
-            return [_encoded(each, "webp", quality=_QUALITY) for each in images]
+            return [encoded(each, "webp", quality=_QUALITY) for each in images]
     return exact
 
 
-def _encoded(image: Image.Image, kind: str, **options: Any) -> str:
+def encoded(image: Image.Image, kind: str, **options: Any) -> str:
+    """A picture as a data URI."""
     stream = BytesIO()
     image.save(stream, kind, **options)
     return f"data:image/{kind};base64,{base64.b64encode(stream.getvalue()).decode()}"

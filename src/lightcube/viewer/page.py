@@ -5,17 +5,20 @@ from __future__ import annotations
 import base64
 import html
 import re
+from collections.abc import Sequence
 from hashlib import sha256
 from typing import Any
 
 from lightcube.backward.pieces import Watching
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.solids.relief import Relief
 from lightcube.solids.shape import is_opaque
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.label import Label
 from lightcube.viewer.modules import joined, source
 from lightcube.viewer.packing import pack
+from lightcube.viewer.plate import WHAT, describe_relief, heights_data
 from lightcube.viewer.smaller import in_cubes, smaller
 
 #: What is run of the page's scripts: its policy knows them by their digests, and a browser runs no other.
@@ -25,8 +28,8 @@ _NAMED = 6
 
 
 @checked
-def page(cube: Cube, label: str | Label, *, full: bool = False, callback: Watching | None = None) -> str:
-    """The text of a page that shows a cube, in any browser, from a file, without a network.
+def page(cube: Cube | Relief, label: str | Label, *, full: bool = False, callback: Watching | None = None) -> str:
+    """The text of a page that shows a cube or a relief, in any browser, from a file, without a network.
 
     Parameters
     ----------
@@ -43,18 +46,35 @@ def page(cube: Cube, label: str | Label, *, full: bool = False, callback: Watchi
         Where the cube has other than 1 or 3 colours, more voxels than a browser takes, slices that are no whole voxels
         tall, or lamps at several elevations.
     """
+    if isinstance(cube, Relief):
+        return relief_page(cube, Label.of(label))
     return page_of(Label.of(label), *contents(cube, label, full=full, callback=callback))
+
+
+def relief_page(relief: Relief, label: Label) -> str:
+    """The page in which the lamp goes round a relief."""
+    description = describe_relief(relief, label)
+    names = [picture["name"] for picture in description["pictures"]]
+    return _put_together(label, description, heights_data(relief), WHAT, names)
 
 
 def page_of(label: Label, description: dict[str, Any], voxels: bytes) -> str:
     """The same of what `contents` returns."""
+    what = "A solid stands in the light" if description["solid"] else "Light falls through a block of coloured glass"
+    names = [picture["name"] for picture in description["pictures"] if not picture["mirrored"]]
+    return _put_together(label, description, voxels, f"{what}, and its shadows are pictures", names)
+
+
+def _put_together(label: Label, description: dict[str, Any], data: bytes, what: str, names: Sequence[str]) -> str:
+    """The text of a page of a description and voxels or heights; `what` is to be seen, before its pictures' `names`."""
     parts = {
         "title": html.escape(description["title"]),
-        "sharing": _sharing(label, description),
+        "sharing": _sharing(label, description["title"], what, names),
+        "what": html.escape(f"{what}."),
         "style": source("style.css"),
         "code": joined("page.js"),
         "scene": base64.b64encode(zipped(description)).decode(),
-        "voxels": base64.b64encode(voxels).decode(),
+        "voxels": base64.b64encode(data).decode(),
     }
     template = source("page.html")
     run = (each.replace("{{code}}", parts["code"]) for each in _RUN.findall(template))
@@ -62,13 +82,11 @@ def page_of(label: Label, description: dict[str, Any], voxels: bytes) -> str:
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)
 
 
-def _sharing(label: Label, description: dict[str, Any]) -> str:
+def _sharing(label: Label, title: str, what: str, names: Sequence[str]) -> str:
     """What is shown of the page where its address is shared (https://ogp.me)."""
-    names = [picture["name"] for picture in description["pictures"] if not picture["mirrored"]]
     shown = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
-    what = "A solid stands in the light" if description["solid"] else "Light falls through a block of coloured glass"
-    said = f"{what}, and its shadows are pictures: {shown}."
-    told = {"og:type": "website", "og:title": description["title"], "og:description": said, "og:image": label.picture}
+    said = f"{what}: {shown}."
+    told = {"og:type": "website", "og:title": title, "og:description": said, "og:image": label.picture}
     lines = [f'<meta name="description" content="{html.escape(said)}">']
     lines += [f'<meta property="{name}" content="{html.escape(text)}">' for name, text in told.items() if text]
     return "\n".join(lines)

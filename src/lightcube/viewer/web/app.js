@@ -4,12 +4,13 @@ import { lessonOf } from "./model/lesson.js";
 import { momentOf } from "./model/moment.js";
 import { stops } from "./model/stage.js";
 import { nearestOf, neighbourOf, Turning } from "./model/turning.js";
+import { wordsOf } from "./model/words.js";
+import { controlsAround, headerAround, helpAround, hintAround } from "./parts/around.js";
+import { createBeckoning } from "./parts/beckoning.js";
 import { createCompare } from "./parts/compare.js";
-import { createControls } from "./parts/controls.js";
 import { createFilmstrip } from "./parts/filmstrip.js";
 import { listenToGestures } from "./parts/gestures.js";
-import { createHeader, createQuietLine } from "./parts/header.js";
-import { createHelp, createHint } from "./parts/help.js";
+import { createQuietLine } from "./parts/header.js";
 import { listenToKeys } from "./parts/keys.js";
 import { createLoop } from "./parts/loop.js";
 import { createScanline } from "./parts/scanline.js";
@@ -17,17 +18,12 @@ import { followTheme } from "./parts/theme.js";
 import { createTour } from "./parts/tour.js";
 import { createWall } from "./parts/wall.js";
 import { RoomView } from "./room/roomview.js";
-import { clampTo, degreesText, element, qualityOf } from "./tools/elements.js";
+import { clampTo, degreesText, element, overlapText, qualityOf, toggleFullScreen } from "./tools/elements.js";
 
 /** Degrees by which a pixel of a drag turns the cube. */
 const TURN_SPEED = 0.35;
 /** Milliseconds between two copies of the shadow into the cards while it changes. */
 const COPY_EVERY = 80;
-/** Milliseconds after which the cube turns to its next stop, once, if nobody has touched anything. */
-const BECKONS_AFTER = 3500;
-/** Seconds that it takes for it. */
-const BECKONING = 2.4;
-
 /**
  * Build the page in an element.
  *
@@ -49,8 +45,9 @@ export function mount(root, scene, cube, { compact = false } = {}) {
   app.loop = createLoop(show, rested);
   if (!compact) view.head = () => app.parts.header.element.offsetHeight / Math.max(1, view.canvas.clientHeight);
   view.aim(turning.angle, app.chosen, false);
+  app.beckoning = compact ? null : createBeckoning(root, turning, app.loop.ask);
   const ends = [
-    compact ? () => {} : beckoning(app),
+    () => app.beckoning?.end(),
     listenToTheme(app, compact),
     listenToKeys(compact ? root : document, app.does),
     listenToRoom(app, compact),
@@ -87,32 +84,6 @@ export function mount(root, scene, cube, { compact = false } = {}) {
 
 function nothingChosen() {
   return { place: 0, row: null, column: null, whole: false, thin: false, lampsEye: false, details: false, big: false, dark: null, lesson: null };
-}
-
-/**
- * Turn to the next stop, once, some time after all was drawn, so that one sees what this is; whoever touches anything
- * before is not disturbed. Returns what ends it.
- */
-function beckoning(app) {
-  const { root, turning } = app;
-  const touches = ["pointerdown", "wheel"];
-  let timer = 0;
-  const go = () => {
-    end();
-    if (turning.calm || turning.moving || turning.stops.length < 2 || turning.angle !== turning.stops[0]) return;
-    turning.glideTo(turning.stops[1], BECKONING);
-    app.loop.ask();
-  };
-  app.drawn = () => (timer = setTimeout(go, BECKONS_AFTER));
-  function end() {
-    app.drawn = null;
-    clearTimeout(timer);
-    for (const touch of touches) root.removeEventListener(touch, end, true);
-    document.removeEventListener("keydown", end, true);
-  }
-  for (const touch of touches) root.addEventListener(touch, end, true);
-  document.addEventListener("keydown", end, true); // which need not have its focus in here
-  return end;
 }
 
 /** What can be done, each ending with a new drawing. */
@@ -181,7 +152,7 @@ function actionsOf(app) {
     },
   };
   const useless = scene.turns ? [] : ["turn", "release", "neighbour", "nearest", "first", "play", "snap"];
-  if (scene.solid) useless.push("tour");
+  if (scene.solid) useless.push("tour", "thin", "point");
   for (const name of useless) all[name] = () => false;
   return Object.fromEntries(Object.entries(all).map(([name, does]) => [name, (...given) => {
     const done = does(...given);
@@ -211,11 +182,6 @@ function goTo(app, number) {
 /** The pixel that is pointed at, or null. */
 function chosenPixel({ place, row, column }) {
   return column === null ? null : { screen: place, row, column };
-}
-
-function toggleFullScreen(root) {
-  if (document.fullscreenElement) document.exitFullscreen();
-  else root.requestFullscreen?.().catch(() => {}); // a person's browser may refuse it
 }
 
 function setTheme(app, dark) {
@@ -249,6 +215,7 @@ function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
     turn: scene.turns ? (pixels) => does.turn(TURN_SPEED * pixels) : null,
     release: (pixelsPerSecond) => does.release(TURN_SPEED * pixelsPerSecond),
     point(x, y) {
+      if (scene.solid) return; // it has no scan-lines
       const found = view.pointed(x, y);
       view.canvas.classList.toggle("pointing", found !== null);
       if (found === null) does.point(chosen.row, null);
@@ -264,16 +231,16 @@ function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
 
 function createParts({ scene, turning, view, does }, cube, compact) {
   return {
-    header: createHeader(scene, does, compact),
+    header: headerAround(scene, does, compact),
     wall: compact ? null : createWall(scene),
     quiet: createQuietLine(scene, view.note, compact),
-    hint: createHint(scene),
-    help: createHelp(scene),
-    controls: scene.turns ? createControls(scene, turning.stops, does) : null,
+    hint: hintAround(scene),
+    help: helpAround(scene),
+    controls: scene.turns ? controlsAround(scene, turning.stops, does) : null,
     filmstrip: createFilmstrip(scene, does.picture),
     tour: compact ? null : createTour(does),
     compare: compact ? null : createCompare(scene, does),
-    scanline: compact ? null : createScanline(scene, cube, does.point),
+    scanline: compact || scene.solid ? null : createScanline(scene, cube, does.point),
     room: view.canvas,
     said: element("p", { class: "unseen", "aria-live": "polite" }),
   };
@@ -287,7 +254,7 @@ function layoutOf(parts, compact) {
     dock.append(...(parts.quiet === null ? [] : [parts.quiet]));
     return [stage, dock, ...rest];
   }
-  const cards = [parts.compare.element, parts.scanline.element, parts.quiet];
+  const cards = [parts.compare.element, ...(parts.scanline === null ? [] : [parts.scanline.element]), parts.quiet];
   const details = element("div", { class: "details" }, ...cards);
   return [stage, dock, element("aside", { class: "side", "aria-label": "The wall" }, parts.wall.element, details), parts.wall.threads, ...rest];
 }
@@ -308,7 +275,7 @@ function showing(app) {
     parts.tour?.update(now);
     parts.controls?.update(now);
     parts.wall?.tie(now, view);
-    parts.filmstrip.update(now);
+    parts.filmstrip.update(now.exposures[place].picture);
     if (!still && performance.now() - copied > COPY_EVERY) showCards(now);
     if (told !== turning.angle) {
       told = turning.angle;
@@ -326,13 +293,12 @@ function showing(app) {
   }
 
   function rested() {
-    app.drawn?.();
-    app.drawn = null;
+    app.beckoning?.drawn();
     app.root.dataset.drawn = "";
     const now = momentOf(scene, turning, view.exposures, chosen);
     showCards(now);
-    view.canvas.setAttribute("aria-label", `The cube in its room, turned by ${degreesText(now.angle)}`);
-    const scores = now.pictures.map((number) => qualityOf(scene.pictures[number].psnr));
+    view.canvas.setAttribute("aria-label", `The ${wordsOf(scene).name} in its room, turned by ${degreesText(now.angle)}`);
+    const scores = now.pictures.map((number) => qualityOf(scene.pictures[number].psnr) || overlapText(scene.pictures[number].overlap));
     parts.said.textContent = [now.name, degreesText(now.angle), ...scores].filter(Boolean).join(", ");
   }
 

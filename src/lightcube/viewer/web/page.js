@@ -1,7 +1,9 @@
-// Opens the page: reads the data behind this text, shows the cube, and says a sentence where that fails.
+// Opens the page: reads the data behind this text, shows the cube or the relief, and says a sentence where that fails.
 
 import { mount } from "./app.js";
-import { fromBase64, readScene, readVoxels } from "./model/data.js";
+import { fromBase64, gunzip, readScene, readVoxels } from "./model/data.js";
+import { heightsOf } from "./model/relief.js";
+import { mountRelief } from "./plate.js";
 
 /** Say a sentence instead of the page; it comes without capital and full stop. */
 function saySentence(root, sentence) {
@@ -23,7 +25,8 @@ function bytesOf(id) {
 async function openPage(root) {
   try {
     const scene = await readScene(bytesOf("scene"));
-    mount(root, scene, await readVoxels(bytesOf("voxels"), scene));
+    if (scene.kind === "relief") mountRelief(root, scene, heightsOf(await gunzip(bytesOf("voxels"), "heights"), scene));
+    else mount(root, scene, await readVoxels(bytesOf("voxels"), scene));
   } catch (error) {
     const damaged = error instanceof ReferenceError || error instanceof TypeError || error instanceof SyntaxError;
     const said = `this page's program is damaged (${error.message}): write or send the page again`;

@@ -2,7 +2,7 @@
 
 import { middleOfShadow } from "../model/stage.js";
 import { lampPowers, wantedImage } from "../tools/cards.js";
-import { clampTo, degreesText, element, figuresText, placeIn, scoreText } from "../tools/elements.js";
+import { clampTo, degreesText, element, figuresText, overlapText, placeIn, scoreText } from "../tools/elements.js";
 import { dot, sub } from "../tools/vectors.js";
 
 const COLOURS = ["red", "green", "blue"];
@@ -21,16 +21,16 @@ export function createCompare(scene, does) {
   const facts = element("p", { class: "facts" });
   const tabs = element("div", { class: "tabs", role: "group", "aria-label": "Screens" });
   const wanted = element("div", { class: "picture" });
-  const shown = createShown(does);
+  const shown = scene.solid ? createStill() : createShown(does);
   const caption = element("figcaption");
-  const lamps = createLamps(scene);
+  const lamps = scene.solid ? null : createLamps(scene); // a shape's are all alike
   let drawn = "";
   const card = element("section", { class: "card compare", "aria-label": "Wanted and shown" },
     element("header", {}, title, facts), tabs,
     element("div", { class: "pair" },
       element("figure", {}, wanted, element("figcaption", { text: "wanted" })),
       element("figure", {}, shown.element, caption)),
-    lamps.element);
+    lamps?.element ?? null);
 
   return {
     element: card,
@@ -45,7 +45,7 @@ export function createCompare(scene, does) {
       updateTabs(tabs, scene, now, does);
       caption.textContent = now.thin ? "shown, thin beams" : "shown";
       shown.update(now, view, now.whole ? windowInWhole(scene, exposure) : null);
-      lamps.update(exposure);
+      lamps?.update(exposure);
     },
   };
 }
@@ -54,7 +54,16 @@ export function createCompare(scene, does) {
 function placeText({ away, thin }, picture) {
   const stop = `stop ${degreesText(picture.angle_deg)}`;
   if (Math.abs(away) >= 0.005) return `${stop} · ${degreesText(Math.abs(away))} away`;
-  return [stop, "here", thin ? "" : scoreText(picture.psnr)].filter(Boolean).join(" · ");
+  return [stop, "here", thin ? "" : scoreText(picture.psnr), overlapText(picture.overlap)].filter(Boolean).join(" · ");
+}
+
+/** The shown picture of a shape, of which all rows are alike. */
+function createStill() {
+  const canvas = element("canvas", { class: "image" });
+  return {
+    element: element("div", { class: "picture" }, canvas),
+    update: (now, view) => view.copyShadow(now.spot.place, canvas),
+  };
 }
 
 /** The shown picture, on which pointing, dragging or the arrow keys choose a row. */

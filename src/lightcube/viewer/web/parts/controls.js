@@ -9,39 +9,34 @@ const SPEEDS = [0.25, 0.5, 1, 2, 4];
 const SLIDER_STEP = 0.01;
 /** Ticks that stand apart even on a phone. */
 const MOST_TICKS = 60;
+/** What the switch does that stays on. */
+const SNAP = "When you let go it turns on to the nearest picture, and playing rests on each; off, it stays wherever you leave it.";
 
 /**
  * The row of controls.
  *
- * @param {Object} scene
  * @param {number[]} stops
- * @param {Object} does `play()`, `neighbour(way)`, `snap()`, `lampsEye()`, `whole()`, `thin()`,
- *   `speed(factor)`, `slide(angle)`, `slid()`
- * @returns {{element: HTMLElement, update: function(Object): void}} `update` takes what the app knows at a moment
+ * @param {Object} does `play()`, `neighbour(way)`, `snap()`, `speed(factor)`, `slide(angle)`, `slid()`
+ * @param {string} angle what the slider sets
+ * @param {HTMLElement[]} choices buttons of this page, after those that all have
+ * @returns {{element: HTMLElement, update: function(Object): void}} `update` takes {angle, away, name, snap, playing}
  */
-export function createControls(scene, stops, does) {
+export function createControls(stops, does, angle, choices) {
   const play = iconButton("play", "Play", "Space", does.play);
-  const snap = wordButton("magnet", "Snap", "Come to rest on pictures, and on each while playing", does.snap);
-  const whole = wordButton("whole", "Whole shadow", "Show the whole shadow (W)", does.whole);
-  whole.hidden = scene.whole_shadow === null;
-  const thin = wordButton("thin", "Thin beams", "Show one thin beam in each pixel, as in the paper (B)", does.thin);
-  const eye = wordButton("eye", "Lamp's eye", "Look from where the lamp is (L)", does.lampsEye);
+  const snap = wordButton("magnet", "Snap", SNAP, does.snap);
   const readout = element("output", { class: "readout", "aria-live": "off" });
-  const slider = createSlider(stops, does);
+  const slider = createSlider(stops, does, angle);
   const row = element("div", { class: "controls", role: "group", "aria-label": "Turning" },
     element("div", { class: "transport" },
       iconButton("previous", "Previous picture", "Page Up", () => does.neighbour(-1)), play,
       iconButton("next", "Next picture", "Page Down", () => does.neighbour(1))),
     readout, slider.element,
-    element("div", { class: "choices" }, speedChoice(does.speed), snap, eye, whole, thin));
+    element("div", { class: "choices" }, speedChoice(does.speed), snap, ...choices));
 
   return {
     element: row,
     update(now) {
       setPressed(snap, now.snap);
-      setPressed(eye, now.lampsEye);
-      setPressed(whole, now.whole);
-      setPressed(thin, now.thin);
       if (play.dataset.playing !== String(now.playing)) {
         play.dataset.playing = now.playing;
         play.replaceChildren(icon(now.playing ? "pause" : "play"));
@@ -55,9 +50,9 @@ export function createControls(scene, stops, does) {
 }
 
 /** The slider over 360° with its ticks. */
-function createSlider(stops, does) {
+function createSlider(stops, does, angle) {
   const input = element("input", {
-    type: "range", min: 0, max: 360, step: SLIDER_STEP, "aria-label": "Angle of the turntable",
+    type: "range", min: 0, max: 360, step: SLIDER_STEP, "aria-label": angle,
     input: () => does.slide(Number(input.value)),
     change: () => does.slid(),
   });

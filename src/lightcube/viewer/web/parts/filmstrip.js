@@ -1,7 +1,8 @@
 // The strip of all wanted pictures: a click turns the cube to one, and the nearest one is marked.
 
+import { shortened } from "../model/words.js";
 import { wantedImage } from "../tools/cards.js";
-import { degreesText, element, qualityOf } from "../tools/elements.js";
+import { degreesText, element, overlapText, qualityOf } from "../tools/elements.js";
 
 /**
  * The film strip, in the order of the turn.
@@ -10,13 +11,14 @@ import { degreesText, element, qualityOf } from "../tools/elements.js";
  *
  * @param {Object} scene
  * @param {function(number): void} chosen called with the number of a picture
- * @returns {{element: HTMLElement, update: function(Object): void}}
+ * @returns {{element: HTMLElement, update: function(number): void}} `update` takes the number of the nearest picture
  */
 export function createFilmstrip(scene, chosen) {
   const { pictures } = scene;
   const order = pictures.map((_, i) => i);
   order.sort((a, b) => pictures[a].angle_deg - pictures[b].angle_deg || pictures[a].screen - pictures[b].screen);
-  const buttons = new Map(order.map((number) => [number, thumbnail(scene, number, () => chosen(number))]));
+  const names = shortened(pictures.map(({ name }) => name));
+  const buttons = new Map(order.map((number) => [number, thumbnail(scene, number, names[number], () => chosen(number))]));
   const strip = element("div", { class: "filmstrip", role: "group", "aria-label": "Wanted pictures" });
   strip.append(...buttons.values());
   let marked = null;
@@ -33,11 +35,10 @@ export function createFilmstrip(scene, chosen) {
 
   return {
     element: strip,
-    update(now) {
-      const chosen = now.exposures[now.spot.place].picture;
-      if (chosen === marked) return;
+    update(nearest) {
+      if (nearest === marked) return;
       if (marked !== null) mark(buttons.get(marked), false);
-      marked = chosen;
+      marked = nearest;
       mark(buttons.get(marked), true);
       for (const [number, button] of buttons) button.tabIndex = number === marked ? 0 : -1;
       scrollInto(strip, buttons.get(marked));
@@ -45,15 +46,15 @@ export function createFilmstrip(scene, chosen) {
   };
 }
 
-function thumbnail(scene, number, pressed) {
+function thumbnail(scene, number, name, pressed) {
   const picture = scene.pictures[number];
   const quality = qualityOf(picture.psnr);
   const angle = degreesText(picture.angle_deg);
-  const label = [picture.name, quality, picture.mirrored && "mirrored", angle].filter(Boolean).join(", ");
+  const label = [picture.name, quality, overlapText(picture.overlap), picture.mirrored && "mirrored", angle].filter(Boolean).join(", ");
   const given = { type: "button", class: "thumbnail", "aria-label": label, title: label, tabindex: -1, click: pressed };
   return element("button", given,
     wantedImage(scene, picture),
-    element("span", { class: "name", text: picture.name }),
+    element("span", { class: "name", text: name }),
     quality ? element("span", { class: `mark ${quality}`, "aria-hidden": "true" }) : null);
 }
 

@@ -1,39 +1,28 @@
 // The title, the quiet line that says what the page holds, and the buttons of the page itself.
 
-import { element, iconButton, oneDecimal, setPressed, wordButton } from "../tools/elements.js";
-
-const [GLASS, SOLID] = ["Light falls through a block of coloured glass", "A solid stands in the light"];
+import { element, iconButton, oneDecimal } from "../tools/elements.js";
 
 /**
  * Title, who made it and for whom, what it is, and buttons.
  *
  * @param {Object} scene
- * @param {Object} does `tour()`, `details()`, `theme()`, `fullScreen()`, `help()`
- * @param {boolean} compact the title and the buttons of a notebook
- * @returns {{element: HTMLElement, update: function(Object): void}}
+ * @param {string|null} what it is, in a sentence; null in notebooks
+ * @param {HTMLElement[]} tools buttons of this page, before those that all have
+ * @param {Object} does `theme()`, `fullScreen()`, `help()`
+ * @returns {HTMLElement}
  */
-export function createHeader(scene, does, compact) {
-  const tour = wordButton("tour", "Tour", "What light does here, step by step, for a class (G)", does.tour);
-  const details = wordButton("details", "Details", "Scores, lamps and the way of the light (D)", does.details);
-  const lit = scene.solid ? SOLID : GLASS;
-  const what = scene.turns ? `${lit}; at each stop its shadow is another picture.` : `${lit}; its shadows are pictures.`;
+export function createHeader(scene, what, tools, does) {
   const said = [scene.by && `by ${scene.by}`, scene.note].filter(Boolean);
-  return {
-    element: element("header", { class: "top" },
-      element("div", { class: "titles" },
-        element("h1", { text: scene.title, dir: "auto" }),
-        said.length > 0 ? element("p", { class: "by", text: said.join(" · "), dir: "auto" }) : null,
-        compact ? null : element("p", { class: "what", text: what })),
-      element("div", { class: "tools" },
-        ...(compact ? [] : scene.solid ? [details] : [tour, details]),
-        named("theme", "Light or dark", "T", does.theme, "Theme"),
-        document.fullscreenEnabled ? named("screen", "Full screen", "F", does.fullScreen, "Full") : null,
-        named("help", "Help", "?", does.help, "Help"))),
-    update(now) {
-      setPressed(tour, now.lesson !== null);
-      setPressed(details, now.details);
-    },
-  };
+  return element("header", { class: "top" },
+    element("div", { class: "titles" },
+      element("h1", { text: scene.title, dir: "auto" }),
+      said.length > 0 ? element("p", { class: "by", text: said.join(" · "), dir: "auto" }) : null,
+      what === null ? null : element("p", { class: "what", text: what })),
+    element("div", { class: "tools" },
+      ...tools,
+      named("theme", "Light or dark", "T", does.theme, "Theme"),
+      document.fullscreenEnabled ? named("screen", "Full screen", "F", does.fullScreen, "Full") : null,
+      named("help", "Help", "?", does.help, "Help")));
 }
 
 /** An icon's button that says its name where nothing is pointed at, on phones. */
@@ -57,8 +46,9 @@ export function createQuietLine(scene, note, brief) {
   return element("p", { class: "quiet", text: [keptText(scene), note].filter(Boolean).join(" ") });
 }
 
-function keptText({ voxels, kept }) {
+function keptText({ voxels, kept, solid }) {
   const [full, held] = [countText(kept.full), countText(voxels.shape)];
+  if (solid) return `A shape in a block of ${held} voxels; the shadows are those of its voxels, whose edges a printed mesh smooths.`;
   if (full === held) {
     return `A cube of ${full} voxels, rounded for this page: its shadows differ from the original's by at most ` +
       `${oneDecimal(kept.worst_levels)} of 255 levels.`;

@@ -1,6 +1,6 @@
 // The wall as one sees it who stands before it: the picture that the light makes, large, tied to its place in the room.
 
-import { element, qualityOf } from "../tools/elements.js";
+import { element, overlapText, qualityOf } from "../tools/elements.js";
 
 const SPACE = "http://www.w3.org/2000/svg";
 
@@ -37,7 +37,7 @@ export function createWall(scene) {
       }
       const here = exposure.lit && Math.abs(now.away) < 0.005;
       name.textContent = here ? picture.name : "between two pictures";
-      quality.textContent = here ? qualityOf(picture.psnr) : "";
+      quality.textContent = here ? qualityOf(picture.psnr) || overlapText(picture.overlap) : "";
       canvas.setAttribute("aria-label", here ? `The wall shows ${picture.name}` : "The wall between two pictures");
     },
     tie(now, view) {

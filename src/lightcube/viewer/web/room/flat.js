@@ -2,16 +2,17 @@
 
 import { pointsOf } from "../model/area.js";
 import { walk } from "../model/beam.js";
+import { bodyOf, brightness, meets } from "../model/body.js";
 import { castPicture, transmittance } from "../model/cast.js";
 import { encode } from "../model/light.js";
 import { add, applyInverse, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, rayAt, seenAt } from "./camera.js";
-import { TONES, cubeCorners, floorOf, fromFar, halfSides, lampRadius, wallWidth } from "./furniture.js";
+import { TONES, cubeCorners, floorOf, fromFar, halfSides, lampRadius, lampsLighting, wallWidth } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, screenCorners, tableOf } from "./furniture.js";
 
 /** Shadows that are kept. */
 const KEPT = 64;
-/** Rays along each side of the picture of the cube's glass, at rest and in motion. */
+/** Rays along each side of the picture of the cube's glass, at rest and in motion; of a body twice as many. */
 const [FINE, COARSE] = [72, 28];
 /** Part of a picture that is seen through the screen's paper from behind. */
 const THROUGH = 0.5;
@@ -26,6 +27,7 @@ const PATCHES = 8;
  */
 export function createFlat(canvas, scene, cube) {
   const [kept, floor] = [new Map(), floorOf(scene)];
+  const body = scene.solid ? bodyOf(cube) : null;
   let [exposed, asked, seen, shadows] = [[], null, 1, []];
   const shadowOf = (exposure, parts) => keptShadow(kept, cube, scene, exposure, asked, parts);
   return {
@@ -46,9 +48,9 @@ export function createFlat(canvas, scene, cube) {
       return { rows: height, columns: width, pixels: data };
     },
     drawShadow: (number, target) => target.getContext("2d").drawImage(shadowOf(exposed[number], 1), 0, 0),
-    draw(room, camera, { dark, mark, scale }) {
+    draw(room, camera, { dark, mark, scale, bare = 0 }) {
       const tones = TONES[dark ? "dark" : "light"];
-      const what = { scene, cube, room, camera, tones, shadows, parts: seen, mark, exposed, floor: floor(room) };
+      const what = { scene, cube, body, room, camera, tones, shadows, parts: seen, mark, exposed, floor: floor(room), bare };
       drawRoom({ ...what, canvas, context: canvas.getContext("2d"), rays: scale < 1 ? COARSE : FINE });
     },
     dispose: () => kept.clear(),
@@ -72,13 +74,15 @@ function castShadow(cube, scene, exposure, beams, parts) {
   return paintPicture(rows, columns, light, scene.transfer);
 }
 
-/** A small canvas of linear light by row and column. */
+/** A small canvas of linear light by row and column; clear where that is null. */
 function paintPicture(rows, columns, lightAt, transfer) {
   const picture = Object.assign(document.createElement("canvas"), { width: columns, height: rows });
   const levels = new ImageData(columns, rows);
   for (let row = 0; row < rows; row++) {
     for (let column = 0; column < columns; column++) {
-      const shown = Array.from(lightAt(row, column), (x) => 255 * encode(Math.min(x, 1), transfer));
+      const light = lightAt(row, column);
+      if (light === null) continue;
+      const shown = Array.from(light, (x) => 255 * encode(Math.min(x, 1), transfer));
       levels.data.set([...shown, 255], 4 * (row * columns + column));
     }
   }
@@ -105,7 +109,7 @@ function drawRoom(stage) {
   lamps.filter((lamp) => !lamp.near).forEach((lamp) => drawLamp(stage, lamp));
   drawSheet(stage);
   lines.filter((line) => !line.over).forEach((line) => drawLine(stage, line));
-  drawGlass(stage);
+  drawCube(stage);
   lines.filter((line) => line.over).forEach((line) => drawLine(stage, line));
   screens.filter(before).forEach((screen) => drawScreen(stage, screen));
   lamps.filter((lamp) => lamp.near).forEach((lamp) => drawLamp(stage, lamp));
@@ -250,36 +254,72 @@ function drawPatch({ context, seen, parts }, picture, patch, { x, y }, pixels) {
   context.restore();
 }
 
-/** What the cube lets through, a coarse picture that dims what is behind it. */
-function drawGlass(stage) {
-  const { context, canvas, scene, cube, room, camera, seen, rays } = stage;
+/** What the cube lets through, a coarse picture that dims what is behind it; of a shape its body, which hides that. */
+function drawCube(stage) {
+  const { context, canvas, scene, cube, room, camera, rays } = stage;
+  const around = facesSeen(stage);
+  if (around === null) return;
+  const { eye, left, top, wide, high } = around;
+  const wayAt = (row, column) => {
+    const [x, y] = [left + ((column + 0.5) / rays) * wide, top + ((row + 0.5) / rays) * high];
+    return applyInverse(room.turn, rayAt(camera, x / canvas.width, y / canvas.height).way);
+  };
+  const through = (row, column) => {
+    const { voxels, lengths } = walk(cube.shape, cube.voxel_mm, eye, wayAt(row, column), 0);
+    return transmittance(cube, voxels, lengths);
+  };
+  const cast = scene.solid ? bodyLight(stage, eye) : null;
+  const drawn = scene.solid
+    ? paintPicture(2 * rays, 2 * rays, (row, column) => cast(wayAt((row - 0.5) / 2, (column - 0.5) / 2)), "srgb")
+    : paintPicture(rays, rays, through, "srgb");
+  context.save();
+  around.clip();
+  if (!scene.solid) context.globalCompositeOperation = "multiply"; // of display values: nearly that of light
+  context.imageSmoothingQuality = "high";
+  context.drawImage(drawn, left, top, wide, high);
+  context.restore();
+}
+
+/** The light of a shape's body by the way of a ray from the eye, in the cube's axes; null where that misses it. */
+function bodyLight({ scene, exposed, room, body, tones, bare }, eye) {
+  const { voxel_mm } = scene.voxels;
+  const half = halfSides(scene);
+  const inVoxels = (place) => scaled(add(place, half), 1 / voxel_mm);
+  const up = applyInverse(room.turn, [0, 0, 1]);
+  const numbers = new Set(exposed.flatMap((exposure) => lampsLighting(scene, exposure).slice(0, 1)));
+  const lamps = [...numbers].map((number) => {
+    const { place, parallel, light } = room.lamps[number];
+    const there = applyInverse(room.turn, place);
+    return { ways: (at) => unit(parallel ? there : sub(inVoxels(there), at)), light: pureColour(light) };
+  });
+  const start = inVoxels(eye);
+  return (way) => {
+    const met = meets(body, start, unit(way));
+    if (met === null) return null;
+    return brightness(body, met, up, lamps).map((part, i) => (1 - bare) * part * tones.body[i]);
+  };
+}
+
+/** The box of the canvas that the cube is seen in, the eye in the cube's axes, and what clips to the faces seen. */
+function facesSeen({ context, scene, room, camera, seen }) {
   const corners = cubeCorners(scene, room);
   const places = corners.map(seen);
-  if (Math.min(...places.map(([, , depth]) => depth)) <= 0) return;
+  if (Math.min(...places.map(([, , depth]) => depth)) <= 0) return null;
   const [xs, ys] = [0, 1].map((i) => places.map((place) => place[i]));
   const [left, top] = [Math.min(...xs), Math.min(...ys)];
   const [wide, high] = [Math.max(...xs) - left, Math.max(...ys) - top];
-  const eye = applyInverse(room.turn, camera.eye);
-  const glass = paintPicture(rays, rays, (row, column) => {
-    const [x, y] = [left + ((column + 0.5) / rays) * wide, top + ((row + 0.5) / rays) * high];
-    const way = applyInverse(room.turn, rayAt(camera, x / canvas.width, y / canvas.height).way);
-    const { voxels, lengths } = walk(cube.shape, cube.voxel_mm, eye, way, 0);
-    return transmittance(cube, voxels, lengths);
-  }, "srgb");
-  context.save();
-  context.beginPath();
-  const half = halfSides(scene);
-  for (let axis = 0; axis < 3; axis++) {
-    if (Math.abs(eye[axis]) <= half[axis]) continue; // neither of these two faces is seen
-    const face = corners.map((_, i) => i).filter((i) => ((i >> axis) & 1) === (eye[axis] > 0 ? 1 : 0));
-    [0, 1, 3, 2].map((i) => places[face[i]]).forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
-    context.closePath();
-  }
-  context.clip("nonzero");
-  context.globalCompositeOperation = "multiply"; // of display values: nearly that of light
-  context.imageSmoothingQuality = "high";
-  context.drawImage(glass, left, top, wide, high);
-  context.restore();
+  const [eye, half] = [applyInverse(room.turn, camera.eye), halfSides(scene)];
+  const clip = () => {
+    context.beginPath();
+    for (let axis = 0; axis < 3; axis++) {
+      if (Math.abs(eye[axis]) <= half[axis]) continue; // neither of these two faces is seen
+      const face = corners.map((_, i) => i).filter((i) => ((i >> axis) & 1) === (eye[axis] > 0 ? 1 : 0));
+      [0, 1, 3, 2].map((i) => places[face[i]]).forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
+      context.closePath();
+    }
+    context.clip("nonzero");
+  };
+  return { eye, left, top, wide, high, clip };
 }
 
 function drawLamp({ context, scene, canvas, camera, seen, tones }, { place, light }) {

@@ -14,6 +14,7 @@ export const TONES = {
     wall: [0.022, 0.023, 0.026],
     back: [0.03, 0.03, 0.032],
     off: [0.12, 0.12, 0.13],
+    body: [0.62, 0.42, 0.25],
     edge: [0.75, 0.86, 1.0],
     hint: [0.9, 0.92, 1.0],
     mark: [0.55, 0.9, 1.0],
@@ -30,6 +31,7 @@ export const TONES = {
     wall: [0.2, 0.2, 0.205],
     back: [0.16, 0.163, 0.17],
     off: [0.24, 0.245, 0.26],
+    body: [0.72, 0.47, 0.27],
     edge: [0.9, 0.95, 1.0],
     hint: [0.95, 0.95, 1.0],
     mark: [0.0, 0.25, 0.75],
@@ -159,7 +161,7 @@ export function floorOf(scene) {
 }
 
 /**
- * Thin lines, the most important first: the marked row, the cube's edges, the beams' outlines.
+ * Thin lines, the most important first: the marked row, the edges of a cube of glass, the beams' outlines.
  * @param {object} scene
  * @param {object[]} exposures that the room's screens show
  * @param {object} room
@@ -173,7 +175,7 @@ export function floorOf(scene) {
 export function linesOf(scene, exposures, room, eye, mark, tones) {
   return [
     ...(mark && room.screens[mark.screen] ? markLines(scene, exposures, room, mark, tones) : []),
-    ...edgeLines(scene, room, eye, tones),
+    ...(scene.solid ? [] : edgeLines(scene, room, eye, tones)),
     ...hintLines(scene, exposures, room, tones),
   ];
 }

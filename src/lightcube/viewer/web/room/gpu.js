@@ -1,11 +1,12 @@
-// The renderer on WebGL2: exact shadows into textures, and the room with the cube as coloured glass.
+// The renderer on WebGL2: exact shadows into textures, and the room with the cube as coloured glass, or with a shape's body.
 
 import { pointsOf } from "../model/area.js";
+import { bodyOf } from "../model/body.js";
 import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, seenAt } from "./camera.js";
 import { TONES, floorOf, fromFar, halfSides, lampOfEye, lampRadius, lampsLighting } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, tableOf, wallWidth } from "./furniture.js";
-import { CAST, EVERYWHERE, MOST_BEAMS, ROOM } from "./shaders.js";
+import { CAST, EVERYWHERE, MOST_BEAMS, roomProgram } from "./shaders.js";
 
 /** What is infinite, in single precision. */
 const NEVER = 1e30;
@@ -13,7 +14,7 @@ const NEVER = 1e30;
 const PARALLEL = 1e-12;
 const ON_FACE = 1e-9;
 /** Texture units. */
-const [VOXEL_UNIT, VIEW_UNIT, SHADOW_UNIT] = [0, 1, 2];
+const [VOXEL_UNIT, VIEW_UNIT, SHADOW_UNIT, BODY_UNIT] = [0, 1, 2, 3];
 /** Screens, lamps and lines that are drawn at most: as many as the room's program has room for. */
 const MOST_THINGS = 256;
 /** Rays that are cast at once: systems end programs that compute for seconds. */
@@ -83,7 +84,7 @@ function makeKit(gl, scene, cube) {
   const kit = {
     gl,
     caster: makeProgram(gl, CAST),
-    painter: makeProgram(gl, ROOM),
+    painter: makeProgram(gl, roomProgram(scene.solid)),
     voxels: makeTexture(gl, gl.TEXTURE_3D, VOXEL_UNIT, gl.NEAREST),
     shadows: null,
     layers: "",
@@ -106,6 +107,7 @@ function makeKit(gl, scene, cube) {
   gl.uniform1i(kit.caster.at("linear"), scene.transfer === "linear" ? 1 : 0);
   gl.useProgram(kit.painter.made);
   gl.uniform1i(kit.painter.at("shadows"), SHADOW_UNIT);
+  if (scene.solid) uploadBody(kit, bodyOf(cube));
   gl.uniformBlockBinding(kit.painter.made, gl.getUniformBlockIndex(kit.painter.made, "Things"), 0);
   gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, kit.things);
   gl.bufferData(gl.UNIFORM_BUFFER, 64 * MOST_THINGS, gl.DYNAMIC_DRAW);
@@ -126,6 +128,16 @@ function uploadVoxels({ gl }, { shape, bits, codes }) {
   for (let i = 0; i < texels.length; i++) texels[i] = codes[3 * i] | (codes[3 * i + 1] << 10) | (codes[3 * i + 2] << 20);
   const kind = [gl.RGBA_INTEGER, gl.UNSIGNED_INT_2_10_10_10_REV];
   gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGB10_A2UI, ...size, ...kind, texels);
+}
+
+/** The body of an opaque shape, for the painter. */
+function uploadBody({ gl, painter }, { shape, levels }) {
+  makeTexture(gl, gl.TEXTURE_3D, BODY_UNIT, gl.LINEAR); // it stays bound there
+  gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_WRAP_R, gl.CLAMP_TO_EDGE);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  gl.texImage3D(gl.TEXTURE_3D, 0, gl.R8, shape[2], shape[1], shape[0], 0, gl.RED, gl.UNSIGNED_BYTE, levels);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+  gl.uniform1i(painter.at("body"), BODY_UNIT);
 }
 
 function makeProgram(gl, fragments) {
@@ -350,7 +362,7 @@ function setThings(gl, painter, { scene, exposures, parts, room, camera, dark, m
   gl.uniform3iv(painter.at("counts"), counts);
   gl.uniformMatrix3fv(painter.at("table"), false, [...sub(middle, camera.eye), ...right, ...down]);
   gl.uniform3fv(painter.at("foot"), footOf(scene, room, right, down));
-  for (const name of ["floor", "far", "grid", "table", "rim", "wall", "back", "off", "mark"]) {
+  for (const name of ["floor", "far", "grid", "table", "rim", "wall", "back", "off", "mark", ...(scene.solid ? ["body"] : [])]) {
     gl.uniform3fv(painter.at(`${name}Tone`), tones[name]);
   }
   gl.uniform1f(painter.at("shade"), tones.shade);

@@ -3,6 +3,7 @@
 import { JUDGED, QUICK, THIN } from "../model/area.js";
 import { partOf } from "../model/lesson.js";
 import { exposures, standing } from "../model/stage.js";
+import { wordsOf } from "../model/words.js";
 import { clampTo, element, fitCanvas } from "../tools/elements.js";
 import { add, norm, scaled, sub } from "../tools/vectors.js";
 import { HIGHEST, LOWEST, between, cameraOf, eyeOf, fitted, lampsOrbit, middleOfPixel, orbitFrom } from "./camera.js";
@@ -183,17 +184,17 @@ function soft(part) {
 
 /** A canvas with its renderer, and a sentence for people where it is not WebGL2 that draws. */
 function rendererFor(scene, cube) {
-  const canvas = newCanvas();
+  const canvas = newCanvas(scene);
   try {
     return { canvas, renderer: createRenderer(canvas, scene, cube), note: null };
   } catch (error) {
     // a canvas that has been asked for WebGL2 may not give another context
-    const plain = newCanvas();
+    const plain = newCanvas(scene);
     const note = `${error.message} The room is drawn more plainly.`;
     return { canvas: plain, renderer: createFlat(plain, scene, cube), note };
   }
 }
 
-function newCanvas() {
-  return element("canvas", { class: "room", tabindex: 0, role: "img", "aria-label": "The cube in its room" });
+function newCanvas(scene) {
+  return element("canvas", { class: "room", tabindex: 0, role: "img", "aria-label": `The ${wordsOf(scene).name} in its room` });
 }

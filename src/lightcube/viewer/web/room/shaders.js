@@ -1,6 +1,7 @@
 // The renderer's programs in GLSL ES 3.00: light through the cube, what the screens show, and the room.
 
 import { JUDGED } from "../model/area.js";
+import { AMBIENT, HALVINGS, LIFT, MARGIN, SKY, STEP, SURFACE } from "../model/body.js";
 
 const HEAD = `#version 300 es
 precision highp float;
@@ -182,11 +183,78 @@ void shine(vec3 dense, float piece) {
 #define LIT(dense, piece) shine(dense, piece)
 `;
 
+/** A number as these programs have it. */
+function real(value) {
+  return value.toFixed(4);
+}
+
 /**
- * The room. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
+ * The body of an opaque shape: where the ray meets it, and how bright it is there. The same law as in body.js.
+ */
+const BODY = `
+uniform sampler3D body;   // levels inside, with a margin
+uniform vec3 bodyTone;
+
+float levelAt(vec3 place) { return texture(body, (place + ${real(MARGIN)}) / vec3(textureSize(body, 0))).r - ${real(SURFACE / 255)}; }
+
+/* How far a ray goes until it meets the body, in voxel sides; its way has length 1. */
+float metBody(vec3 start, vec3 ahead) {
+  vec3 along = mix(ahead, vec3(1e-9), lessThan(abs(ahead), vec3(1e-9)));
+  vec3 one = (vec3(-1.0) - start) / along, other = (vec3(textureSize(voxels, 0)) + 1.0 - start) / along;
+  float from = max(most3(min(one, other)), 0.0), to = least3(max(one, other));
+  for (float far = from; far < to; far += ${real(STEP)}) {
+    if (levelAt(start + far * ahead) < 0.0) continue;
+    float before = max(from, far - ${real(STEP)}), inside = far;
+    for (int i = 0; i < ${HALVINGS}; i++) {
+      float middle = 0.5 * (before + inside);
+      if (levelAt(start + middle * ahead) < 0.0) before = middle;
+      else inside = middle;
+    }
+    return inside;
+  }
+  return NEVER;
+}
+
+vec3 brightness(vec3 place, vec3 normal, vec3 seen) {
+  vec3 bright = vec3(0.0), whole = vec3(0.0);
+  for (int i = 0; i < min(counts.x, MOST_BEAMS); i++) {
+    if (beamTones[i] == vec3(0.0)) continue;
+    whole += beamTones[i];
+    vec3 toLamp = normalize(inCube * (beams[i].w == 0.0 ? -beams[i].xyz : beams[i].xyz - seen));
+    float slant = dot(normal, toLamp);
+    if (slant <= 0.0 || metBody(place + ${real(LIFT)} * normal, toLamp) < NEVER) continue;
+    bright += slant * beamTones[i];
+  }
+  float sky = ${real(AMBIENT)} + ${real(SKY)} * (0.5 + 0.5 * dot(normal, normalize(inCube * vec3(0.0, 0.0, 1.0))));
+  return min(sky + ${real(1 - AMBIENT - SKY)} * bright / sqrt(max(whole, vec3(1.0))), vec3(1.0));
+}
+
+/* The body, which hides what is behind it; for the lamp's own eye it is black before bare light. */
+void drawBody() {
+  if (first < last) light = mix(light, bareTone, bare);
+  vec3 start = vec3(eyeWhole) + eyeRest, inside = inCube * way;
+  float far = metBody(start, normalize(inside)), depth = far / length(inside);
+  if (far >= NEVER || depth >= solid) return;
+  vec3 place = start + far * normalize(inside);
+  vec3 ahead = vec3(levelAt(place - vec3(1.0, 0.0, 0.0)) - levelAt(place + vec3(1.0, 0.0, 0.0)),
+    levelAt(place - vec3(0.0, 1.0, 0.0)) - levelAt(place + vec3(0.0, 1.0, 0.0)),
+    levelAt(place - vec3(0.0, 0.0, 1.0)) - levelAt(place + vec3(0.0, 0.0, 1.0)));
+  vec3 normal = dot(ahead, ahead) > 0.0 ? normalize(ahead) : vec3(0.0, 0.0, 1.0);
+  light = (1.0 - bare) * bodyTone * brightness(place, normal, depth * way);
+  solid = depth;
+  onPicture = false;
+}
+`;
+
+/**
+ * The room, around glass or around a body. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
  * light behind the cube's glass, or on a veil before it. The things' layout is gpu.js's `thingTable`.
  */
-export const ROOM = `${HEAD}${TRANSFER}${EMBERS}${GLASS}
+export function roomProgram(solid) {
+  return `${HEAD}precision highp sampler3D;\n${solid ? "#define SOLID\n" : ""}${ROOM}`;
+}
+
+const ROOM = `${TRANSFER}${EMBERS}${GLASS}
 const int MOST_BEAMS = ${MOST_BEAMS};
 uniform vec2 canvas;      // pixels
 uniform mat3 sight;       // to the right edge, to the upper edge, ahead
@@ -220,7 +288,12 @@ vec3 way, stepX, stepY;   // of this pixel, and on to its neighbours
 vec3 light;               // behind the glass
 vec4 veil;                // before it: light, and the part that it lets through
 float solid, enter, leave;
+float first, last;        // where the ray is in the block, whatever stands there
 bool onPicture;           // whether the ray ends there, where nothing may cover the exact light
+
+#ifdef SOLID
+${BODY}
+#endif
 
 struct Place { float depth; vec2 at; vec2 grain; };
 
@@ -409,7 +482,7 @@ void drawBeams() {
     for (int k = 0; k < STEPS; k++) {
       float t = met.x + (float(k) + noise) * piece;
       vec3 place = t * way;
-      if (t > enter && t < leave) continue;
+      if (t > first && t < last) continue;
       vec3 source = beams[i].w == 0.0 ? beams[i].xyz : place - beams[i].xyz;
       float left = dot(corner.xyz - place, facing.xyz) / dot(source, facing.xyz);
       if (left < 0.0) continue; // behind the screen
@@ -480,14 +553,24 @@ void main() {
   onPicture = false;
   for (int i = 0; i < counts.x; i++) drawScreen(i);
   bool plain = solid == open;
+  first = enter;
+  last = leave;
+#ifdef SOLID
+  enter = leave = NEVER;
+  drawBody();
+#endif
   if (!(enter < leave && enter < solid)) enter = leave = NEVER;
   drawTable(plain ? 0.68 : 0.1);
   for (int i = 0; i < counts.z; i++) drawLine(counts.x + counts.y + i);
   for (int i = 0; i < counts.y; i++) drawLamp(counts.x + i);
   vec2 sheetMet = metSheet();
   drawBeams();
+#ifdef SOLID
+  lay(markTone, sheetMet.x, sheetMet.y);
+#else
   drawGlass(sheetMet);
   drawSheen();
+#endif
   vec3 seen = toDisplay(clamp(veil.rgb + veil.a * light, 0.0, 1.0));
   // gradients without steps: noise of half a level (J. Jimenez, Next generation post processing, 2014)
   float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;

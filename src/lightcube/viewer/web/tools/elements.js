@@ -16,6 +16,7 @@ const ICONS = {
   screen: "M9 4H4v5M15 4h5v5M20 15v5h-5M9 20H4v-5",
   theme: "M12 4a8 8 0 1 0 0 16zM12 4a8 8 0 0 1 0 16",
   tour: "M4 19V6a2 2 0 0 1 2-2h13v12H6a2 2 0 0 0-2 2 2 2 0 0 0 2 2h13M9 8h6M9 11.500h4",
+  far: "M12 4a8 8 0 1 0 0 16 8 8 0 0 0 0-16zM12 9a3 3 0 1 0 0 6 3 3 0 0 0 0-6",
   details: "M4 6h16M4 12h16M4 18h10",
   eye: "M2.5 12s3.5-6 9.5-6 9.5 6 9.5 6-3.5 6-9.5 6-9.5-6-9.5-6zM12 9.5a2.5 2.5 0 1 0 0 5 2.5 2.5 0 0 0 0-5",
   help: "M9 9a3 3 0 1 1 4.2 2.8c-.8.4-1.2 1-1.2 2.2M12 17.5v.5",
@@ -89,6 +90,12 @@ export function setPressed(button, on) {
   button.setAttribute("aria-pressed", String(on));
 }
 
+/** Let an element fill the screen, or not any more; a person's browser may refuse it. */
+export function toggleFullScreen(root) {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else root.requestFullscreen?.().catch(() => {});
+}
+
 /** Give a canvas as many pixels as it covers on the screen. */
 export function fitCanvas(canvas) {
   const density = Math.min(window.devicePixelRatio, DENSEST);
@@ -121,6 +128,11 @@ export function figuresText(value) {
 /** A score for people: 41.27 is "41.3 dB"; empty where there is none. */
 export function scoreText(psnr) {
   return psnr === null ? "" : `${oneDecimal(psnr)} dB`;
+}
+
+/** How far the shadow of a shape is the silhouette: 0.9953 is "overlap 99.5 %"; empty where that is not known. */
+export function overlapText(overlap) {
+  return typeof overlap === "number" ? `overlap ${oneDecimal(100 * overlap)} %` : "";
 }
 
 /** In a word how well a picture came out, by the light that the wall shows; empty where nothing was wanted. */
