@@ -23,9 +23,9 @@ def is_dial(rig: Rig) -> bool:
 def told_apart(rig: Rig) -> list[str]:
     """What tells each picture from the others: ``"under lamp 1"``, ``"film 2 slid 5 mm right"``, or ``"22.5°"``.
 
-    The turntable's angle where anything turns, and where nothing else tells pictures apart.
+    The turntable's angle where anything turns.
     """
-    if not is_dial(rig):
+    if np.any(rig.turning.turns):
         return [f"{round(angle_deg, 2):g}°" for angle_deg in rig.stops.angle_deg.tolist()]
     lamps, moves = lamps_of(rig), moves_of(rig)
     lit = [f"under {own}" for own in lamps] if len(set(lamps)) > 1 or not any(moves) else [""] * len(lamps)
