@@ -160,6 +160,7 @@ def test_a_lamp_that_stands_wrong_shows_it(visit: Any) -> None:
     assert np.abs(higher - wanted).max() <= 1
     assert np.abs(higher - right).max() > 5
     tab.get_by_role("button", name="Lower").click()
+    rested(tab)
     assert "44° high" in tab.locator(".lift").inner_text()
 
 

@@ -24,7 +24,7 @@ _DEFAULT = ReliefRecipe()
 def relief(
     pictures: Annotated[list[str], typer.Argument(help="One to four pictures, or a folder of them.")],
     outputs: Annotated[
-        list[str] | None,
+        list[str],
         typer.Option(
             "-o",
             "--out",
@@ -32,7 +32,7 @@ def relief(
             "It may be said several times.",
             rich_help_panel="Output",
         ),
-    ] = None,
+    ],
     sheet: Annotated[
         str | None,
         typer.Option(
@@ -133,9 +133,7 @@ def relief(
         base_mm=base_mm,
         frame_mm=frame_mm,
     )
-    if not outputs and not dry_run:
-        raise InputError("say where the relief goes (-o plate.stl), or ask for --dry-run")
-    files, drawn = _files(outputs or [], sheet, overwrite=overwrite)
+    files, drawn = _files(outputs, sheet, overwrite=overwrite)
     read = reliefs.read(pictures)
     if dry_run:
         with compiling(as_json=as_json):
@@ -151,14 +149,13 @@ def relief(
     things: list[tuple[io.Output, Thing]] = [(file, made) for file in files]
     things += [(file, relief_sheet(made, scores, _title(made))) for file in drawn]
     io.write_together(*things)
-    names = outputs or []
     if as_json:
-        json_line("result", out=names, **relief_facts.facts(made), scores=scores)
+        json_line("result", out=outputs, **relief_facts.facts(made), scores=scores)
         return
-    out.print(f"{' and '.join(names)} {'is' if len(names) == 1 else 'are'} ready")
+    out.print(f"{' and '.join(outputs)} {'is' if len(outputs) == 1 else 'are'} ready")
     for line in reliefs.told(made, scores):
         out.print(line)
-    if not any(io.is_relief(output) for output in names):
+    if not any(io.is_relief(output) for output in outputs):
         err.print("note: -o NAME.relief.zarr too keeps what lightcube play, score and info want")
 
 
