@@ -67,6 +67,13 @@ def test_each_picture_has_its_lamp_and_where_that_stands() -> None:
     assert not any("turntable" in each or "table" in each or "stop" in each for each in said)
 
 
+@pytest.mark.parametrize(("lamp", "said"), [(False, "any distance"), (True, "larger, farther")])
+def test_a_sheet_of_which_nothing_is_said_may_lie_anywhere(lamp: bool, said: str) -> None:
+    near = [Lamp("a", position_mm=(0.0, 0.0, 300.0)), Lamp("b", position_mm=(50.0, 0.0, 300.0))]
+    root = drawn(lc.attenuator(["a", "b"], lc.Films(count=2, pixels=8), lamps=near if lamp else ()))
+    assert said in words(root)
+
+
 def test_many_pictures_are_not_all_listed() -> None:
     stage = lc.attenuator([f"p{number}" for number in range(30)], lc.Films(count=3, pixels=4))
     assert "and 6 more pictures" in words(drawn(stage))

@@ -249,7 +249,10 @@ def _beam(room: _Films, lamp: int, at: Callable[[Reals, Reals], Reals]) -> str:
     view = int(np.argmax(room.rig.sums.lamp == lamp))
     sheet = room.sheets[room.rig.sums.picture[view]]
     low, high = room.stack.heights_mm[0], room.stack.heights_mm[-1]
-    heights = np.array([sheet[:, 2].mean(), low, high, high + 0.62 * _AWAY / room.scale])
+    top = high + 0.62 * _AWAY / room.scale
+    if room.is_near(lamp):
+        top = float(np.clip(room.rig.views.lamps[view, 2], high, top))
+    heights = np.array([sheet[:, 2].mean(), low, high, top])
     ends = followed(room.stack, room.rig, view, sheet, np.sort(heights))
     sides = [ends[..., 0].min(axis=0), ends[..., 0].max(axis=0)[::-1]]
     outline = at(np.concatenate(sides), np.concatenate([np.sort(heights), np.sort(heights)[::-1]]))
@@ -275,7 +278,9 @@ def _gaps(room: _Films, x: float, base: float, sheets: Sequence[float]) -> Itera
     below = base - float(room.level(np.array(low)))
     if below > base + 4:
         near = any(room.is_near(lamp) for lamp in room.lamps)
-        said = "any distance" if free and not near else f"{heights[0] - low:.4g} mm"
+        said = f"{heights[0] - low:.4g} mm"
+        if free:
+            said = "larger, farther" if near else "any distance"
         yield from _measured(x, base, below, said)
     if room.spread:
         yield text(x - 2, base - levels[-1] - 10, "not to scale", _GREY)
