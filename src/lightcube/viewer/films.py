@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import gzip
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lightcube.drawing.stacks import lowered, sheets
 from lightcube.errors import InputError
-from lightcube.kernels.films import CORNER, LAMP, LENGTH, NEAR, RIGHT, UP
 from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
-from lightcube.optics.films import Paths, paths
 from lightcube.optics.light import discs_sampled
 from lightcube.optics.moves import places_of
 from lightcube.optics.naming import told_apart
@@ -23,6 +21,9 @@ from lightcube.pictures.fitting import targets_of
 from lightcube.scoring import metrics
 from lightcube.viewer.description import FORMAT, wanted_images
 from lightcube.viewer.label import Label
+
+if TYPE_CHECKING:
+    from lightcube.optics.films import Paths
 
 #: What is to be seen, in words that the names of pictures can follow.
 WHAT = "Light falls through printed films that lie above each other, and their shadows are pictures"
@@ -40,6 +41,8 @@ def describe_films(cube: Cube, label: str | Label) -> dict[str, Any]:
     InputError
         Where the page could not cast the pictures exactly.
     """
+    from lightcube.optics.films import paths  # here: the compiler comes with it
+
     stack, label = cube.grid, Label.of(label)
     assert isinstance(stack, Stack)  # noqa: S101 - nobody asks of anything else
     rig = discs_sampled(cube.rig)
@@ -138,6 +141,8 @@ def _views(cube: Cube, rig: Rig, found: Paths) -> list[dict[str, Any]]:
 
 def _slants(table: Reals) -> list[list[float]]:
     """Of columns and rows: slope of the light at the first one's middle, and how much more from one to the next."""
+    from lightcube.kernels.films import CORNER, LAMP, LENGTH, NEAR, RIGHT, UP  # here: a compiler comes with them
+
     if not table[NEAR]:
         aside = float(np.sqrt(max(table[LENGTH] ** 2 - 1, 0)))
         return [[aside, 0.0], [0.0, 0.0]]  # only the sum of squares counts
