@@ -14,6 +14,7 @@ from lightcube.drawing.stacks import films_at, followed, is_anywhere, lowered, s
 from lightcube.drawing.standing import standing
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
+from lightcube.forward.turning import turn
 from lightcube.optics.cube import Cube
 from lightcube.optics.moves import places_of
 from lightcube.optics.rig import Rig
@@ -115,3 +116,12 @@ def test_a_cube_has_no_films() -> None:
     grid = lc.Grid((2, 3, 4))
     with pytest.raises(InputError, match="only a stack has films"):
         FilmGlass(Cube(np.zeros((3, 2, 3, 4), np.float32), grid, lc.turntable(grid, [0])))
+
+
+def test_a_film_of_films_shows_each_picture_and_never_turns() -> None:
+    stage = lc.attenuator(["a", "b", "c"], lc.Films(count=2, gap_mm=12, pixels=4))
+    cube = replace(stack_cube(stage.rig(), stack_of(stage)), extinction=np.zeros((3, *stage.grid.shape), np.float32))
+    np.testing.assert_array_equal(turn(cube), stage.stops_deg)
+    said = lc.film(cube).said  # pictures that are all alike flow into each other, but there is no turn
+    assert "at each of 3 pictures the lamp fades in" in said
+    assert "turn" not in said
