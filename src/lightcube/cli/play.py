@@ -15,6 +15,7 @@ from lightcube.errors import InputError
 from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Beams, check_zoom
+from lightcube.optics.stack import Stack
 from lightcube.verbs import reliefs, words
 from lightcube.verbs.exporting import opened
 from lightcube.wording import counted
@@ -23,7 +24,10 @@ from lightcube.wording import counted
 @threaded
 def play(
     cube: Annotated[
-        str, typer.Argument(help="A cube, a relief (its lamp goes round), or an exported volume or folder of slices.")
+        str,
+        typer.Argument(
+            help="A cube, a stack of films, a relief (its lamp goes round), or an exported volume, slices or pages."
+        ),
     ],
     output: Annotated[str, OUT],
     even: Annotated[
@@ -89,6 +93,8 @@ def play(
     next: what a wall shows under a lamp that is dimmed. Where pictures flow into each other it turns evenly. PNGs and
     .npy have an even turn.
 
+    Films turn nowhere: each of their pictures is shown, under its lamp or as films are moved for it.
+
     Shows the whole screen: the picture, its mat, and what stands around it. A screen with edges is its picture.
     """
     movie = io.Output(output, "pictures", overwrite)
@@ -111,6 +117,13 @@ def play(
     if view == "eye" and turns:
         raise InputError("--view eye stays at an angle: leave out --even, --from-deg, --to-deg and --count")
     loaded = opened(cube, force=force)
+    if isinstance(loaded.grid, Stack):
+        if turns or angles_deg is not None:
+            raise InputError(
+                f"{cube} is of films, and nothing turns: leave out --even, --angles-deg, --from-deg, --to-deg and "
+                "--count, and each of its pictures is shown"
+            )
+        stops = stops or not arguments.is_movie(output)
     many = len(loaded.rig.screens.names) > 1
     if target and many:
         raise InputError(f"{cube} has several screens: leave out --target, and see score --sheet")

@@ -7,6 +7,7 @@ from typing import Any
 from lightcube.backward.solution import Solution
 from lightcube.cli.console import out
 from lightcube.optics.disturbance import SAID
+from lightcube.optics.naming import is_dial, told_apart
 from lightcube.optics.rig import Rig
 from lightcube.optics.told import remembered
 from lightcube.scoring.metrics import grain_word
@@ -57,9 +58,11 @@ def _beside(scores: Mapping[str, Any]) -> str:
 def scored(scores: dict[str, Any], rig: Rig) -> None:
     """Print one line per view, the means, and what was asked for besides."""
     lobes = scores["between"]["lobe_deg"] if "between" in scores else []
-    out.print(f"{'picture':>20} {'angle, °':>9} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}" + " 30 dB over" * bool(lobes))
+    told = told_apart(rig) if is_dial(rig) else [f"{view['angle_deg']:.3f}" for view in scores["pictures"]]
+    head, wide = "shown" if is_dial(rig) else "angle, °", max(9, *map(len, told))
+    out.print(f"{'picture':>20} {head:>{wide}} {'PSNR':>7} {'SSIM':>7} {'dE2000':>7}" + " 30 dB over" * bool(lobes))
     for number, view in enumerate(scores["pictures"]):
-        figures = f"{view['angle_deg']:9.3f} {view['psnr']:7.2f} {view['ssim']:7.4f} {view['delta_e']:7.2f}"
+        figures = f"{told[number]:>{wide}} {view['psnr']:7.2f} {view['ssim']:7.4f} {view['delta_e']:7.2f}"
         lobe = f" {lobes[number]:9.2f}°" if lobes else ""
         out.print(f"{view['name'][:20]:>20} {figures}{lobe}")
     names, psnr = (

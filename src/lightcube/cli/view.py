@@ -13,15 +13,18 @@ from lightcube.drawing.relief_sheet import relief_preview
 from lightcube.errors import InputError
 from lightcube.io.outputs import Thing
 from lightcube.jobs.reading import load
+from lightcube.optics.cube import Cube
+from lightcube.optics.stack import Stack
 from lightcube.solids.relief import Relief
 from lightcube.verbs import viewing
 from lightcube.viewer.label import Label
-from lightcube.viewer.page import relief_page
+from lightcube.viewer.page import films_page, relief_page
+from lightcube.wording import counted
 
 
 @threaded
 def view(
-    cube: Annotated[str, typer.Argument(help="A cube, a shape, or a relief.")],
+    cube: Annotated[str, typer.Argument(help="A cube, a shape, films, or a relief.")],
     output: Annotated[
         str | None, typer.Option("-o", "--out", help="The page to write.  [default: the cube's name with .html, here]")
     ] = None,
@@ -54,6 +57,12 @@ def view(
         _show(target, show=show)
         return
     loaded = load(cube)
+    if isinstance(loaded.grid, Stack):
+        if full:
+            raise InputError(f"{cube} is of films, of which a page keeps all: leave out --full")
+        _view_films(loaded, label, page_file, picture_file if preview else None, as_json=as_json)
+        _show(target, show=show)
+        return
     is_smaller = viewing.is_solved_anew(loaded, full=full)
     doing = "solving a smaller cube for the page" if is_smaller else "putting the page together"
     if not as_json:
@@ -93,6 +102,19 @@ def _view_relief(relief: Relief, label: Label, page: io.Output, picture: io.Outp
     size, shape = len(text.encode()), (rows, columns)
     told = f"{page.path}, {size / 1e6:.1f} MB; {columns} x {rows} columns, whose light the page casts exactly"
     done(as_json, told, out=str(page.path), bytes=size, shape=shape)
+
+
+def _view_films(cube: Cube, label: Label, page: io.Output, picture: io.Output | None, *, as_json: bool) -> None:
+    """Write the page of a stack of films, and a picture of it where one is asked for."""
+    text = films_page(cube, label)
+    things: list[tuple[io.Output, Thing]] = [(page, text)]
+    if picture is not None:
+        things.append((picture, viewing.preview(cube)))
+    io.write_together(*things)
+    films, rows, columns = cube.grid.shape
+    size, kept = len(text.encode()), f"{counted(films, 'film')} of {columns} x {rows} cells"
+    told = f"{page.path}, {size / 1e6:.1f} MB; {kept}, whose light the page casts exactly"
+    done(as_json, told, out=str(page.path), bytes=size, shape=cube.grid.shape)
 
 
 def _show(target: str, *, show: bool) -> None:

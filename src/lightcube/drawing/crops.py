@@ -7,6 +7,7 @@ from PIL import Image, ImageOps
 
 from lightcube.drawing.sheet import BETWEEN, FREE, MOST, PAPER, laid_out
 from lightcube.optics.arrays import Images, Levels
+from lightcube.optics.naming import told_apart
 from lightcube.optics.transfer import Transfer, to_uint8
 from lightcube.pictures.fitting import Fit, source_box
 from lightcube.pictures.pictures import Pictures
@@ -30,7 +31,7 @@ def wanted_sheet(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit]
     """
     fits = [ways] * len(pictures) if isinstance(ways, str) else list(ways)
     chosen = np.unique(np.linspace(0, len(targets) - 1, min(len(targets), MOST)).round().astype(int))
-    tiles, said = [], []
+    tiles, said, told = [], [], told_apart(targets.rig)
     for view in chosen:
         rows, columns = (int(count) for count in targets.rig.stops.window[view])
         box = source_box(pictures.images[order[view]].shape[:2], (rows, columns), fits[order[view]], pictures.focus)
@@ -39,7 +40,7 @@ def wanted_sheet(pictures: Pictures, targets: Targets, ways: Fit | Sequence[Fit]
         kept = np.where(weight, to_uint8(targets.pictures[view][:rows, :columns], targets.transfer), FREE)
         size = max(1, round(_SIDE * columns / max(rows, columns))), max(1, round(_SIDE * rows / max(rows, columns)))
         tiles.append(_beside(read, Image.fromarray(kept.astype(np.uint8)).resize(size, Image.Resampling.NEAREST)))
-        said.append((targets.names[view], f"{round(targets.angles_deg[view], 2):g}°  ·  {columns} x {rows}"))
+        said.append((targets.names[view], f"{told[view]}  ·  {columns} x {rows}"))
     return np.asarray(laid_out(tiles, said, (f"{counted(len(targets), 'picture')} that will be asked for", _NOTE)))
 
 

@@ -11,18 +11,23 @@ from lightcube.drawing.camera import Camera, Reals, fitting
 from lightcube.drawing.standing import Standing, corners_of, extent, size_of, standing
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.stack import Stack
 from lightcube.optics.views import unit
 
 #: Angles that stand for all that the table comes to, degrees.
 AROUND = tuple(np.arange(0.0, 360.0, 30.0))
 #: Degrees: what the picture's width spans, how high the eye may stand, and the azimuths that it is tried at.
 _FIELD, _HEIGHTS, _AZIMUTHS = 36.0, (10.0, 27.0, 48.0), tuple(np.arange(7.5, 360.0, 15.0))
+#: Over films the eye stands so high: it looks between them, and onto the sheet below.
+_OVER_FILMS = (27.0, 34.0)
 #: Stops at which eyes are tried at most.
 _MOST_STOPS = 12
 #: Parts of the picture that stay free at its edges; what standing high costs, and what the first stop is worth more.
 _MARGIN, _HIGH, _FIRST = 0.05, 0.12, 0.1
 #: What it is worth that screens stand to the right: one reads on from the lamp, through the glass, to the picture.
 _RIGHT = 0.03
+#: What it is worth that what stands on a level screen is not upside down.
+_UPRIGHT = 0.4
 
 
 def camera_for(cube: Cube, size: tuple[int, int] = (540, 960)) -> Camera:
@@ -42,7 +47,8 @@ def camera_for(cube: Cube, size: tuple[int, int] = (540, 960)) -> Camera:
     points = np.concatenate([extent(cube.grid, room) for room in rooms + others])
     across = math.tan(math.radians(_FIELD) / 2)
     best, chosen = -math.inf, (np.ones(3), np.zeros(3))
-    for height, azimuth in product(_HEIGHTS, _AZIMUTHS):
+    heights = _OVER_FILMS if isinstance(cube.grid, Stack) else _HEIGHTS
+    for height, azimuth in product(heights, _AZIMUTHS):
         above, around = math.radians(height), math.radians(azimuth)
         ahead = -np.array([math.cos(above) * math.cos(around), math.cos(above) * math.sin(around), math.sin(above)])
         right = unit(np.cross(ahead, (0.0, 0.0, 1.0)))
@@ -50,7 +56,9 @@ def camera_for(cube: Cube, size: tuple[int, int] = (540, 960)) -> Camera:
         eye = fitting(points, axes, (across, across * size[0] / size[1]), _MARGIN)
         seen = [_worth(cube.grid, room, eye) for room in rooms]
         aside = np.mean([np.sign(np.mean(screen.corners, axis=0) @ right) for room in rooms for screen in room.screens])
-        worth = float(np.mean(seen)) + _FIRST * seen[0] - _HIGH * (height > _HEIGHTS[1]) + _RIGHT * float(aside)
+        level = np.mean([unit(-screen.down)[:2] @ ahead[:2] for room in rooms for screen in room.screens])
+        turned = _UPRIGHT * float(level) + _RIGHT * float(aside)
+        worth = float(np.mean(seen)) + _FIRST * seen[0] - _HIGH * (height == _HEIGHTS[-1]) + turned
         if worth > best + 1e-9:
             best, chosen = worth, (eye, eye - (eye @ ahead) * ahead)
     eye, target = chosen

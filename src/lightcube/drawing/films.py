@@ -190,7 +190,8 @@ def filmed(
     if style.view == "eye":
         return to_the_lamp(cube, style, cube.angles_deg[:1])
     beside = screens or len(cube.rig.screens.names) > 1
-    may_flow = len(turned) > 1 and not even and shows.unlike(cube, look) <= _ALIKE
+    may_flow = bool(np.any(cube.rig.turning.turns)) and not even and len(turned) > 1
+    may_flow = may_flow and shows.unlike(cube, look) <= _ALIKE
     share = shows.flickers(cube, turned, look) if may_flow else 1.0
     if even or share <= Flicker.MUCH:
         if style.view == "room":

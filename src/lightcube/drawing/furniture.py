@@ -108,17 +108,26 @@ def _line(place: Floats, half: float, grain: Floats) -> Floats:
     return _within(half - np.abs(place - np.rint(place)), grain) * np.clip(1.5 - 4 * grain, 0, 1)
 
 
-def draw_wall(canvas: Canvas, screen: PlacedScreen, wide: float, picture: Floats) -> None:
-    """Draw a screen with what it shows, and the wall or frame around it, `wide` mm, in which it glows."""
+def draw_wall(canvas: Canvas, screen: PlacedScreen, wide: ArrayLike, picture: Floats) -> None:
+    """Draw a screen with what it shows, and the wall or frame around it, in which it glows.
+
+    Parameters
+    ----------
+    wide
+        Of the frame, mm; or of its left, right, upper and lower parts.
+    """
     steps = np.array([np.linalg.norm(screen.right), np.linalg.norm(screen.down)])
-    beyond = wide / steps
-    outer = screen.corner - beyond[0] * screen.right - beyond[1] * screen.down
-    across, below = (screen.pixels[1] + 2 * beyond[0]) * screen.right, (screen.pixels[0] + 2 * beyond[1]) * screen.down
+    beyond = np.broadcast_to(np.asarray(wide, np.float64), 4).reshape(2, 2) / steps[:, None]
+    outer = screen.corner - beyond[0, 0] * screen.right - beyond[1, 0] * screen.down
+    size = np.array(screen.pixels[::-1]) + beyond.sum(axis=1)
+    across, below = size[0] * screen.right, size[1] * screen.down
     region = canvas.around(outer + np.array([0 * across, across, across + below, below]))
     near, x, y = canvas.plane(screen.corner, screen.right, screen.down, region)
     rows, columns = screen.pixels
     edges = [count / 2 - np.abs(place - count / 2) for place, count in ((x, columns), (y, rows))]
-    seen = (near > canvas.near[region]) & (edges[0] + beyond[0] >= 0) & (edges[1] + beyond[1] >= 0)
+    seen = near > canvas.near[region]
+    for place, count, (before, after) in zip((x, y), (columns, rows), beyond, strict=True):
+        seen &= (place >= -before) & (place <= count + after)
     if not np.any(seen):
         return
     canvas.near[region][seen] = near[seen]
@@ -237,6 +246,20 @@ def draw_hints(canvas: Canvas, room: Standing, lit: list[list[PlacedLamp]], part
             way = -unit(lamp.place)
             start = corner - ((corner - lamp.place) @ way) * way if lamp.parallel else lamp.place
             draw([start, corner], (0.0 if lamp.parallel else strength, strength))
+
+
+def draw_sheets(canvas: Canvas, corners: Reals, part: float) -> None:
+    """The edges of films ``(films, 4, 3)``, fainter behind the first, and what holds corners that lie on each other."""
+    order = np.argsort(-np.abs(corners[:, 0, 2] - canvas.eye[2]))
+    for depth, number in enumerate(order):
+        ends, first = corners[number], depth == len(order) - 1
+        strength = part * (0.8 if first else 0.42)
+        for i in range(4):
+            canvas.line([ends[i], ends[(i + 1) % 4]], tones.EDGE, (strength, strength), 1.3 if first else 1.1, None)
+    low, high = corners[np.argmin(corners[:, 0, 2])], corners[np.argmax(corners[:, 0, 2])]
+    if np.allclose(corners[:, :, :2], corners[0, :, :2]):
+        for bottom, top in zip(low, high, strict=True):
+            canvas.line([bottom, top], tones.EDGE, (0.22 * part, 0.22 * part), 1.0, None)
 
 
 def draw_edges(canvas: Canvas, grid: Grid, turn: Reals, part: float) -> None:

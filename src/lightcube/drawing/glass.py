@@ -13,10 +13,9 @@ from PIL import Image
 
 from lightcube.drawing import tones
 from lightcube.drawing.camera import FINE, Canvas, Floats, Reals, Region
-from lightcube.drawing.standing import corners_of
+from lightcube.drawing.standing import Standing
 from lightcube.kernels.layout import columns_from_volume
 from lightcube.optics.cube import Cube
-from lightcube.optics.grid import Grid
 
 #: About so many nanoseconds a voxel that a ray meets.
 _WORK = 20
@@ -68,7 +67,7 @@ class Glass:
         self._grid = cube.grid
         self._columns = columns_from_volume(cube.extinction).reshape(-1, cube.extinction.shape[0])
 
-    def seen(self, canvas: Canvas, turn: Reals, ember: Reals, bare: float) -> Seen | None:
+    def seen(self, canvas: Canvas, now: Standing, ember: Reals, bare: float) -> Seen | None:
         """What the canvas's eye sees of it, None where that is nothing.
 
         Parameters
@@ -80,12 +79,12 @@ class Glass:
         """
         from lightcube.kernels import glimpse, tasks  # here: they load a compiler
 
-        region = _enter(canvas, self._grid, turn)
+        turn, half = now.turn, np.array(self._grid.size_mm[::-1]) / 2
+        region = enter(canvas, -half, half, turn)
         if region is None:
             return None
-        tops, lefts = (slice(part.start // FINE, -(-part.stop // FINE)) for part in region)
-        pixels = slice(tops.start * FINE, tops.stop * FINE), slice(lefts.start * FINE, lefts.stop * FINE)
-        shape, every = (tops.stop - tops.start, lefts.stop - lefts.start), self._every(canvas)
+        pixels, shape = whole_pixels(region)
+        every = self._every(canvas)
         ways = canvas.ways(pixels, every)
         rays, hit, slant, level = self._rays(canvas.eye @ turn, ways @ turn)
         nz, ny, nx = self._grid.shape
@@ -124,17 +123,30 @@ class Glass:
         return rays, first.max(axis=1) < np.nanmin(last, axis=1), slant, face == 2
 
 
-def _enter(canvas: Canvas, grid: Grid, turn: Reals) -> Region | None:
-    """Note where rays enter and leave the cube; return the region where they do, None where none does."""
-    corners = corners_of(grid, turn)
+def whole_pixels(region: Region) -> tuple[Region, tuple[int, int]]:
+    """The region of the whole pixels of samples, and its rows and columns of pixels."""
+    tops, lefts = (slice(part.start // FINE, -(-part.stop // FINE)) for part in region)
+    pixels = slice(tops.start * FINE, tops.stop * FINE), slice(lefts.start * FINE, lefts.stop * FINE)
+    return pixels, (tops.stop - tops.start, lefts.stop - lefts.start)
+
+
+def enter(canvas: Canvas, low: Reals, high: Reals, turn: Reals) -> Region | None:
+    """Note where rays enter and leave a box; return the region where they do, None where none does.
+
+    Parameters
+    ----------
+    low, high
+        Two corners of the box ``(3,)``, mm, which `turn` turns into the room.
+    """
+    corners = np.array(list(product(*zip(low, high, strict=True)))) @ turn.T
     if np.all((corners - canvas.eye) @ canvas.axes[2] <= 0):
         return None
     region = canvas.around(corners)
     first, last = np.zeros_like(canvas.near[region]), np.full_like(canvas.near[region], np.inf)
-    for axis, half in zip(turn.T, np.array(grid.size_mm[::-1]) / 2, strict=True):
+    for axis, least, most in zip(turn.T, low, high, strict=True):
         start, way = np.float32(canvas.eye @ axis), canvas.along(axis, region)
         with np.errstate(divide="ignore", invalid="ignore"):
-            ends = (np.float32(-half) - start) / way, (np.float32(half) - start) / way
+            ends = (np.float32(least) - start) / way, (np.float32(most) - start) / way
         first, last = np.fmax(first, np.fmin(*ends)), np.fmin(last, np.fmax(*ends))
     canvas.glass[region] = np.where(first < last, 1 / np.maximum(first, 1e-9), 0)
     canvas.beyond[region] = np.where(first < last, 1 / np.maximum(last, 1e-9), 0)

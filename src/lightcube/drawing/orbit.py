@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,8 @@ class Orbit:
         Where it looks, mm.
     field_deg
         What the picture's width spans.
+    up
+        What is up in it.
     """
 
     azimuth_deg: float
@@ -36,6 +38,7 @@ class Orbit:
     distance: float
     target: Reals
     field_deg: float
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
     @classmethod
     def of(cls, eye: Reals, target: Reals, field_deg: float) -> Orbit:
@@ -52,7 +55,7 @@ class Orbit:
         way = np.array([math.cos(height) * math.cos(azimuth), math.cos(height) * math.sin(azimuth), math.sin(height)])
         x, y, z = (float(each) for each in self.target + self.distance * way)
         ahead = float(self.target[0]), float(self.target[1]), float(self.target[2])
-        return Camera((x, y, z), ahead, (0.0, 0.0, 1.0), self.field_deg, size)
+        return Camera((x, y, z), ahead, self.up, self.field_deg, size)
 
 
 def orbit_of(camera: Camera) -> Orbit:
@@ -61,7 +64,13 @@ def orbit_of(camera: Camera) -> Orbit:
 
 
 def lamps_orbit(screen: PlacedScreen, lamp: PlacedLamp, size: tuple[int, int]) -> Orbit:
-    """The orbit of an eye that is where a lamp is: the picture that it throws on a screen fills its sight."""
+    """The orbit of an eye that is where a lamp is: the picture that it throws on a screen fills its sight, upright."""
+    x, y, z = (float(each) for each in -unit(screen.down))
+    return replace(_upon(screen, lamp, size), up=(x, y, z))
+
+
+def _upon(screen: PlacedScreen, lamp: PlacedLamp, size: tuple[int, int]) -> Orbit:
+    """The same, however it is turned."""
     middle = screen.corners.mean(axis=0)
     sides = screen.pixels[0] * np.linalg.norm(screen.down), screen.pixels[1] * np.linalg.norm(screen.right)
     half = float(max(sides[0] * size[1] / size[0], sides[1])) / 2 / LAMPS_SIGHT  # of what the picture's width spans
@@ -90,6 +99,7 @@ def between(one: Orbit, other: Orbit, part: float) -> Orbit:
         math.exp(mixed(sight(one), sight(other))) / math.tan(math.radians(field) / 2),
         one.target + (other.target - one.target) * part,
         field,
+        (mixed(one.up[0], other.up[0]), mixed(one.up[1], other.up[1]), mixed(one.up[2], other.up[2])),
     )
 
 

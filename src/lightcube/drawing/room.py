@@ -14,6 +14,7 @@ from lightcube.drawing import tones
 from lightcube.drawing.beam import Air, off_pictures
 from lightcube.drawing.camera import Camera, Canvas, Floats, Reals
 from lightcube.drawing.eyes import AROUND
+from lightcube.drawing.film_glass import FilmGlass
 from lightcube.drawing.furniture import (
     Layers,
     draw_edges,
@@ -21,15 +22,19 @@ from lightcube.drawing.furniture import (
     draw_hints,
     draw_lamp,
     draw_picture,
+    draw_sheets,
     draw_wall,
     table_layers,
 )
 from lightcube.drawing.glass import Glass
+from lightcube.drawing.stacks import sheets
 from lightcube.drawing.standing import PlacedLamp, PlacedScreen, Standing, extent, size_of, standing
 from lightcube.forward.casting import screens
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
+from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import decode
+from lightcube.optics.views import unit
 
 #: An eye's iris is open as far as this from the middle of the picture, in halves of its diagonal, and shut there.
 _OPEN, _SHUT = 1.1, 1.5
@@ -46,7 +51,9 @@ class Room:
     def __init__(self, cube: Cube) -> None:
         self.cube = cube
         self._cast = screens(cube, picture_only=True, zoom=1, light="area")
-        self._glass = Glass(cube)
+        self._glass = FilmGlass(cube) if isinstance(cube.grid, Stack) else Glass(cube)
+        rooms = [standing(cube, angle_deg) for angle_deg in np.unique(cube.angles_deg)]
+        self._places = np.concatenate([screen.corners for room in rooms for screen in room.screens])
         low = min(float(extent(cube.grid, standing(cube, angle_deg))[:, 2].min()) for angle_deg in AROUND)
         self._low = low - 0.02 * size_of(cube.grid)
         self._last: tuple[float, list[Floats]] | None = None  # what was cast last
@@ -72,8 +79,9 @@ class Room:
         canvas, floor = self._walls(camera, now, pictures, lit=lit)
         light = np.sum([lamp.light for lamp in now.lamps], axis=0)
         ember = tones.EMBER * light / light.max(initial=1e-9)
-        glass = self._glass.seen(canvas, now.turn, ember, bare)
-        table, off = table_layers(canvas, grid, now, floor), off_pictures(canvas, now.screens)
+        glass = self._glass.seen(canvas, now, ember, bare)
+        table = None if isinstance(grid, Stack) else table_layers(canvas, grid, now, floor)
+        off = off_pictures(canvas, now.screens)
         air = Air(canvas, grid)
         for screen, picture, own in zip(now.screens, pictures, lamps, strict=True):
             for lamp in own[:1]:
@@ -84,7 +92,10 @@ class Room:
             if glass is not None and not front:
                 self._behind(canvas, angle_deg, bare)
                 glass.lay(canvas)
-        draw_edges(canvas, grid, now.turn, 1 - bare)
+        if isinstance(grid, Stack):
+            draw_sheets(canvas, sheets(grid, now.films), 1 - bare)
+        else:
+            draw_edges(canvas, grid, now.turn, 1 - bare)
         return canvas.picture()
 
     def shown(self, angle_deg: float, *, lit: bool = True) -> list[Floats]:
@@ -106,18 +117,44 @@ class Room:
             return kept[2][0].copy(), kept[2][1]
         canvas, grid = Canvas(camera), self.cube.grid
         means = [np.broadcast_to(picture.mean(axis=(0, 1)), 3) for picture in pictures]
-        floor = draw_floor(canvas, grid, now, self._low, means)
+        floor = draw_floor(canvas, grid, self._on_floor(now), self._low, means)
         for screen, picture in zip(now.screens, pictures, strict=True):
             draw_wall(canvas, screen, self._width(screen), picture)
         if not lit:
             self._still = camera, places, (canvas.copy(), floor)
         return canvas, floor
 
-    def _width(self, screen: PlacedScreen) -> float:
-        """How far a wall goes on beyond its picture; a screen with edges has a frame."""
+    def _width(self, screen: PlacedScreen) -> float | Reals:
+        """How far a wall goes on beyond its picture; a screen with edges has a frame.
+
+        A stack's lies on one sheet of paper, which has room for all its pictures.
+        """
+        if isinstance(self.cube.grid, Stack):
+            return self._paper(screen)
         if not np.all(self.cube.rig.screens.endless):
             return tones.FRAME * size_of(self.cube.grid)
         return tones.WALL_WIDTH * float(np.linalg.norm(screen.right)) * max(screen.pixels)
+
+    def _paper(self, screen: PlacedScreen) -> Reals:
+        """What a sheet has left around one of its pictures: to the left, to the right, above and below."""
+        frame, spare = tones.PAPER * size_of(self.cube.grid), []
+        for step, count in ((screen.right, screen.pixels[1]), (screen.down, screen.pixels[0])):
+            along = (self._places - screen.corner) @ unit(step)
+            spare += [-float(along.min()), float(along.max()) - count * float(np.linalg.norm(step))]
+        return np.maximum(spare, 0) + frame
+
+    def _on_floor(self, now: Standing) -> Standing:
+        """What stands on the floor and shades it: of a stack the whole sheet of paper instead of its pictures."""
+        if not isinstance(self.cube.grid, Stack):
+            return now
+        papers = []
+        for screen in now.screens:
+            left, right, above, below = self._paper(screen)
+            across, down = unit(screen.right), unit(screen.down)
+            high, wide = screen.pixels[0] * screen.down, screen.pixels[1] * screen.right
+            corner = screen.corner - left * across - above * down
+            papers.append(PlacedScreen(corner, wide + (left + right) * across, high + (above + below) * down, (1, 1)))
+        return replace(now, screens=tuple(papers))
 
     def lamps_on(self, angle_deg: float) -> list[list[PlacedLamp]]:
         """For each screen the lamps that light it at an angle, with their light there, the brightest first."""
@@ -165,16 +202,17 @@ class Room:
         self,
         canvas: Canvas,
         now: Standing,
-        table: Layers,
+        table: Layers | None,
         lamps: list[list[PlacedLamp]],
         part: float,
         *,
         front: bool,
     ) -> None:
         """Draw the table, the lamps and thin lines: those that lie before the cube's glass, or those behind it."""
-        region, near, layers = table
-        for light, strength in layers:
-            canvas.blend(region, near, light, part * strength, front)
+        if table is not None:
+            region, near, layers = table
+            for light, strength in layers:
+                canvas.blend(region, near, light, part * strength, front)
         draw_hints(canvas, now, lamps, part, front)
         for lamp in now.lamps:
             draw_lamp(canvas, self.cube.grid, lamp, part, front)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from lightcube.drawing.poster import in_line
+from lightcube.optics.naming import told_apart
 from lightcube.optics.transfer import encode, to_uint8
 from lightcube.pictures.targets import Targets
 from lightcube.wording import counted
@@ -31,7 +32,7 @@ MOST = 32
 def contact_sheet(
     shown: NDArray[np.float32], targets: Targets, psnr: list[float], title: str = ""
 ) -> NDArray[np.uint8]:
-    """Draw each picture as it is shown beside what was wanted, with its name, angle and PSNR (dB).
+    """Draw each picture as it is shown beside what was wanted, with its name, what tells it apart, and PSNR (dB).
 
     Parameters
     ----------
@@ -54,9 +55,8 @@ def contact_sheet(
     note = "left what was wanted, right what the wall shows"
     lines = (title, f"{many}: {note}") if title else (many, note)
     tiles = [_pair_tile(pair(shown[view], targets, int(view)), targets, int(view)) for view in chosen]
-    said = [
-        (targets.names[view], f"{round(targets.angles_deg[view], 2):g}°  ·  {psnr[view]:.1f} dB") for view in chosen
-    ]
+    told = told_apart(targets.rig)
+    said = [(targets.names[view], f"{told[view]}  ·  {psnr[view]:.1f} dB") for view in chosen]
     return np.asarray(laid_out(tiles, said, lines))
 
 

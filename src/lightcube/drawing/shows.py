@@ -19,6 +19,7 @@ from lightcube.drawing.orbit import between, lamps_orbit, orbit_of, soft
 from lightcube.drawing.poster import mat_pixels, poster
 from lightcube.drawing.room import Room
 from lightcube.drawing.sheet import beside_each_other, beside_targets
+from lightcube.drawing.stacks import are_moved
 from lightcube.drawing.tableau import Tableau
 from lightcube.forward import casting
 from lightcube.forward.dimming import Course, dimmed
@@ -27,6 +28,7 @@ from lightcube.optics.arrays import Counts
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Beams
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import decode, encode, to_uint8
 from lightcube.optics.views import Views
 from lightcube.pictures.fitting import targets_of
@@ -135,10 +137,13 @@ def of_room(cube: Cube, angles_deg: NDArray[np.float64], size: tuple[int, int]) 
 def resting_room(cube: Cube, course: Course, size: tuple[int, int]) -> Show:
     """The room, whose lamps fade in, rest and fade out at each stop while the table turns in what other light there is.
 
+    Of a stack films are moved then, if they are.
+
     8-bit display levels.
     """
     stops = np.unique(cube.angles_deg)
-    room = Tableau(cube, size)
+    room, grid = Tableau(cube, size), cube.grid
+    moves = are_moved(grid, cube.rig) if isinstance(grid, Stack) else len(stops) > 1
 
     def frames() -> Iterator[Levels]:
         for here, there in zip(stops, [*stops[1:], stops[0] + 360], strict=True):
@@ -149,7 +154,7 @@ def resting_room(cube: Cube, course: Course, size: tuple[int, int]) -> Show:
                 yield levels[part]
             for number in range(1, course.dark + 1):
                 gone = (1 - np.cos(np.pi * number / course.dark)) / 2
-                moved = room.seen(here + gone * (there - here), lit=False) if len(stops) > 1 else unlit
+                moved = room.seen(here + gone * (there - here), lit=False) if moves else unlit
                 yield to_uint8(moved, cube.transfer)
 
     return Show(frames(), len(stops) * len(course.lamp), size[0])

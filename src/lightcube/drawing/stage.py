@@ -10,9 +10,9 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lightcube.drawing.svg import Box, Labels, around, disc, element, hex_of, hull, moved, path, polygon, text
+from lightcube.drawing.signs import CARD, FONT, INK, LINE, PAPER, QUIET, bulb, scale_bar, sun, tints
+from lightcube.drawing.svg import Box, Labels, around, disc, element, hull, moved, path, polygon, text
 from lightcube.optics.stage import Lamp, Screen, Stage
-from lightcube.optics.transfer import encode
 from lightcube.optics.views import rotations
 from lightcube.wording import counted
 
@@ -20,11 +20,7 @@ Reals = NDArray[np.float64]
 
 #: Pixels: the card, its margin, its head and foot, what panels leave free at their edges, the least and most they show.
 _WIDTH, _MARGIN, _HEAD, _FOOT, _EDGE, _LEAST, _MOST = 1000, 24, 78, 58, 56, 260, 500
-_CARD, _PAPER, _LINE, _INK, _QUIET = "#f4f2ec", "#fdfcf9", "#dcd8cd", "#33383c", "#7b8085"
 _CUBE, _INSIDE, _TABLE, _RIM, _GLASS = "#3f6c99", "#d3e2f2", "#ece8de", "#b9b3a4", "#8d979e"
-_FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif"
-#: White lamps are drawn in this colour.
-_AMBER = (0.93, 0.66, 0.16)
 
 
 def drawing(stage: Stage) -> str:
@@ -45,21 +41,21 @@ def drawing(stage: Stage) -> str:
     for number, (name, letters) in enumerate((("from above", "xy"), ("from the side", "xz"))):
         left = _MARGIN + number * (wide + _MARGIN)
         axes = tuple(np.eye(3)["xyz".index(letter)] for letter in letters)
-        names = Labels((left + 4, _HEAD + 28, left + wide - 4, _HEAD + height - 4), _PAPER, _QUIET)
+        names = Labels((left + 4, _HEAD + 28, left + wide - 4, _HEAD + height - 4), PAPER, QUIET)
         box = (left, _HEAD, left + wide, _HEAD + height)
         panels.append(_Panel(name, letters, axes, box, scale, middle, names))
     whole = _HEAD + height + _FOOT
     angle = f"{stage.stops_deg[0]:g}°"
     title = f"The room at stop 1 of {len(stage.stops_deg)}, the table at {angle}" if room.has_table else "The room"
     size = f'viewBox="0 0 {_WIDTH} {whole:.0f}" width="{_WIDTH}" height="{whole:.0f}"'
-    style = f'font-family={quoteattr(_FONT)} font-size="12" fill="{_INK}"'
+    style = f'font-family={quoteattr(FONT)} font-size="12" fill="{INK}"'
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img" {style}>',
         element("title", title),
         element("desc", _described(stage)),
-        f'<rect width="{_WIDTH}" height="{whole:.0f}" rx="14" fill="{_CARD}"/>',
+        f'<rect width="{_WIDTH}" height="{whole:.0f}" rx="14" fill="{CARD}"/>',
         text(_MARGIN + 2, 36, title, 'font-size="19" font-weight="600"'),
-        text(_MARGIN + 2, 58, _counted(stage), f'fill="{_QUIET}"'),
+        text(_MARGIN + 2, 58, _counted(stage), f'fill="{QUIET}"'),
         *(part for number, panel in enumerate(panels) for part in _panel(room, panel, f"stage-panel-{number}")),
         *_foot(room, scale, _HEAD + height + 34),
         "</svg>",
@@ -216,14 +212,14 @@ def _panel(room: _Room, panel: _Panel, key: str) -> Iterator[str]:
     left, top, right, bottom = panel.box
     box = f'x="{left:.0f}" y="{top:.0f}" width="{right - left:.0f}" height="{bottom - top:.0f}" rx="9"'
     yield f'<clipPath id="{key}"><rect {box}/></clipPath>'
-    yield f'<rect {box} fill="{_PAPER}" stroke="{_LINE}"/>'
+    yield f'<rect {box} fill="{PAPER}" stroke="{LINE}"/>'
     yield f'<g clip-path="url(#{key})" aria-label={quoteattr(panel.name)}>'
     if room.has_table:
         yield _table(room, panel)
     beams = list(room.beams())
     faint = max(0.05, 0.17 / math.sqrt(max(len(beams), 1)))
     for lamp, screen, points in beams:
-        fill, edge = _tints(lamp.colour)
+        fill, edge = tints(lamp.colour)
         lines = f'stroke="{edge}" stroke-opacity="0.35" stroke-width="0.8"'
         style = f'class="beam" fill="{fill}" fill-opacity="{faint:.3f}" {lines}'
         yield polygon(hull(panel.at(points)), style, f"{lamp.name} → {screen.name}")
@@ -238,7 +234,7 @@ def _panel(room: _Room, panel: _Panel, key: str) -> Iterator[str]:
     named = [(room.lamps[each.name], each.name, 12.0) for each in room.stage.lamps]
     named += [(room.screen(each)[1], each.name, 7.0) for each in room.stage.screens]
     yield from (panel.names.label(panel.at(place)[0], name, radius) for place, name, radius in named)
-    yield text(left + 14, top + 22, panel.name, f'font-size="11" letter-spacing="0.6" fill="{_QUIET}"')
+    yield text(left + 14, top + 22, panel.name, f'font-size="11" letter-spacing="0.6" fill="{QUIET}"')
     yield _axes(panel)
 
 
@@ -268,17 +264,17 @@ def _stops(room: _Room, panel: _Panel) -> Iterator[str]:
     """Ticks and numbers of the stops, as many as there is room for, and the pointer that turns with the table."""
     stops = np.array(room.stage.stops_deg)
     for outer, inner in zip(panel.at(room.rim(stops)), panel.at(room.rim(stops, 0.95)), strict=True):
-        yield path([inner, outer], f'stroke="{_QUIET}" stroke-width="1"')
+        yield path([inner, outer], f'stroke="{QUIET}" stroke-width="1"')
     shown: list[Reals] = []
-    halo = f'paint-order="stroke" stroke="{_PAPER}" stroke-width="2" stroke-opacity="0.7"'
+    halo = f'paint-order="stroke" stroke="{PAPER}" stroke-width="2" stroke-opacity="0.7"'
     for number, place in enumerate(panel.at(room.rim(stops, 1.11)), 1):
         if all(np.hypot(*(place - other)) > 15 for other in shown):
             shown.append(place)
             panel.names.mark(place, 6.5)
-            style = f'font-size="9" text-anchor="middle" fill="{_QUIET}" {halo}'
+            style = f'font-size="9" text-anchor="middle" fill="{QUIET}" {halo}'
             yield text(place[0], place[1] + 3, str(number), style)
     pointer = np.concatenate([room.rim(stops[:1], 0.95), room.rim(stops[0] + np.array([-3.5, 3.5]), 0.86)])
-    yield polygon(panel.at(pointer), f'fill="{_INK}"', "stop 1")
+    yield polygon(panel.at(pointer), f'fill="{INK}"', "stop 1")
 
 
 def _screen(room: _Room, panel: _Panel, screen: Screen) -> str:
@@ -286,20 +282,20 @@ def _screen(room: _Room, panel: _Panel, screen: Screen) -> str:
     corners, middle, normal = room.screen(screen)
     outline, place, way = panel.at(corners), panel.at(middle)[0], panel.on_paper(normal)
     style = (
-        f'class="screen" fill="{_GLASS}" fill-opacity="0.13" stroke="{_INK}" stroke-width="2.6" stroke-linejoin="round"'
+        f'class="screen" fill="{_GLASS}" fill-opacity="0.13" stroke="{INK}" stroke-width="2.6" stroke-linejoin="round"'
     )
     parts = [polygon(outline, style, screen.name)]
     panel.names.mark(place, 6)
     panel.names.busy.append(around(outline))
-    thin = f'stroke="{_INK}" stroke-width="1.2"'
+    thin = f'stroke="{INK}" stroke-width="1.2"'
     if np.hypot(*way) > 0.35:
         tip = place + 11 * way
         panel.names.mark(tip, 4)
-        parts += [path([place, tip], thin), disc(tip, 2.6, f'fill="{_INK}"')]
+        parts += [path([place, tip], thin), disc(tip, 2.6, f'fill="{INK}"')]
     else:
-        parts.append(disc(place, 4.5, f'fill="{_PAPER}" {thin}'))
+        parts.append(disc(place, 4.5, f'fill="{PAPER}" {thin}'))
         if normal @ panel.view > 0:
-            parts.append(disc(place, 1.6, f'fill="{_INK}"'))
+            parts.append(disc(place, 1.6, f'fill="{INK}"'))
         else:
             parts += [path([moved(place, -3, -3 * s), moved(place, 3, 3 * s)], thin) for s in (-1, 1)]
     return "".join(parts)
@@ -309,13 +305,13 @@ def _lamp(room: _Room, panel: _Panel, lamp: Lamp) -> str:
     """A sun with an arrow for parallel light, a bulb for a point."""
     place = panel.at(room.lamps[lamp.name])[0]
     panel.names.mark(place, 12)
-    symbol = _sun(place, lamp.colour) if lamp.direction is not None else _bulb(place, lamp.colour)
+    symbol = sun(place, lamp.colour) if lamp.direction is not None else bulb(place, lamp.colour)
     if lamp.direction is not None and np.hypot(*(way := panel.on_paper(room.way(lamp)))) > 0.25:
         unit = way / np.hypot(*way)
         tail, tip = place + 17 * unit, place + 17 * unit + 26 * way
         panel.names.busy.append(around(np.array([tail, tip])))
         side = np.array([-unit[1], unit[0]])
-        edge = _tints(lamp.colour)[1]
+        edge = tints(lamp.colour)[1]
         symbol += path([tail, tip - 3 * unit], f'stroke="{edge}" stroke-width="1.8" stroke-linecap="round"')
         symbol += polygon(
             np.array([tip + 2 * unit, tip - 5 * unit + 4 * side, tip - 5 * unit - 4 * side]), f'fill="{edge}"'
@@ -323,26 +319,12 @@ def _lamp(room: _Room, panel: _Panel, lamp: Lamp) -> str:
     return f'<g class="lamp">{element("title", lamp.name)}{symbol}</g>'
 
 
-def _sun(place: Reals, colour: tuple[float, ...]) -> str:
-    fill, edge = _tints(colour)
-    rays = [np.array([math.cos(turn), math.sin(turn)]) for turn in np.arange(8) * math.pi / 4]
-    style = f'stroke="{edge}" stroke-width="1.4" stroke-linecap="round"'
-    lines = "".join(path([place + 8.5 * ray, place + 11.5 * ray], style) for ray in rays)
-    return lines + disc(place, 6, f'fill="{fill}" stroke="{edge}" stroke-width="1.2"')
-
-
-def _bulb(place: Reals, colour: tuple[float, ...]) -> str:
-    fill, edge = _tints(colour)
-    foot = f'<rect x="{place[0] - 2.6:.1f}" y="{place[1] + 6:.1f}" width="5.2" height="5" rx="1.2" fill="{_INK}"/>'
-    return foot + disc(place, 7, f'fill="{fill}" stroke="{edge}" stroke-width="1.4"')
-
-
 def _axes(panel: _Panel) -> str:
     """Which way the room's axes go, in the lower left corner."""
     corner = np.array([panel.box[0] + 18, panel.box[3] - 16])
-    quiet = f'font-size="10" fill="{_QUIET}"'
+    quiet = f'font-size="10" fill="{QUIET}"'
     return (
-        path([moved(corner, 0, -22), corner, moved(corner, 22, 0)], f'stroke="{_QUIET}" stroke-width="1"')
+        path([moved(corner, 0, -22), corner, moved(corner, 22, 0)], f'stroke="{QUIET}" stroke-width="1"')
         + text(corner[0] + 26, corner[1] + 3, panel.letters[0], quiet)
         + text(corner[0] - 2, corner[1] - 27, panel.letters[1], quiet)
     )
@@ -350,14 +332,9 @@ def _axes(panel: _Panel) -> str:
 
 def _foot(room: _Room, scale: float, y: float) -> Iterator[str]:
     """The scale bar and what the signs mean."""
-    length = max(n * 10.0**e for e in range(-6, 8) for n in (1, 2, 5) if n * 10.0**e * scale <= 150)
-    bar = [np.array([_MARGIN + 2, y - 4 - d]) for d in (5, 0)]
-    end = np.array([length * scale, 0.0])
-    yield path([bar[0], bar[1], bar[1] + end, bar[0] + end], f'stroke="{_INK}" stroke-width="1.4"')
-    said = f"{length / 1000:g} m" if length >= 1000 else f"{length:g} mm"
-    yield text(_MARGIN + 10 + end[0], y, said)
+    yield from scale_bar(_MARGIN + 2, y, scale)
     x = _MARGIN + 250.0
-    quiet = f'fill="{_QUIET}"'
+    quiet = f'fill="{QUIET}"'
     for sign, words in _signs(room, y - 4):
         yield f'<g transform="translate({x:.0f} 0)">{sign}{text(24, y, words, quiet)}</g>'
         x += 24 + 6.0 * len(words) + 26
@@ -366,15 +343,15 @@ def _foot(room: _Room, scale: float, y: float) -> Iterator[str]:
 def _signs(room: _Room, y: float) -> Iterator[tuple[str, str]]:
     at = np.array([8.0, y])
     if any(lamp.direction is not None for lamp in room.stage.lamps):
-        yield _sun(at, (1.0, 1.0, 1.0)), "parallel light"
+        yield sun(at, (1.0, 1.0, 1.0)), "parallel light"
     if any(lamp.position_mm is not None for lamp in room.stage.lamps):
-        yield _bulb(at, (1.0, 1.0, 1.0)), "point lamp"
-    pin = path([moved(at, -3, -8), moved(at, -3, 8)], f'stroke="{_INK}" stroke-width="2.6"')
-    pin += path([moved(at, -3, 0), moved(at, 5, 0)], f'stroke="{_INK}" stroke-width="1.2"')
-    yield pin + disc(moved(at, 6, 0), 2.6, f'fill="{_INK}"'), "screen, pin on its lit side"
+        yield bulb(at, (1.0, 1.0, 1.0)), "point lamp"
+    pin = path([moved(at, -3, -8), moved(at, -3, 8)], f'stroke="{INK}" stroke-width="2.6"')
+    pin += path([moved(at, -3, 0), moved(at, 5, 0)], f'stroke="{INK}" stroke-width="1.2"')
+    yield pin + disc(moved(at, 6, 0), 2.6, f'fill="{INK}"'), "screen, pin on its lit side"
     if room.has_table:
         arrow = np.array([moved(at, -6, 4), moved(at, 6, 0), moved(at, -6, -4)])
-        yield polygon(arrow, f'fill="{_INK}"'), "the table's pointer; numbers: stops"
+        yield polygon(arrow, f'fill="{INK}"'), "the table's pointer; numbers: stops"
 
 
 def _counted(stage: Stage) -> str:
@@ -390,13 +367,3 @@ def _counted(stage: Stage) -> str:
 def _described(stage: Stage) -> str:
     lamps, screens = (", ".join(each.name for each in things) for things in (stage.lamps, stage.screens))
     return f"Seen from above and from the side: {_counted(stage)}. Lamps: {lamps}. Screens: {screens}."
-
-
-def _tints(colour: tuple[float, ...]) -> tuple[str, str]:
-    """A lamp's colour on paper, and a darker one for its edges; white becomes amber."""
-    light = encode(np.array(colour, np.float64) / max(colour))
-    pure = light - 0.75 * light.min()
-    shown = np.array(_AMBER) if np.ptp(light) < 0.2 else 0.92 * pure / pure.max()
-    luminance = float(shown @ (0.2126, 0.7152, 0.0722))
-    shown = shown * min(1.0, 0.7 / luminance)
-    return hex_of(shown), hex_of(0.68 * shown)

@@ -4,16 +4,18 @@ Lengths are mm. The room's axes is the cube's at angle 0. Where the table carrie
 the cube's axes is turned with it; where the cube stands still, the two are one.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.drawing.stacks import films_at, lowered, sheets
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.optics.views import Views, rotations, unit
 
 Reals = NDArray[np.float64]
@@ -56,20 +58,24 @@ class PlacedLamp:
 
 @dataclass(frozen=True)
 class Standing:
-    """What stands where at an angle, in the room's axes."""
+    """What stands where at an angle, in the room's axes; `films` is where those of a stack lie (`tables.Stops`)."""
 
     turn: Reals
     axis: Reals
     screens: tuple[PlacedScreen, ...]
     lamps: tuple[PlacedLamp, ...]
+    films: Reals = field(default_factory=lambda: np.zeros((0, 7)))
 
 
 def drawn(cube: Cube) -> Cube:
     """The cube with every picture that its rig shows, and endless screens where they can be seen: behind the cube.
 
     Where level light shows every picture again half a turn on, mirrored, there are as many pictures more. Parallel
-    light without a disc casts the same shadow on every parallel screen. It keeps no targets.
+    light without a disc casts the same shadow on every parallel screen. It keeps no targets. A stack's pictures lie on
+    a sheet below it (`lightcube.drawing.stacks`).
     """
+    if isinstance(cube.grid, Stack):
+        return replace(cube, rig=lowered(cube.grid, cube.rig), targets=None)
     rig = cube.rig.both_sides
     times = len(rig) // len(cube.rig)
     light = rig.views.lamps[:, :3]
@@ -100,7 +106,8 @@ def standing(cube: Cube, angle_deg: float) -> Standing:
         place, parallel = _lamp_place(cube.rig, number, angle_deg)
         lamps.append(PlacedLamp(turn @ place, parallel, light[rig.sums.lamp == number].sum(axis=0)))
     axis = rig.turning.axis * (1 if rig.turning.axis[2] >= 0 else -1)
-    return _clear(cube.grid, Standing(turn, unit(axis), tuple(screens), tuple(lamps)))
+    films = films_at(cube.grid, cube.rig, angle_deg) if isinstance(cube.grid, Stack) else np.zeros((0, 7))
+    return _clear(cube.grid, Standing(turn, unit(axis), tuple(screens), tuple(lamps), films))
 
 
 def carries_cube(rig: Rig) -> bool:
@@ -158,7 +165,11 @@ def extent(grid: Grid, room: Standing) -> Reals:
     """Points between which everything lies, but lamps that stand far from all else."""
     middle, right, down = table_of(grid, room)
     turns = np.radians(np.arange(0, 360, 15.0))[:, None]
-    solid = [corners_of(grid, room.turn), middle + np.cos(turns) * right + np.sin(turns) * down]
+    solid = [corners_of(grid, room.turn)]
+    if isinstance(grid, Stack):
+        solid.append(sheets(grid, room.films).reshape(-1, 3))
+    else:
+        solid.append(middle + np.cos(turns) * right + np.sin(turns) * down)
     solid += [screen.corners for screen in room.screens]
     around = 0.1 * size_of(grid) * np.concatenate([np.eye(3), -np.eye(3)])
     far = _FAR * max(float(np.linalg.norm(points, axis=1).max()) for points in solid)

@@ -9,6 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
+from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import to_uint8
 from lightcube.wording import counted
 
@@ -64,12 +65,14 @@ def _facts(cube: Cube) -> str:
     count = len(cube.names)
     at_most = " at most" if np.ptp(cube.rig.stops.window, axis=0).any() else ""
     many = f"{counted(count, 'picture')} of{at_most}"
-    facts = [f"{nx} x {ny} x {nz} voxels of {cube.grid.sides_in_words}", f"{many} {columns} x {rows}"]
+    is_stack = isinstance(cube.grid, Stack)
+    cells = f"{counted(nz, 'film')} of {nx} x {ny} cells" if is_stack else f"{nx} x {ny} x {nz} voxels"
+    facts = [f"{cells} of {cube.grid.sides_in_words}", f"{many} {columns} x {rows}"]
     if "psnr_mean" in cube.scores:
         facts.append(f"PSNR {cube.scores['psnr_mean']:.1f} dB")
     if cube.status != "complete":
         facts.append(cube.status)
-    return "light cube: " + ", ".join(facts)
+    return ("stack: " if is_stack else "light cube: ") + ", ".join(facts)
 
 
 def _encoded(image: Image.Image) -> bytes:

@@ -8,8 +8,8 @@ OFF, EDGE, HINT = (0.12, 0.12, 0.13), (0.75, 0.86, 1.0), (0.9, 0.92, 1.0)
 #: How dark shadows on the floor are, how much light air and walls throw back, and how much glass shines.
 SHADE, GLOW, EMBER = 0.6, 0.5, 0.5
 #: A lamp's radius and the width of a frame, in widths of the cube, and how far a wall goes on beyond its picture, in
-#: widths of that.
-LAMP_RADIUS, FRAME, WALL_WIDTH = 0.036, 0.014, 0.85
+#: widths of that; and paper beyond the pictures of films, in widths of those.
+LAMP_RADIUS, FRAME, WALL_WIDTH, PAPER = 0.036, 0.014, 0.85, 0.06
 #: Part of a picture that is seen through the screen's paper from behind.
 THROUGH = 0.35
 #: Glass is drawn clearer: a grey absorbance a lets through (1 + a / GREY) ^ -GREY, what a colour has more likewise.

@@ -53,7 +53,7 @@ def _powers_between(
 def turn(cube: Cube, count: int | None = None, start: float = 0.0, end: float = 360.0) -> NDArray[np.float64]:
     """`count` angles from `start` to before `end` (degrees), each stop's nearest one moved onto the stop.
 
-    Of a whole turn there are 120, or two for each stop where that is more; the first stop's alone where nothing turns.
+    Of a whole turn there are 120, or two for each stop where that is more; the stops alone where nothing turns.
 
     A picture falls apart within a degree of its stop, so an even turn would pass between the stops and show none.
     Where half a turn shows the mirror image a stop is passed twice. Where stops are nearer to each other than the
@@ -62,7 +62,7 @@ def turn(cube: Cube, count: int | None = None, start: float = 0.0, end: float = 
     stops = cube.angles_deg
     if count is None:
         if not np.any(cube.rig.turning.turns) and (start, end) == (0.0, 360.0):
-            return stops[:1]  # all angles look alike
+            return np.unique(stops)  # between them nothing is to be seen
         count = max(120, 2 * len(cube.names))
     if cube.rig.mirrors:
         stops = np.concatenate([stops, stops + 180])

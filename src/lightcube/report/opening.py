@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from lightcube.optics.cube import Cube
+from lightcube.optics.naming import moves_of, told_apart
+from lightcube.optics.stack import Stack
 from lightcube.report import verdict
 from lightcube.report.html import element, figure, image, sentences, text
 from lightcube.report.measuring import Findings
@@ -40,16 +42,20 @@ def titled(kind: str, heading: Heading) -> list[str]:
 def opening(found: Findings, heading: Heading) -> str:
     """Title, date, what it is, and the cube in its room."""
     cube = found.cube
-    lines = titled("Light cube", heading)
+    is_stack = isinstance(cube.grid, Stack)
+    lines = titled("Stack of films" if is_stack else "Light cube", heading)
     if cube.status != "complete":
-        warning = "This cube is unfinished: its solver was stopped early, or it is still being made."
+        what = "stack" if is_stack else "cube"
+        warning = f"This {what} is unfinished: its solver was stopped early, or it is still being made."
         lines.insert(0, text("p", warning, class_="warning"))
     lines.append(text("p", _what(found), class_="lead"))
     if heading.note:
         lines.append(text("p", heading.note, class_="dedication"))
-    stop, there = f"{round(cube.angles_deg[0], 2):g}°", _first_shown(cube)
-    seen = image(found.room, f"The cube in its room, the table at {stop}, lit: {there}", exact=False)
-    caption = text("span", f"In its room, the table at {stop}: lamp, glass, and {there}.")
+    there = _first_shown(cube)
+    stop = told_apart(cube.rig)[0] if is_stack else f"the table at {round(cube.angles_deg[0], 2):g}°"
+    what, lit = ("films", "films") if is_stack else ("cube", "glass")
+    seen = image(found.room, f"The {what} in its room, {stop}, lit: {there}", exact=False)
+    caption = text("span", f"In its room, {stop}: lamp, {lit}, and {there}.")
     lines.append(figure(seen, caption, class_="room-picture"))
     return "\n".join(lines)
 
@@ -57,6 +63,8 @@ def opening(found: Findings, heading: Heading) -> str:
 def _first_shown(cube: Cube) -> str:
     """What stands on the walls at the first stop."""
     names = [cube.names[number] for number in np.flatnonzero(cube.angles_deg == cube.angles_deg[0])]
+    if isinstance(cube.grid, Stack):
+        return f"{names[0]} on the paper"
     return f"{names[0]} on the wall" if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]} on the walls"
 
 
@@ -65,6 +73,8 @@ def _what(found: Findings) -> str:
     cube = found.cube
     nz, ny, nx = cube.grid.shape
     rows, columns = cube.rig.stops.window.T
+    if isinstance(cube.grid, Stack):
+        return _what_films(cube, f"{span(columns)}\u00a0×\u00a0{span(rows)}")
     size = " × ".join(f"{length:.6g}" for length in cube.grid.size_mm[::-1])
     count = len(cube.names)
     if count == 1:
@@ -78,6 +88,18 @@ def _what(found: Findings) -> str:
         f"voxels; its pictures have {span(columns)} × {span(rows)} pixels."
     )
     return said.replace(" × ", "\u00a0×\u00a0").replace(" mm ", "\u00a0mm ")
+
+
+def _what_films(cube: Cube, pixels: str) -> str:
+    """What a stack is, in two sentences; its pictures have so many `pixels`."""
+    nz, ny, nx = cube.grid.shape
+    high, deep, wide = (f"{length:.4g}" for length in cube.grid.size_mm)
+    how = "as films are moved" if any(moves_of(cube.rig)) else "under each lamp"
+    return (
+        f"Light falls through {counted(nz, 'printed film')} that lie above each other; {how} their shadow is another "
+        f"of {counted(len(cube.names), 'picture')}. Films are {wide}\u00a0×\u00a0{deep}\u00a0mm large, of "
+        f"{nx}\u00a0×\u00a0{ny} cells, the lowest {high}\u00a0mm below the highest; pictures have {pixels} pixels."
+    )
 
 
 def judged(found: Findings) -> str:

@@ -10,7 +10,9 @@ from importlib.resources import files
 import numpy as np
 
 from lightcube.optics.cube import Cube
+from lightcube.optics.stack import Stack
 from lightcube.report import sections
+from lightcube.report.films import films
 from lightcube.report.html import element, pairs, plain, sentences, table, text
 from lightcube.report.measuring import Findings
 from lightcube.report.opening import Heading, judged, opening
@@ -77,9 +79,11 @@ def page(found: Findings, heading: Heading, compared: str, command: Command, ori
     origins
         The files that were read.
     """
+    is_stack = isinstance(found.cube.grid, Stack)
     parts = {
         "In words": judged(found),
         "Pictures": sections.pictures(found),
+        **({"Films": films(found.cube)} if is_stack else {}),
         "Figures": sections.figures(found, compared),
         "Settings": sections.settings(found),
         "Curves": sections.curves(found),
@@ -125,7 +129,8 @@ def _link(name: str) -> str:
 
 def _provenance(cube: Cube, command: Command, origins: Sequence[Origin]) -> str:
     """The command, what is recorded, and the files."""
-    return "\n".join([*_again(cube, command), *recorded(cube.provenance), *read_files(origins)])
+    what = "stack" if isinstance(cube.grid, Stack) else "cube"
+    return "\n".join([*_again(cube, command), *recorded(cube.provenance, what), *read_files(origins)])
 
 
 def _again(cube: Cube, command: Command) -> Iterator[str]:
@@ -139,7 +144,8 @@ def _again(cube: Cube, command: Command) -> Iterator[str]:
     yield element("pre", element("code", "\n".join(lines)), id="command")
     if command.doubts:
         yield sentences(command.doubts)
-    yield text("p", "The numbers of its voxels have this SHA-256, whatever kind of file they are in:")
+    what = "cells" if isinstance(cube.grid, Stack) else "voxels"
+    yield text("p", f"The numbers of its {what} have this SHA-256, whatever kind of file they are in:")
     yield element("pre", text("code", digest(cube)), id="digest")
     yield element("p", "To compare, put the cube's name in place of <code>CUBE</code>:")
     yield element("pre", text("code", _CHECK))

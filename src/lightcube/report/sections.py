@@ -11,6 +11,8 @@ from lightcube.drawing import charts
 from lightcube.drawing.stage import drawing
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import SAID
+from lightcube.optics.naming import is_dial, told_apart
+from lightcube.optics.stack import Stack
 from lightcube.optics.told import remembered
 from lightcube.planning.feasibility import facts
 from lightcube.planning.prediction import MOST_DB
@@ -86,12 +88,16 @@ def settings(found: Findings) -> str:
     passes = f"{made['iterations']}" if "iterations" in made else "–"
     reason = reasons.get(str(made.get("stop_reason")))
     nz, ny, nx = cube.grid.shape
+    sides = cube.grid.sides_in_words.replace("x", "×")
+    is_stack = isinstance(cube.grid, Stack)
+    held = f"{cube.hold_deg:g}° on either side of a stop" if cube.hold_deg else "none"
     return pairs(
         {
-            "Voxels": f"{nx} × {ny} × {nz} of {cube.grid.sides_in_words.replace('x', '×')}",
+            **({"Films": f"{nz} of {nx} × {ny} cells of {sides}"} if is_stack else {}),
+            **({} if is_stack else {"Voxels": f"{nx} × {ny} × {nz} of {sides}"}),
             **_placed(cube),
             "Lamp power": f"{span(cube.powers, '.4g')}, that is {_range_ev(cube)} ({kind}{most})",
-            "Hold": f"{cube.hold_deg:g}° on either side of a stop" if cube.hold_deg else "none",
+            **({} if is_stack else {"Hold": held}),
             "Method": str(made.get("method", "–")),
             "Passes": f"{passes}: {reason}" if reason else passes,
             "Extinction": f"{cube.extinction.mean():.4g} per mm on average, {cube.extinction.max():.4g} at most",
@@ -104,11 +110,11 @@ def _placed(cube: Cube) -> dict[str, str]:
     """Stops, lamps and screens."""
     rig = cube.rig
     said = {
-        "Stops": _stops(np.unique(cube.angles_deg)),
+        **({} if is_dial(rig) else {"Stops": _stops(np.unique(cube.angles_deg))}),
         "Lamps": ", ".join(rig.lamps.names),
         "Screens": ", ".join(rig.screens.names),
     }
-    if rig.elevation_deg is not None:
+    if rig.elevation_deg is not None and not is_dial(rig):
         said["Lamp elevation"] = f"{rig.elevation_deg:g}°"
     if np.any(rig.sums.disc_deg):
         said["Lamp size"] = ", ".join(
@@ -150,8 +156,14 @@ def _card(found: Findings, index: int) -> str:
     view = found.scores["pictures"][index]
     both = "".join(_image(found, index, kind) for kind in ("wanted", "shown"))
     how = mark(view["psnr"])
-    caption = f"{_named(found, index)} {text('span', how, class_=how)} at {round(view['angle_deg'], 2):g}°"
+    caption = f"{_named(found, index)} {text('span', how, class_=how)} {escape(_apart(found)[index])}"
     return figure(element("div", both, class_="pair"), caption, class_="card")
+
+
+def _apart(found: Findings) -> list[str]:
+    """What tells each picture apart."""
+    rig = found.cube.rig
+    return told_apart(rig) if is_dial(rig) else [f"at {round(angle_deg, 2):g}°" for angle_deg in found.cube.angles_deg]
 
 
 def _named(found: Findings, index: int) -> str:
@@ -182,7 +194,7 @@ def _differences(found: Findings) -> str:
 def _table(found: Findings) -> str:
     """One row per picture."""
     cube, expected = found.cube, _expected(found.cube)
-    heads = ["no.", "picture", "angle", "PSNR, dB", "SSIM", "CIEDE2000"]
+    heads = ["no.", "picture", "shown" if is_dial(cube.rig) else "angle", "PSNR, dB", "SSIM", "CIEDE2000"]
     heads += ["predicted, dB"] * (expected is not None)
     heads += [f"{LOBE_DB:g} dB over"] * (found.curve is not None)
     heads += ["screen"] * (len(cube.rig.screens.names) > 1)
@@ -192,7 +204,8 @@ def _table(found: Findings) -> str:
 def _rows(found: Findings, expected: list[float] | None) -> Iterator[list[object]]:
     rig = found.cube.rig
     for index, view in enumerate(found.scores["pictures"]):
-        row: list[object] = [index + 1, view["name"], f"{view['angle_deg']:.3f}°", number(view["psnr"])]
+        told = _apart(found)[index] if is_dial(rig) else f"{view['angle_deg']:.3f}°"
+        row: list[object] = [index + 1, view["name"], told, number(view["psnr"])]
         row += [number(view["ssim"], 4), number(view["delta_e"])]
         row += [] if expected is None else [number(expected[index], 1)]
         row += [] if found.curve is None else [f"{found.curve.lobes_deg[index]:.2f}°"]
@@ -228,6 +241,8 @@ def curves(found: Findings) -> str:
 def _between(found: Findings) -> Iterator[str]:
     """What is seen between the stops."""
     curve = found.curve
+    if isinstance(found.cube.grid, Stack):
+        return
     if curve is None:
         yield text("p", "Nothing turns: there is nothing to be seen between the stops.")
         return
@@ -250,8 +265,9 @@ def _powers_said(cube: Cube) -> str:
     """What the drawing of powers shows."""
     colours = "; red discs, green squares, blue triangles" if cube.powers.shape[1] == 3 else ""
     lamps = ", of each of its lamps" if len(cube.rig.lamps.names) > 1 else ""
+    past = "films" if isinstance(cube.grid, Stack) else "cube"
     return (
-        f"Power of the lamp for each picture and colour{lamps}; 1 shows white past the cube, and "
+        f"Power of the lamp for each picture and colour{lamps}; 1 shows white past the {past}, and "
         f"twice as much is 1 EV more{colours}. "
         "The dashed line is the largest that was allowed."
     )
@@ -260,12 +276,19 @@ def _powers_said(cube: Cube) -> str:
 def disturbances(found: Findings) -> str:
     """What is left of the pictures in a set-up that is not perfect."""
     best = found.robust["undisturbed"]["psnr_mean"]
+    is_relit = "relit_mean" in found.robust["undisturbed"]
     rows = [
-        (SAID[name], number(left["psnr_mean"]), number(left["psnr_min"]), number(best - left["psnr_mean"]))
+        (
+            *(SAID[name], number(left["psnr_mean"]), number(left["psnr_min"]), number(best - left["psnr_mean"])),
+            *([number(left["relit_mean"])] if is_relit else []),
+        )
         for name, left in found.robust.items()
     ]
-    heads = ("what is off", "mean PSNR, dB", "worst, dB", "costs, dB")
+    heads = ("what is off", "mean PSNR, dB", "worst, dB", "costs, dB", *(["relit, dB"] if is_relit else []))
     parts = [table("What is left of the pictures", heads, rows, "figures")]
+    if is_relit:
+        relit = "Relit: under an exposure found anew for each picture and colour, as one shows or photographs it."
+        parts.append(text("p", relit, class_="note"))
     darkest = float(found.cube.extinction.max()) * found.cube.grid.voxel_mm
     if (
         "extinction" in found.robust
@@ -288,7 +311,9 @@ def disturbances(found: Findings) -> str:
 def before(found: Findings) -> str:
     """What was known before solving, and what came of it."""
     parts = [*_told(found)]
-    if found.stage is not None:
+    if isinstance(found.cube.grid, Stack):
+        pass  # its room stands with its films
+    elif found.stage is not None:
         parts += _room(found)
     elif found.preflight is not None:
         parts.append(pairs(_checked(found.preflight)))
@@ -305,7 +330,7 @@ def _told(found: Findings) -> Iterator[str]:
     """Predicted and reached."""
     predicted = remembered(found.cube).get("predicted")
     if predicted is None:
-        yield text("p", "What to expect was not predicted for this cube.")
+        yield text("p", "What to expect was not predicted.")
         return
     rows = [
         (what, number(predicted[name], 1), number(found.scores[name]), f"{found.scores[name] - predicted[name]:+.1f}")

@@ -6,6 +6,7 @@ import numpy as np
 
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.naming import is_dial, told_apart
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 from lightcube.solids.shape import Shape
@@ -22,7 +23,7 @@ def facts(cube: Cube) -> dict[str, Any]:
         "lamp_ev": [float(np.log2(cube.powers.min())), float(np.log2(cube.powers.max()))],
         "extinction_mean": float(cube.extinction.mean()),
         "extinction_max": float(cube.extinction.max()),
-        "hold_deg": cube.hold_deg,
+        **({} if isinstance(cube.grid, Stack) else {"hold_deg": cube.hold_deg}),
         "transfer": cube.transfer,
         "names": list(cube.names),
         **{name: value for name, value in cube.scores.items() if name != "pictures"},
@@ -73,10 +74,15 @@ def _where(rig: Rig) -> dict[str, Any]:
     return {
         "pictures": len(rig),
         "picture": f"{columns} x {rows} pixels",
-        "angles_deg": [float(angle_deg) for angle_deg in rig.stops.angle_deg],
-        "elevation_deg": sorted(
-            {float(elevation_deg) for elevation_deg in rig.views.elevations_deg[rig.views.lamps[:, 3] == 0]}
-        ),
+        **_told(rig),
         "lamps": list(rig.lamps.names),
         "screens": [rig.screens.names[screen] for screen in rig.stops.screen],
     }
+
+
+def _told(rig: Rig) -> dict[str, Any]:
+    """What tells a rig's pictures apart, and how light falls, by name."""
+    parallel = rig.views.elevations_deg[rig.views.lamps[:, 3] == 0]
+    if is_dial(rig):
+        return {"shown": told_apart(rig), "off_upright_deg": sorted({90 - float(each) for each in parallel})}
+    return {"angles_deg": rig.stops.angle_deg.tolist(), "elevation_deg": sorted({float(each) for each in parallel})}

@@ -96,7 +96,7 @@ def _day(place: str) -> str:
 def _compared(found: Findings, source: str | None) -> str:
     """What the cube was compared with, in a sentence."""
     if source is None:
-        return "Compared with the pictures that the cube keeps, of 16 bits."
+        return "Compared with the pictures that its file keeps, of 16 bits."
     name = name_of(io_place(without_secrets(source)))
     if found.apart == 0:
         return f"Compared with the pictures in {name}, which are those that the cube was made from."

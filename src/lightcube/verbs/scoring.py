@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 
 from lightcube.drawing import plots
 from lightcube.drawing.sheet import contact_sheet
+from lightcube.errors import InputError
 from lightcube.events import Tell, counting
 from lightcube.forward import casting
 from lightcube.optics.cube import Cube
+from lightcube.optics.naming import is_dial
 from lightcube.pictures.targets import Targets
 from lightcube.scoring import metrics
 from lightcube.scoring.between import Curve, curve
@@ -53,6 +55,8 @@ def score(cube: Cube, targets: Targets, tell: Tell, *, between: bool = False, of
     InputError
         Where the targets do not fit the cube's views, or nothing is between its stops.
     """
+    if between and is_dial(cube.rig):
+        raise InputError("nothing turns from one of these pictures to the next: leave out --between and --plot")
     scores, found, advance = metrics.score(cube, targets), None, counting(tell)
     if between:
         found = curve(cube, targets, callback=advance)

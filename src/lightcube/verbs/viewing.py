@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from lightcube.drawing.tableau import tableau
 from lightcube.events import Tell, counting
 from lightcube.optics.cube import Cube
+from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import to_uint8
 from lightcube.solids.shape import is_opaque
 from lightcube.viewer import smaller
@@ -37,7 +38,7 @@ class Page:
 
 def is_solved_anew(cube: Cube, *, full: bool) -> bool:
     """Whether a page holds a smaller cube, which is solved for it; not where all voxels are asked for."""
-    return not (full or is_opaque(cube)) and cube.grid.longest > smaller.MOST_SIDE
+    return not (full or is_opaque(cube) or isinstance(cube.grid, Stack)) and cube.grid.longest > smaller.MOST_SIDE
 
 
 def page(cube: Cube, label: str | Label, tell: Tell, *, full: bool = False) -> Page:

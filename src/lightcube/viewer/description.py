@@ -48,7 +48,7 @@ def describe(cube: Cube, packed: Packed, label: str | Label) -> dict[str, Any]:
     camera = camera_for(packed.cube, _WIDE)
     same = packed.cube.grid.shape == cube.grid.shape
     worst, mean = packed.lost if same else lost(cube, packed.cube)
-    wanted = _wanted(cube)
+    wanted = wanted_images(cube)
     return {
         "format": FORMAT,
         "kind": "cube",
@@ -151,7 +151,7 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and math.isinf(value) else value
 
 
-def _wanted(cube: Cube) -> list[str]:
+def wanted_images(cube: Cube) -> list[str]:
     """The wanted pictures as data URIs, clear where nothing is wanted: exact ones, or where these are large, WebP."""
     images = []
     windows = cube.rig.stops.window

@@ -10,11 +10,15 @@ from hashlib import sha256
 from typing import Any
 
 from lightcube.backward.pieces import Watching
+from lightcube.errors import InputError
 from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
+from lightcube.optics.stack import Stack
 from lightcube.solids.relief import Relief
 from lightcube.solids.shape import is_opaque
 from lightcube.viewer.description import describe, zipped
+from lightcube.viewer.films import WHAT as WHAT_FILMS
+from lightcube.viewer.films import describe_films, films_data
 from lightcube.viewer.label import Label
 from lightcube.viewer.modules import joined, source
 from lightcube.viewer.packing import pack
@@ -29,7 +33,7 @@ _NAMED = 6
 
 @checked
 def page(cube: Cube | Relief, label: str | Label, *, full: bool = False, callback: Watching | None = None) -> str:
-    """The text of a page that shows a cube or a relief, in any browser, from a file, without a network.
+    """The text of a page that shows a cube, films or a relief, in any browser, from a file, without a network.
 
     Parameters
     ----------
@@ -48,6 +52,8 @@ def page(cube: Cube | Relief, label: str | Label, *, full: bool = False, callbac
     """
     if isinstance(cube, Relief):
         return relief_page(cube, Label.of(label))
+    if isinstance(cube.grid, Stack):
+        return films_page(cube, Label.of(label))
     return page_of(Label.of(label), *contents(cube, label, full=full, callback=callback))
 
 
@@ -56,6 +62,11 @@ def relief_page(relief: Relief, label: Label) -> str:
     description = describe_relief(relief, label)
     names = [picture["name"] for picture in description["pictures"]]
     return _put_together(label, description, heights_data(relief), WHAT, names)
+
+
+def films_page(cube: Cube, label: Label) -> str:
+    """The page in which light falls through a stack of films, lamp by lamp."""
+    return _put_together(label, describe_films(cube, label), films_data(cube), WHAT_FILMS, cube.names)
 
 
 def page_of(label: Label, description: dict[str, Any], voxels: bytes) -> str:
@@ -96,6 +107,8 @@ def contents(
     cube: Cube, label: str | Label, *, full: bool = False, callback: Watching | None = None
 ) -> tuple[dict[str, Any], bytes]:
     """Description and voxels, as the page's modules read them; takes and raises what `page` does."""
+    if isinstance(cube.grid, Stack):
+        raise InputError("a notebook turns cubes, and these are films: write a page of them, lightcube view")
     cubic = in_cubes(cube)
     packed = pack(cubic if full or is_opaque(cube) else smaller(cubic, callback))
     return describe(cubic, packed, label), packed.data()

@@ -1,7 +1,9 @@
-// Opens the page: reads the data behind this text, shows the cube or the relief, and says a sentence where that fails.
+// Opens the page: reads the data behind this text, shows the cube, the films or the relief, and says a sentence where that fails.
 
 import { mount } from "./app.js";
+import { mountFilms } from "./films.js";
 import { fromBase64, gunzip, readScene, readVoxels } from "./model/data.js";
+import { filmsOf } from "./model/films.js";
 import { heightsOf } from "./model/relief.js";
 import { mountRelief } from "./plate.js";
 
@@ -26,6 +28,7 @@ async function openPage(root) {
   try {
     const scene = await readScene(bytesOf("scene"));
     if (scene.kind === "relief") mountRelief(root, scene, heightsOf(await gunzip(bytesOf("voxels"), "heights"), scene));
+    else if (scene.kind === "films") mountFilms(root, scene, filmsOf(await gunzip(bytesOf("voxels"), "films"), scene));
     else mount(root, scene, await readVoxels(bytesOf("voxels"), scene));
   } catch (error) {
     const damaged = error instanceof ReferenceError || error instanceof TypeError || error instanceof SyntaxError;

@@ -49,7 +49,7 @@ export function createFilmstrip(scene, chosen) {
 function thumbnail(scene, number, name, pressed) {
   const picture = scene.pictures[number];
   const quality = qualityOf(picture.psnr);
-  const angle = degreesText(picture.angle_deg);
+  const angle = picture.told ?? degreesText(picture.angle_deg); // films are told apart by lamps
   const label = [picture.name, quality, overlapText(picture.overlap), picture.mirrored && "mirrored", angle].filter(Boolean).join(", ");
   const given = { type: "button", class: "thumbnail", "aria-label": label, title: label, tabindex: -1, click: pressed };
   return element("button", given,
