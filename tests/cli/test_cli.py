@@ -327,9 +327,10 @@ MISTAKEN = [
             f"{{tmp}}/word.{suffix}",
             f"{{tmp}}/word.{suffix} is a mesh, which holds no lamps and screens: lightcube ",
         )
-        for verb in ("play", "info", "score", "view", "report")
+        for verb in ("play", "info", "view", "report")
         for suffix in ("stl", "3MF", "obj", "ply")
     ),
+    ("score", "{tmp}/word.stl", "{tmp}/word.stl is a mesh and keeps no pictures: give them after it"),
     *(
         (verb, "{tmp}/made", "{tmp}/made is a folder, no cube: give a cube that is in it, such as {tmp}/made/moon.zarr")
         for verb in ("play", "info", "score", "view", "report")
@@ -484,7 +485,8 @@ def test_help_names_every_command() -> None:
     text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
     listed = re.findall(r"^\s+([a-z]+)\s\s+[A-Z]", text, re.MULTILINE)
     assert " ".join(listed) == (
-        "trace check solve hull relief play score view report draw info materials calibrate publish bench demo"
+        "trace check solve hull carve relief play score view report draw info export materials calibrate publish bench "
+        "demo"
     )
 
 

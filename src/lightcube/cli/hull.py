@@ -112,7 +112,7 @@ def hull(
     most: Annotated[int | None, flag("most")] = None,
     every: Annotated[int | None, flag("every")] = None,
     n: Annotated[int | None, flag("n")] = None,
-    size_mm: Annotated[float, flag("size_mm")] = 100.0,
+    size_mm: Annotated[float | None, flag("size_mm")] = None,
     elevation_deg: Annotated[float | None, flag("elevation_deg")] = None,
     span_deg: Annotated[float | None, flag("span_deg")] = None,
     angles_deg: Annotated[str | None, flag("angles_deg")] = None,

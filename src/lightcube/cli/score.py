@@ -90,7 +90,10 @@ def score(
             f"{cube} knows how its pictures were cut out and where they stand: say that of meshes, and leave it out"
         )
     if pictures is not None and len(pictures) > 1:
-        raise InputError("several pictures are for meshes: put all of them into one folder, and give that")
+        raise InputError(
+            f"{pictures[1]} is too much for lightcube score, which takes pictures one by one of meshes only: put all "
+            "of them into one folder, and give that"
+        )
     if io.is_shape(cube):
         _refuse(cube, "a shape", {"pictures": pictures, **of_cubes})
         _score_shape(cube, as_json=as_json)

@@ -149,7 +149,7 @@ def attenuator(
     >>> stage.grid
     <stack of 5 films of 80 x 76 cells of 2.5 mm>
     >>> [tuple(round(part, 2) for part in lamp.direction) for lamp in stage.lamps]
-    [(-0.62, 0.83, -1.0), (0.62, 0.83, -1.0), (-0.62, -0.83, -1.0), (0.62, -0.83, -1.0)]
+    [(-0.63, 0.83, -1.0), (0.63, 0.83, -1.0), (-0.63, -0.83, -1.0), (0.63, -0.83, -1.0)]
     """
     films, names = films or Films(), list(names)
     if not names:

@@ -15,6 +15,7 @@ from lightcube.optics.checks import check_fields
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import Transfer
 from lightcube.optics.views import check_pixels, check_reach
 from lightcube.wording import counted
@@ -150,6 +151,9 @@ class Cube:
 
     def __repr__(self) -> str:
         nz, ny, nx = self.grid.shape
+        if isinstance(self.grid, Stack):
+            of = f"{counted(nz, 'film')} of {ny} x {nx} cells"
+            return f"<stack of {of} for {counted(len(self.names), 'picture')}, {self.status}>"
         return f"<light cube of {nz} x {ny} x {nx} voxels for {counted(len(self.names), 'picture')}, {self.status}>"
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:

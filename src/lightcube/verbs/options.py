@@ -147,7 +147,7 @@ class Options:
         float | None,
         Option("Geometry", "With --films: mm by which films may lie off, so that pictures stand it.  [default: 0]"),
     ] = None
-    seed: Annotated[int, Option("Quality", "Of the random films that a stack starts from.", 0)] = 0
+    seed: Annotated[int, Option("Quality", "With --films: number of the random films that passes start from.", 0)] = 0
     lamp_max: Annotated[
         float | None,
         Option(

@@ -7,6 +7,7 @@ import numpy as np
 from lightcube import io
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
+from lightcube.optics.stack import Stack
 from lightcube.optics.told import remembered
 from lightcube.pictures.fitting import check_fit, fit, targets_of
 from lightcube.pictures.targets import Targets
@@ -31,7 +32,8 @@ def refitted(cube: Cube, source: str) -> Targets:
     """Pictures as `solve` fitted them to the cube, in its order; `InputError` where they cannot be those it is for."""
     if io.is_stage(source):
         return _of_stage(source, cube)
-    if not np.all(cube.rig.screens.endless):
+    of_films = isinstance(cube.grid, Stack) and "fit" in remembered(cube)
+    if not (of_films or np.all(cube.rig.screens.endless)):
         raise InputError(f"the cube was made on a stage: give its file instead of {source}, or nothing")
     part = remembered(cube).get("film", {}) if io.is_film(source) else {}
     pictures = io.read_pictures(source, transfer=cube.transfer, **part)

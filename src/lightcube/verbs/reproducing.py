@@ -18,10 +18,12 @@ from lightcube.backward.mat import TONES, Mat
 from lightcube.backward.needs import MEMORY, fewest_units
 from lightcube.backward.recipe import QUALITIES, Quality, Recipe, recipe_of
 from lightcube.errors import InputError, without_secrets
+from lightcube.optics.attenuator import Films
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.stack import Stack
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.told import remembered
 from lightcube.optics.transfer import BLACK
@@ -52,11 +54,12 @@ def reproducing(cube: Cube, targets: Targets, source: str | None, target: str) -
         What the command reads and writes; without a source there is a word in its place.
     """
     command, provenance = Command(), remembered(cube)
-    place = _turntable_options(cube, command) if _is_planned(cube) else _stage_options(cube)
+    place = _place_options(cube, command)
     words = [*place, *_solver_options(cube, command)]
     if cube.transfer != "srgb":
         words += ["--transfer", cube.transfer]
-    asked = ["lightcube", "solve", source or ("PICTURES" if _is_planned(cube) else "STAGE.toml"), "-o", target]
+    stands_for = "PICTURES" if _is_planned(cube) or _is_of_films(cube) else "STAGE.toml"
+    asked = ["lightcube", "solve", source or stands_for, "-o", target]
     solve = [shlex.join(asked), *(shlex.join(pair) for pair in zip(words[::2], words[1::2], strict=True))]
     _doubt_origin(cube, command, source)
     if source is not None and without_secrets(source) != source:
@@ -73,6 +76,48 @@ def reproducing(cube: Cube, targets: Targets, source: str | None, target: str) -
 def _is_planned(cube: Cube) -> bool:
     """Whether a cube was planned for pictures, and not made on a stage, whose screens have edges."""
     return bool(np.all(cube.rig.screens.endless))
+
+
+def _is_of_films(cube: Cube) -> bool:
+    """Whether it is a stack that was made of pictures by its number of films, and not of a stage's file."""
+    return isinstance(cube.grid, Stack) and "fit" in remembered(cube)
+
+
+def _place_options(cube: Cube, command: Command) -> Iterator[str]:
+    """What says where things stand, beside pictures or the file of a stage."""
+    if _is_of_films(cube):
+        return _films_options(cube)
+    return _turntable_options(cube, command) if _is_planned(cube) else _stage_options(cube)
+
+
+def _films_options(cube: Cube) -> Iterator[str]:
+    """Films and their cells; their lamps stand as they come."""
+    assert isinstance(cube.grid, Stack)  # noqa: S101 - asked before
+    usual, stack = Films(), cube.grid
+    cells = round(min(cube.rig.views.pixel_in(stack)))
+    pixels, heights = max(cube.rig.picture_shape), stack.heights_mm
+    yield from ("--films", str(stack.shape[0]))
+    gap_mm = (heights[-1] - heights[0]) / max(len(heights) - 1, 1)
+    if abs(gap_mm - usual.gap_mm) > 1e-9 and len(heights) > 1:
+        yield from ("--gap-mm", _number(gap_mm))
+    if pixels * cells != usual.pixels * usual.cells_a_pixel:
+        yield from ("--n", str(pixels * cells))
+    if cells != usual.cells_a_pixel:
+        yield from ("--pixel", str(cells))
+    size_mm = round(pixels * cells * stack.voxel_mm, 9)
+    if size_mm != usual.size_mm:
+        yield from ("--size-mm", _number(size_mm))
+    yield from _shown(remembered(cube))
+    yield from _lamp(cube)
+
+
+def _shown(provenance: Mapping[str, Any]) -> Iterator[str]:
+    """What was done to pictures."""
+    yield from _film(provenance)
+    if provenance.get("fit", "crop") != "crop":
+        yield from ("--fit", str(provenance["fit"]))
+    if "focus" in provenance:
+        yield from ("--focus", _listed(np.array(provenance["focus"])))
 
 
 def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
@@ -101,11 +146,7 @@ def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
             "No angles, elevation and lamp on the command line give exactly this cube's lamps and screens."
         )
     yield from disc or ()
-    yield from _film(provenance)
-    if provenance.get("fit", "crop") != "crop":
-        yield from ("--fit", str(provenance["fit"]))
-    if "focus" in provenance:
-        yield from ("--focus", _listed(np.array(provenance["focus"])))
+    yield from _shown(provenance)
     if "order" in provenance:
         yield from ("--order", "best")
     if "shift" in provenance:
@@ -151,9 +192,14 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from ("--material", _material(made.dyes, command))
     elif made.bounded_by != usual.bounded_by:
         yield from ("--max-extinction", _number(made.bounded_by.most(cube.grid)))
-    yield from _mat(made, command)
+    if made.assembly_mm:
+        yield from ("--assembly-mm", _number(made.assembly_mm))
+    if made.seed:
+        yield from ("--seed", str(made.seed))
+    yield from _mat(made, command, is_of_films=isinstance(cube.grid, Stack))
     quality = _quality(made) if "passes" in remembered(cube) else None
-    yield from _light(made.beams, quality, command)
+    if not isinstance(cube.grid, Stack):
+        yield from _light(made.beams, quality, command)
     if quality is None:
         yield from _passes(remembered(cube), command)
     elif quality != "normal":
@@ -169,10 +215,10 @@ def _material(dyes: Dyes, command: Command) -> str:
     return name
 
 
-def _mat(made: Recipe, command: Command) -> Iterator[str]:
+def _mat(made: Recipe, command: Command, *, is_of_films: bool) -> Iterator[str]:
     """What surrounds the pictures, where that is not as usual."""
     usual = None if made.beams.is_thin or not made.solver.chooses_lamps else Mat()
-    if made.mat == usual:
+    if made.mat == usual or is_of_films:
         return
     names = [name for name, tone in TONES.items() if made.mat == Mat(tone)]
     if made.mat is not None and not names:

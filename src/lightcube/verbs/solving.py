@@ -188,7 +188,7 @@ def job(
 def _origin(planned: Plan) -> dict[str, Any]:
     """What a cube remembers of its plan."""
     known: dict[str, Any] = {}
-    if planned.stage is None:
+    if isinstance(planned.fit, str):  # of a stage's file each picture says its own
         known["fit"] = planned.fit
         if planned.pictures.focus != (0.5, 0.5):
             known["focus"] = list(planned.pictures.focus)
