@@ -128,3 +128,12 @@ def test_cubes_have_no_films_that_lie_off() -> None:
 def test_recipes_of_films_are_bounded(wrong: dict[str, Any]) -> None:
     with pytest.raises(InputError):
         lc.Recipe(**wrong)
+
+
+def test_films_are_clear_where_no_light_goes_through(solved: lc.Cube) -> None:
+    """A printer need not print them, and what is random there would be ink for nothing."""
+    matrix = lc.Projector(solved.grid, solved.rig.squared(1.0))
+    met = matrix.adjoint(np.ones((matrix.shape[0], 1))).reshape(*solved.grid.shape[1:], -1).transpose(2, 0, 1) > 0
+    assert 0.05 < np.mean(~met) < 0.8
+    assert np.all(solved.extinction[:, ~met] == 0)
+    assert np.mean(solved.extinction[:, met] > 0) > 0.5

@@ -102,6 +102,8 @@ def solve_piece(
     for number in range(1 if len(earlier) else 0, len(phases)):
         phase = phases[number]
         problem, bounds = _posed(job, name, store, phase.recipe)
+        if start is not None and isinstance(job.grid, Stack):
+            start = start * problem.is_lit  # where no light goes through, films are clear
         watch.begin(problem, number, earlier)
         options: dict[str, Any] = {} if phase.passes is None else {"iterations": phase.passes}
         result = problem.solve(

@@ -16,7 +16,7 @@ from lightcube.kernels.layout import (
     columns_from_volume,
     volume_from_columns,
 )
-from lightcube.optics.arrays import Counts, Images, Reals
+from lightcube.optics.arrays import Counts, Flags, Images, Reals
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture
@@ -108,6 +108,12 @@ class Problem:
         if self.dyes is not None:
             return solve_amounts(method, self.matrix, wanted, self.dyes, **options)
         return method.solve(self.matrix, wanted, bounds=(0.0, most), **options)
+
+    @property
+    def is_lit(self) -> Flags:
+        """``(z, y, x)``: voxels that some beam goes through."""
+        beams = np.ones((self.matrix.shape[0], 1), self.light.dtype)
+        return np.asarray(voxels_from_unknowns(self.matrix.adjoint(beams), self.matrix.grid.shape, 1)[0] > 0)
 
     def wanted(self, lamp_bounds: tuple[Floats, Floats]) -> Wanted:
         """What a solver is to reach with lamps whose powers are within these bounds, each ``(lamps, channels)``."""
