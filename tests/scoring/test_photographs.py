@@ -5,7 +5,8 @@ import pytest
 
 from lightcube.errors import InputError
 from lightcube.optics.transfer import encode
-from lightcube.scoring.photographs import homography, photographed, straightened
+from lightcube.pictures.projective import homography, projected
+from lightcube.scoring.photographs import photographed, straightened
 
 SHAPE = (12, 16)
 #: A camera that stands a little aside and aslant.
@@ -29,8 +30,7 @@ def taken(picture: np.ndarray, corners: np.ndarray = CORNERS, noise: float = 0.0
     rows, columns = picture.shape[:2]
     back = homography(corners, np.array([[0, 0], [columns, 0], [columns, rows], [0, rows]], np.float64))
     y, x = np.mgrid[0:320, 0:420] + 0.5
-    at = np.stack([x, y, np.ones_like(x)], axis=-1) @ back.T
-    at = at[..., :2] / at[..., 2:]
+    at = projected(back, np.stack([x, y], axis=-1))
     inside = np.all((at >= 0) & (at < (columns, rows)), axis=-1)
     photo[inside] = picture[at[inside][:, 1].astype(int), at[inside][:, 0].astype(int)]
     random = np.random.default_rng(1)

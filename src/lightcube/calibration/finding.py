@@ -9,6 +9,7 @@ import numpy as np
 from lightcube.calibration.wedge import HOLE, MARKS_MM, WINDOWS_MM, Patch, Wedge, bare_mm
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Flags, Images, Reals
+from lightcube.pictures.projective import homography, projected
 
 #: Of a mark: how far from a square it may look, its least size in pixels, and by how many times, as a logarithm, its
 #: holes may be larger or smaller.
@@ -58,7 +59,7 @@ def read_wedge(photo: Images, wedge: Wedge) -> Readings:
     InputError
         Where the marks are not found, the photograph is too coarse, or patches lie outside or are clipped.
     """
-    place = _homography(MARKS_MM, _marks(photo))
+    place = homography(MARKS_MM, _marks(photo))
     said = ["the film was photographed from its other side, which makes no difference"] if _is_mirrored(place) else []
     fine = np.sqrt(np.abs(np.linalg.det(place[:2, :2] / place[2, 2])))
     if fine < _FINE:
@@ -112,32 +113,17 @@ def _with_holes(dark: Flags) -> dict[int, list[tuple[float, float, Reals]]]:
     return found
 
 
-def _homography(before: Reals, after: Reals) -> Reals:
-    """The projection ``(3, 3)`` that takes four points to four others."""
-    rows = []
-    for (x, y), (u, v) in zip(before, after, strict=True):
-        rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y, -u], [0, 0, 0, x, y, 1, -v * x, -v * y, -v]]
-    matrix = np.linalg.svd(np.array(rows))[2][-1].reshape(3, 3)
-    return np.asarray(matrix / matrix[2, 2])
-
-
 def _is_mirrored(place: Reals) -> bool:
     """Whether right of up is left in the picture."""
-    corners = _placed(place, MARKS_MM[:3])
+    corners = projected(place, MARKS_MM[:3])
     return bool(np.linalg.det(np.diff(corners, axis=0)) < 0)
-
-
-def _placed(place: Reals, points_mm: Reals) -> Reals:
-    """Pixels, x and y, of points of the page."""
-    projected = np.concatenate([points_mm, np.ones((*points_mm.shape[:-1], 1))], axis=-1) @ place.T
-    return np.asarray(projected[..., :2] / projected[..., 2:])
 
 
 def _sampled(photo: Images, place: Reals, middles_mm: Reals, side_mm: float) -> Reals:
     """``(middle, channel)``: mean light in squares about places of the page; NaN where they leave the picture."""
     steps = (np.arange(_POINTS) + 0.5) / _POINTS * side_mm - side_mm / 2
     grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
-    points = np.rint(_placed(place, middles_mm[:, None] + grid)).astype(int)
+    points = np.rint(projected(place, middles_mm[:, None] + grid)).astype(int)
     inside = np.all((points >= 0) & (points < photo.shape[1::-1]), axis=(1, 2))
     x, y = np.where(inside[:, None, None], points, 0).transpose(2, 0, 1)
     light = np.sort(photo[y, x].astype(np.float64), axis=1)[:, _TRIMMED:-_TRIMMED].mean(axis=1)

@@ -16,6 +16,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Floats, Images, Reals
 from lightcube.optics.transfer import Transfer, decode, encode
+from lightcube.pictures.projective import homography, projected
 from lightcube.scoring.metrics import delta_e, psnr, ssim
 
 #: Points along each side of a pixel at which a photograph is looked at.
@@ -115,19 +116,8 @@ def straightened(photo: Floats, corners_px: Reals, shape: tuple[int, int]) -> Re
     rows, columns = shape
     place = homography(np.array([[0, 0], [columns, 0], [columns, rows], [0, rows]], np.float64), corners_px)
     across, along = ((np.arange(count * _POINTS) + 0.5) / _POINTS for count in (columns, rows))
-    grid = np.stack([*np.meshgrid(across, along), np.ones((len(along), len(across)))], axis=-1)
-    points = grid @ place.T
-    values = _between(photo, points[..., :2] / points[..., 2:] - 0.5)
+    values = _between(photo, projected(place, np.stack(np.meshgrid(across, along), axis=-1)) - 0.5)
     return np.asarray(values.reshape(rows, _POINTS, columns, _POINTS, -1).mean(axis=(1, 3)))
-
-
-def homography(before: Reals, after: Reals) -> Reals:
-    """The projection ``(3, 3)`` that takes four points ``(4, 2)`` to four others."""
-    rows = []
-    for (x, y), (u, v) in zip(before, after, strict=True):
-        rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y, -u], [0, 0, 0, x, y, 1, -v * x, -v * y, -v]]
-    matrix = np.linalg.svd(np.array(rows))[2][-1].reshape(3, 3)
-    return np.asarray(matrix / matrix[2, 2])
 
 
 def _between(photo: Floats, points: Reals) -> Reals:
