@@ -150,6 +150,18 @@ def test_numbers_of_films_are_bounded(name: str) -> None:
         replace(Films(), **many)
 
 
+def test_the_screen_stands_where_it_can_where_that_matters() -> None:
+    """Through the middle of the stack no wall can stand; parallel light of one lamp alone does not care."""
+    films = Films(3, 9.0)
+    near = tuple(lc.Lamp(each.name, position_mm=tuple(-400 * np.array(each.direction))) for each in ANY)
+    wide = tuple(replace(lamp, size_deg=1.0) for lamp in ANY)
+    both = [("spring", "summer"), ("summer",), ("autumn",), ("winter",)]
+    for lamps, lit, low_mm in ((ANY, [], 0), (near, [], -9), (wide, [], -9), (ANY, both, -9)):
+        stage = attenuator(NAMES, films, lamps=lamps, lit=lit)
+        assert stage.screen("wall").centre_mm[2] == low_mm
+    assert attenuator(NAMES, replace(films, screen_mm=20.0)).screen("wall").centre_mm[2] == -29
+
+
 def test_cubes_have_no_films_to_move() -> None:
     stage = attenuator(NAMES, moves=[Move(name, shift_mm=((k, 0),) + ((0, 0),) * 4) for k, name in enumerate(NAMES)])
     with pytest.raises(InputError, match="only the films of a stack are moved"):

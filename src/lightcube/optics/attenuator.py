@@ -50,8 +50,8 @@ class Films:
     index
         Index of refraction of what is between the films: 1 = air, 1.49 = acrylic.
     screen_mm
-        From the lowest film to the screen below; None = through the stack's middle, as good as any under parallel
-        light, or the lowest film where a lamp is near.
+        From the lowest film to the screen below; None = through the stack's middle, as good as any under the parallel
+        light of one lamp, or the lowest film where a lamp is near or has a size, or several are lit at once.
 
     Raises
     ------
@@ -166,9 +166,10 @@ def attenuator(
     rows, columns = films.picture_shape(aspect)
     each = zip(names, [WALL] * len(names), shown, range(len(names)), placed, strict=True)
     shots = tuple(Shot(*one) for one in each)
-    near = any(lamp.position_mm is not None for lamp in given)
+    # parallel light of one lamp casts the same picture at any distance; other light a wall must stand in
+    where = any(lamp.position_mm is not None or lamp.size_deg for lamp in given) or any(len(each) > 1 for each in shown)
     lowest = float(films.heights[0])
-    low_mm = (lowest if near else 0.0) if films.screen_mm is None else lowest - films.screen_mm
+    low_mm = (lowest if where else 0.0) if films.screen_mm is None else lowest - films.screen_mm
     size_mm = columns * films.pixel_mm, rows * films.pixel_mm
     screen = Screen(WALL, (0.0, 0.0, low_mm), size_mm, films.pixel_mm, normal=(0.0, 0.0, 1.0), up=(0.0, 1.0, 0.0))
     bare = Stack((len(films.heights), 1, 1), films.cell_mm, heights_mm=tuple(films.heights.tolist()), index=films.index)
