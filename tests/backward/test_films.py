@@ -88,9 +88,9 @@ def test_films_are_no_darker_than_ink_can_be(density: float) -> None:
 
 def test_pictures_stand_films_that_lie_off_where_that_was_asked_for(solved: lc.Cube) -> None:
     """At places that were not asked for; what it costs is the pictures as designed."""
-    held = lc.solve(*wanted(), lc.Recipe(passes=60, assembly_mm=0.5)).cube
-    off = np.zeros((8, 3, 3))
-    off[..., :2] = 0.5 * np.random.default_rng(77).standard_normal((8, 3, 2))
+    held = lc.solve(*wanted(), lc.Recipe(passes=25, assembly_mm=0.5)).cube
+    off = np.zeros((6, 3, 3))
+    off[..., :2] = 0.5 * np.random.default_rng(77).standard_normal((6, 3, 2))
 
     def seen(cube: lc.Cube) -> float:
         rigs = (misplaced(cube.rig, cube.grid, each) for each in off)  # type: ignore[arg-type]

@@ -13,8 +13,9 @@ from lightcube.optics.disturbance import DISTURBANCES, FILMS_OFF, SAID, FilmsOff
 from lightcube.optics.moves import misplaced
 from lightcube.optics.stack import Stack
 from lightcube.pictures.fitting import targets_of
-from lightcube.scoring.films import absorbance, coverage, disturbed, robust
+from lightcube.scoring.films import absorbance, coverage, disturbed
 from lightcube.scoring.metrics import score
+from lightcube.scoring.robust import robust
 from tests.helpers import films as plain
 
 NAMES = ["one", "two", "three"]
@@ -103,6 +104,7 @@ def test_dot_gain_makes_films_darker_and_levels_hardly_change_them(cube: lc.Cube
 
 
 def test_what_is_told_is_worse_than_what_was_made_and_better_relit(cube: lc.Cube) -> None:
+    """Asked of the function that is for cubes: of films it tells what films suffer."""
     told: list[tuple[int, int]] = []
     found = robust(cube, targets_of(cube), callback=lambda done, of: told.append((done, of)))
     assert set(found) == set(FILMS_OFF) <= set(SAID)
@@ -114,12 +116,6 @@ def test_what_is_told_is_worse_than_what_was_made_and_better_relit(cube: lc.Cube
         assert left["relit_mean"] >= left["psnr_mean"] - 1e-9, name
     assert found["shifted-more"]["psnr_mean"] < found["shifted"]["psnr_mean"]
     assert found["ink"]["relit_mean"] > found["ink"]["psnr_mean"] + 1
-
-
-def test_a_cube_of_films_is_scored_as_films(cube: lc.Cube) -> None:
-    from lightcube.scoring.robust import robust as of_any
-
-    assert of_any(cube, targets_of(cube)) == robust(cube, targets_of(cube))
 
 
 @pytest.mark.parametrize(
