@@ -103,7 +103,7 @@ def test_pieces_are_bodies_and_not_cavities() -> None:
         (("a.stl", "front.png", "side.png", "--walls"), "three walls take three pictures"),
         (("a.stl", "front.png", "side.png", "top.png", "--walls", "--angles-deg", "1,2,3"), "is for a turntable"),
         (("cube.zarr", "--walls"), "cube.zarr knows how its pictures were cut out"),
-        (("cube.zarr", "a", "b"), "several pictures are for meshes"),
+        (("cube.zarr", "a", "b"), "which takes pictures one by one of meshes only"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(
