@@ -8,6 +8,7 @@ import pytest
 
 import lightcube as lc
 from lightcube.backward.job import Job
+from lightcube.backward.needs import job_memory
 from lightcube.backward.store import MemoryStore
 from lightcube.errors import InputError
 from lightcube.optics.attenuator import Films, attenuator
@@ -137,3 +138,15 @@ def test_films_are_clear_where_no_light_goes_through(solved: lc.Cube) -> None:
     assert 0.05 < np.mean(~met) < 0.8
     assert np.all(solved.extinction[:, ~met] == 0)
     assert np.mean(solved.extinction[:, met] > 0) > 0.5
+
+
+def test_memory_counts_all_rectangles_of_a_pixel() -> None:
+    """Lamps anywhere cut pixels into many; on a lattice they are as many as cells."""
+    aslant = tuple(lc.Lamp(f"p{k}", direction=(0.31 - 0.5 * k, 0.17 + 0.1 * k, -1.0)) for k in range(2))
+    films = replace(FILMS, pixels=48, size_mm=240.0)
+    few, many = (Job(*wanted(films, lamps=lamps), lc.Recipe(passes=5)) for lamps in ((), aslant))
+    parts = [lc.Projector(job.grid, job.targets.rig.squared(1.0)).parts for job in (few, many)]
+    assert parts[1] > 5 * parts[0]
+    more = job_memory(many) - job_memory(few)
+    beams = 2 * 48 * 32 * (parts[1] - parts[0])
+    assert 12 * beams < more < 100 * beams

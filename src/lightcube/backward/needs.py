@@ -13,7 +13,10 @@ from lightcube.backward.units import coarse_shape, coarser, split
 from lightcube.backward.wishes import asked
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Rig
+from lightcube.optics.stack import Stack
 from lightcube.pictures.targets import Targets
+from lightcube.projection.projector import Projector
 from lightcube.solvers.method import Method
 
 #: Bytes that a job may need unless it is said: a fixed number, so that cubes do not depend on machines.
@@ -124,13 +127,14 @@ def job_memory(job: Job) -> int:
     rig = job.targets.rig
     every, views = asked(rig, job.grid, job.recipe).rig, rig.views
     steepest = float(np.max(np.abs(views.elevations_deg)))
-    per_stop = -(-len(every.views) // len(views))
-    mixed = 0 if rig.fading.is_none else _MIXED * len(every.views) * math.prod(every.picture_shape)
+    parts = _parts(job.grid, every)
+    per_stop, beams = -(-len(every.views) // len(views)) * parts, len(every.views) * math.prod(every.picture_shape)
+    mixed = 0 if rig.fading.is_none and parts == 1 else _MIXED * beams * parts
     kept = 0 if job.start is None else job.start.nbytes
     return (
         mixed
         + kept
-        + _dyes_memory(job, len(every.views) * math.prod(every.picture_shape))
+        + _dyes_memory(job, beams * parts)
         + memory_needed(
             job.recipe.solver,
             job.grid,
@@ -138,7 +142,7 @@ def job_memory(job: Job) -> int:
             len(views),
             0.0 if job.level else steepest or _ANY,
             per_stop=per_stop,
-            sums=None if len(every) == len(every.views) else -(-len(every) // len(rig)),
+            sums=None if len(every) == len(every.views) and parts == 1 else -(-len(every) // len(rig)),
             levels=job.levels,
             apart=views.slices_a_row(job.grid),
             units=job.units,
@@ -146,6 +150,11 @@ def job_memory(job: Job) -> int:
             dtype=job.recipe.dtype,
         )
     )
+
+
+def _parts(grid: Grid, rig: Rig) -> int:
+    """How many beams a pixel of a view has: the rectangles of films, or 1."""
+    return Projector(grid, rig).parts if isinstance(grid, Stack) else 1
 
 
 def _dyes_memory(job: Job, beams: int) -> int:
@@ -233,5 +242,6 @@ def _seconds_of_products(problem: Problem) -> float:
 def _work(job: Job, targets: Targets, grid: Grid) -> tuple[float, float]:
     """Of a pass, multiply-adds but for a factor (beams times the voxels that one runs through), and numbers at hand."""
     every = asked(targets.rig, grid, job.recipe).rig
-    pixels = len(every.views) * math.prod(every.picture_shape) * job.channels
-    return pixels * max(grid.shape[1:]), pixels + job.channels * math.prod(grid.shape)
+    pixels = len(every.views) * math.prod(every.picture_shape) * _parts(grid, every) * job.channels
+    met = grid.shape[0] if isinstance(grid, Stack) else max(grid.shape[1:])
+    return pixels * met, pixels + job.channels * math.prod(grid.shape)

@@ -21,6 +21,7 @@ from lightcube.jobs.partial import begun_units
 from lightcube.optics.attenuator import Films, attenuator
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.stack import Stack
 from lightcube.planning.plan import Plan, plan, plan_stage
 from lightcube.planning.prediction import as_json
 from lightcube.planning.rehearsals import Rehearsals
@@ -239,6 +240,7 @@ def _speed(made: Job) -> Speed:
         made.level,
         made.channels,
         made.kinds,
+        isinstance(made.grid, Stack),
     ]
     known, name = io.Remembered(), sha256(json.dumps(["speed", *asked]).encode()).hexdigest()
     if kind and name in known:
