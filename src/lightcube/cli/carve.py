@@ -4,9 +4,8 @@ from typing import Annotated
 
 import typer
 
-from lightcube import io
 from lightcube.cli.console import done, out, telling
-from lightcube.cli.hull import CARVE, DEEP, DRAIN, OUTS
+from lightcube.cli.hull import CARVE, DEEP, DRAIN, OUTS, shape_files
 from lightcube.cli.options import JSON, OVERWRITE, threaded
 from lightcube.events import Progress
 from lightcube.solids.carving import Carving
@@ -51,9 +50,7 @@ def carve(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Take material out of a finished shape, all over or where a brush or a ray says; its shadows stay."""
-    files = [io.Output(output, "shape", overwrite) for output in dict.fromkeys(outputs)]
-    for file in files:
-        file.check()
+    files = shape_files(outputs, overwrite=overwrite)
     with telling("carve", as_json=as_json) as tell:
         found = carving.carved(
             shape, carve, wall_mm=wall, drain_mm=drain, deep=keep_deep, where=where, rays=ray or (), undo=undo_to

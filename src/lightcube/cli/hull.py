@@ -123,9 +123,7 @@ def hull(
     as_json: Annotated[bool, JSON] = False,
 ) -> None:
     """Carve the largest solid whose shadows stay within silhouettes: a mesh to print, or a shape, by suffix."""
-    files = [io.Output(output, "shape", overwrite) for output in dict.fromkeys(outputs)]
-    for file in files:
-        file.check()
+    files = shape_files(outputs, overwrite=overwrite)
     beside = _beside(overlay, outline, overwrite=overwrite)
     how = making.Making(repair, wall, carve, keep_deep, drain, arguments.base_mm(base))
     angles = None if angles_deg is None else arguments.numbers(angles_deg, "--angles-deg")
@@ -185,6 +183,14 @@ def hull(
     kept = next((output for output in outputs if io.is_shape(output)), None)
     look = "add -o NAME.shape.zarr, and lightcube view" if kept is None else f"lightcube view {kept}"
     out.print(f"to look at it between its walls: {look}" + ("" if kept else " shows that"))
+
+
+def shape_files(outputs: list[str], *, overwrite: bool) -> list[io.Output]:
+    """Where a shape goes, each place once, checked."""
+    files = [io.Output(output, "shape", overwrite) for output in dict.fromkeys(outputs)]
+    for file in files:
+        file.check()
+    return files
 
 
 def _beside(

@@ -250,10 +250,11 @@ def _flows(share: float) -> str:
 
 def _rests(stops: int, course: Course, cube: Cube) -> str:
     rest_s, all_s = course.rest / course.fps, stops * course.seconds
-    what = "pictures" if isinstance(cube.grid, Stack) else "stops"
+    what, then = "stops", ", and the table turns in the dark to the next"
+    if isinstance(cube.grid, Stack):
+        what, then = "pictures", ", and the next one is made ready in the dark"
     many = f"at each of {stops} {what}" if stops > 1 else "on the one stop"
-    next_one = "the next picture is made ready" if isinstance(cube.grid, Stack) else "the table turns"
-    dark = f", and {next_one} in the dark{' to the next' * (not isinstance(cube.grid, Stack))}" if stops > 1 else ""
+    dark = then if stops > 1 else ""
     return (
         f"{all_s:.0f} s: {many} the lamp fades in, rests for {rest_s:.2g} s and fades out, as a wall shows it under a "
         f"lamp that is dimmed{dark}"

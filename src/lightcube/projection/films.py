@@ -41,6 +41,7 @@ class Middles:
     level = False
     shape: tuple[int, int]
     parts = 1
+    areas = None
 
     def __init__(self, stack: Stack, rig: Rig) -> None:
         _check_size(stack)
@@ -94,14 +95,14 @@ class Rectangles:
     ----------
     parts
         How many rectangles each pixel has, some of which may be empty.
-    light
+    areas
         ``(views * parts, columns * rows)``: the part of its pixel's area that each has, float32.
     """
 
     level = False
     shape: tuple[int, int]
     parts: int
-    light: Floats
+    areas: Floats
 
     def __init__(self, stack: Stack, rig: Rig) -> None:
         _check_size(stack)
@@ -122,8 +123,8 @@ class Rectangles:
         self._stripes = _stripes(found, sides, (ny, nx))
         self.parts = across.shape[1] * along.shape[1]
         area = wide[:, :, None, :, None] * high[:, None, :, None, :]
-        self.light = area.reshape(len(rig.views) * self.parts, columns * rows).astype(np.float32)
-        self.shape = (self.light.size, films * ny * nx)
+        self.areas = area.reshape(len(rig.views) * self.parts, columns * rows).astype(np.float32)
+        self.shape = (self.areas.size, films * ny * nx)
 
     def forward(self, x: Floats) -> Floats:
         """``A @ x`` of a contiguous block of columns."""

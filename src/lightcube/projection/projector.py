@@ -35,9 +35,14 @@ _MOST_COLUMNS = 1000
 
 
 class Engine(Protocol):
-    """What multiplies by a matrix, of which `shape` and `level` are as a `Projector`'s."""
+    """What multiplies by a matrix, of which `shape`, `level`, `parts` and `areas` are as a `Projector`'s."""
 
     level: bool
+    parts: int
+
+    @property
+    def areas(self) -> Floats | None:
+        """Of rectangles, the part of its pixel's area that each has."""
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -192,12 +197,12 @@ class Projector:
     @property
     def parts(self) -> int:
         """How many beams each pixel of a view has, which follow each other: 1, or so many rectangles."""
-        return getattr(self._engine, "parts", 1)
+        return self._engine.parts
 
     @property
     def areas(self) -> Floats | None:
         """``(views * parts, columns * rows)``: the part of its pixel's area that each rectangle has; None of beams."""
-        return getattr(self._engine, "light", None)
+        return self._engine.areas
 
     @property
     def view_of_row(self) -> Counts:

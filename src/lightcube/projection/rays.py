@@ -34,6 +34,8 @@ class Rays:
     """
 
     level = False
+    parts = 1
+    areas = None
     grid: Grid
     shape: tuple[int, int]
 

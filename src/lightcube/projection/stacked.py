@@ -46,6 +46,8 @@ class StackedBeams:
     beams: NDArray[np.float64]
     rise: int
     level: bool
+    parts = 1
+    areas = None
     shape: tuple[int, int]
 
     def __init__(self, grid: Grid, views: Views, heard: Flags | None = None) -> None:

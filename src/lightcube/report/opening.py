@@ -32,25 +32,24 @@ class Heading:
     note: str = ""
 
 
-def titled(kind: str, heading: Heading) -> list[str]:
-    """What kind of thing it is, what it is called, by whom and when it was made."""
+def headed(kind: str, heading: Heading, lead: str) -> list[str]:
+    """What kind of thing it is, what it is called, by whom and when it was made, what it is, and whom it is for."""
     lines = [text("p", kind, class_="kind"), text("h1", heading.title)]
     signed = " · ".join(filter(None, (heading.by, heading.date)))
-    return [*lines, text("p", signed, class_="signed")] if signed else lines
+    lines += [text("p", signed, class_="signed")] * bool(signed)
+    lines.append(text("p", lead, class_="lead"))
+    return [*lines, text("p", heading.note, class_="dedication")] if heading.note else lines
 
 
 def opening(found: Findings, heading: Heading) -> str:
     """Title, date, what it is, and the cube in its room."""
     cube = found.cube
     is_stack = isinstance(cube.grid, Stack)
-    lines = titled("Stack of films" if is_stack else "Light cube", heading)
+    lines = headed("Stack of films" if is_stack else "Light cube", heading, _what(found))
     if cube.status != "complete":
         what = "stack" if is_stack else "cube"
         warning = f"This {what} is unfinished: its solver was stopped early, or it is still being made."
         lines.insert(0, text("p", warning, class_="warning"))
-    lines.append(text("p", _what(found), class_="lead"))
-    if heading.note:
-        lines.append(text("p", heading.note, class_="dedication"))
     there = _first_shown(cube)
     stop = told_apart(cube.rig)[0] if is_stack else f"the table at {round(cube.angles_deg[0], 2):g}°"
     what, lit = ("films", "films") if is_stack else ("cube", "glass")

@@ -12,7 +12,7 @@ from lightcube.drawing.relief_sheet import as_seen, in_words
 from lightcube.optics.arrays import Reals
 from lightcube.optics.transfer import to_uint8
 from lightcube.report.html import element, figure, image, number, pairs, plain, sideways, table, text
-from lightcube.report.opening import Heading, titled
+from lightcube.report.opening import Heading, headed
 from lightcube.report.page import Origin, document, read_files, written_by
 from lightcube.report.printed import print_tiles
 from lightcube.scoring import relief_facts
@@ -94,10 +94,7 @@ def _head(found: ReliefFindings, heading: Heading) -> str:
         f"{number(found.scores['psnr_mean'], 1)} dB of what was wanted on average, "
         f"{number(found.scores['psnr_min'], 1)} at worst; from near by to {number(found.scores['near_psnr_mean'], 1)}."
     )
-    lines = [*titled("Relief", heading), text("p", lead, class_="lead")]
-    if heading.note:
-        lines.append(text("p", heading.note, class_="dedication"))
-    return "\n".join(lines)
+    return "\n".join(headed("Relief", heading, lead))
 
 
 def _pictures(found: ReliefFindings) -> str:

@@ -11,7 +11,7 @@ from lightcube.drawing.blame import COLOURS, blame_maps
 from lightcube.drawing.overlay import tile
 from lightcube.optics.arrays import Flags, Reals
 from lightcube.report.html import element, figure, image, number, pairs, sideways, table, text
-from lightcube.report.opening import Heading, titled
+from lightcube.report.opening import Heading, headed
 from lightcube.report.page import Origin, document, read_files, recorded
 from lightcube.report.printed import print_tiles
 from lightcube.scoring.wall_shares import wall_shares
@@ -89,10 +89,7 @@ def _head(found: ShapeFindings, heading: Heading) -> str:
         f"{nx} × {ny} × {nz} voxels, and its mesh, cast triangle by triangle, overlaps what it was made for by "
         f"{cast.overlap.mean():.2%}."
     )
-    lines = [*titled("Shape", heading), text("p", lead, class_="lead")]
-    if heading.note:
-        lines.append(text("p", heading.note, class_="dedication"))
-    return "\n".join(lines)
+    return "\n".join(headed("Shape", heading, lead))
 
 
 def _shadows(found: ShapeFindings) -> str:
