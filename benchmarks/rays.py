@@ -51,13 +51,13 @@ def views(n: int, count: int, pixels: int, *, point: bool) -> Views:
 
 def traversal(*data: Any) -> int:
     """Number of all pieces, found by tracing them."""
-    found = np.zeros(len(data[0]) * data[2][0], np.int64)
+    found = np.zeros(len(data[0]) * data[3][0], np.int64)
     tasks.run(_traversal, len(found), _LONG, *data, found)
     return int(found.sum())
 
 
 @compiled
-def _traversal(first_line, last_line, lamps, screens, shape, heard, grid, found):  # type: ignore[no-untyped-def]
+def _traversal(first_line, last_line, lamps, screens, lines, shape, heard, grid, found):  # type: ignore[no-untyped-def]
     nz, ny, nx = grid
     state, traced = np.zeros((FIELDS, ABREAST)), paper(0, most_pieces(nx, ny, nz), np.empty(0, np.float32))
     for line in range(first_line, last_line):
@@ -66,6 +66,7 @@ def _traversal(first_line, last_line, lamps, screens, shape, heard, grid, found)
             row, met = trace_rows(
                 lamps[line // shape[0]],
                 screens[line // shape[0]],
+                lines[0],
                 heard[line],
                 line % shape[0],
                 row,
@@ -119,7 +120,7 @@ def rows(kind: str, matrix: Rays) -> Iterator[str]:
     """Lines of the table, for one thread and for all."""
     x = np.random.default_rng(1).random((matrix.shape[1], 3), dtype=np.float32)
     b = matrix.forward(x)
-    data = matrix._lamps, matrix._screens, matrix._picture, matrix._heard, matrix.grid.shape
+    data = *matrix._rays, matrix._picture, matrix._heard, matrix.grid.shape
     pieces = traversal(*data)
     for threads in sorted({1, tasks.threads()}):
         tasks.set_threads(threads)

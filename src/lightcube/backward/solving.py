@@ -153,7 +153,7 @@ def check_targets(targets: Targets, grid: Grid) -> None:
     from lightcube.projection.stacked import is_stacked  # here: the compiler comes with it
 
     rig = targets.rig
-    if not np.all(rig.screens.endless) or not is_stacked(grid, rig.views):
+    if rig.glass is not None or not np.all(rig.screens.endless) or not is_stacked(grid, rig.views):
         return
     rows, columns = rig.picture_shape
     pixel, elevations_deg = rig.views.pixel_in(grid), set(rig.views.elevations_deg.tolist())

@@ -16,6 +16,7 @@ Array = NDArray[Any]
 def trace_all(
     lamps: Array,
     screens: Array,
+    lines: Array,
     shape: tuple[int, int],
     heard: Array,
     grid: Triple,
@@ -36,7 +37,7 @@ def trace_all(
     for index in range(len(offsets) - 1):
         count = 0
         if heard[index // shape[1], index % shape[1]]:
-            count = trace(lamps, screens, shape, index, grid, scale, tall, p, w)
+            count = trace(lamps, screens, lines, shape, index, grid, scale, tall, p, w)
         if len(places) == 0:
             offsets[index + 1] = offsets[index] + count
         else:

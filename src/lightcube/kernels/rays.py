@@ -7,6 +7,10 @@ with ``corner, right, up = screens[view]``. Where ``lamps[view, 3]`` is 0 its ra
 high; directions are of length 1 in voxels' widths, their part along z in slices. ``heard`` says which pixels count:
 the equations of the others are empty.
 
+Where light is bent, ``lines``, ``(views * width, height, 6)``, has for each pixel where its ray enters and leaves what
+bends it, in voxels, and lamps and screens are not asked; else it is ``(1, 0, 6)``. ``boxes`` then has for each view and
+brick which pixels may meet it, ``(views, bricks, 4)``, else it is ``(1, 0, 4)``.
+
 Rays of a picture column are traced eight at a time. Forward, each gathers what it meets. Backward, each task owns a
 brick of voxels and walks the rays that meet it, view by view: no two threads write the same number, and sums do not
 depend on how many threads there are. Voxels are numbered by 32 bits.
@@ -50,10 +54,23 @@ def _ray(lamp: Array, screen: Array, column: int, row: int, low: Triple, tall: f
     return px, py, pz, dx / length, dy / length, dz / length, -length, 0.0
 
 
+@compiled(inline="always")
+def _piece(line: Array, low: Triple, tall: float) -> Ray:
+    """The ray from a place to another, seen from the corner `low` of a brick."""
+    dx, dy, dz = line[3] - line[0], line[4] - line[1], line[5] - line[2]
+    high = dz * tall
+    length = math.sqrt(dx * dx + dy * dy + high * high)
+    if length == 0.0:
+        return NO_RAY
+    px, py, pz = line[0] - low[0], line[1] - low[1], line[2] - low[2]
+    return px, py, pz, dx / length, dy / length, dz / length, 0.0, length
+
+
 @compiled
 def trace(
     lamps: Array,
     screens: Array,
+    lines: Array,
     shape: tuple[int, int],
     index: int,
     grid: Triple,
@@ -66,7 +83,12 @@ def trace(
     width, height = shape
     nz, ny, nx = grid
     view, pixel = index // (width * height), index % (width * height)
-    ray = _ray(lamps[view], screens[view], pixel // height, pixel % height, (0, 0, 0), tall)
+    own, column, row = lines[index // height % len(lines)], pixel // height, pixel % height
+    ray = (
+        _piece(own[row], (0, 0, 0), tall)
+        if len(own)
+        else _ray(lamps[view], screens[view], column, row, (0, 0, 0), tall)
+    )
     shifts = np.empty_like(places)
     count = trace_one(ray, (nx, ny, nz), (nz, nx * nz, 1), scale, places, shifts, weights)
     places[:count] += shifts[:count]
@@ -77,6 +99,7 @@ def trace(
 def trace_rows(
     lamp: Array,
     screen: Array,
+    lines: Array,
     heard: Array,
     column: int,
     row: int,
@@ -91,12 +114,13 @@ def trace_rows(
 ) -> tuple[int, int]:
     """Trace the rays of the pixels from `row` to before `top` of a column that are heard, as many as go abreast.
 
-    Returns the row to go on with, and how many rays meet the block; ``traced.rays`` are their rows.
+    `lines` are the column's, of which there are none where light is straight. Returns the row to go on with, and how
+    many rays meet the block; ``traced.rays`` are their rows.
     """
     met = 0
     while row < top:
         if heard[row]:
-            ray = _ray(lamp, screen, column, row, low, tall)
+            ray = _piece(lines[row], low, tall) if len(lines) else _ray(lamp, screen, column, row, low, tall)
             if met + parts_of(ray) > ABREAST:
                 break
             for _ in range(enter(ray, size, scale, state, met)):
@@ -147,6 +171,7 @@ def _scatter(x: Array, traced: Traced, lane: int, values: Array) -> None:
 def forward(
     lamps: Array,
     screens: Array,
+    lines: Array,
     shape: tuple[int, int],
     heard: Array,
     grid: Triple,
@@ -157,7 +182,7 @@ def forward(
 ) -> None:
     """``b = A x``; every number of `b` is written. `heard`, ``(views * width, height)``, is 0 where none counts."""
     work = _work(heard, grid)
-    tasks.run(_forward, len(lamps) * shape[0], work, lamps, screens, shape, heard, grid, scale, tall, x, b)
+    tasks.run(_forward, len(lamps) * shape[0], work, lamps, screens, lines, shape, heard, grid, scale, tall, x, b)
 
 
 def _work(heard: Array, grid: Triple) -> int:
@@ -171,6 +196,7 @@ def _forward(
     last: int,
     lamps: Array,
     screens: Array,
+    lines: Array,
     shape: tuple[int, int],
     heard: Array,
     grid: Triple,
@@ -186,12 +212,12 @@ def _forward(
     state, traced = np.zeros((FIELDS, ABREAST)), paper(0, most_pieces(nx, ny, nz), x)
     for line in range(first, last):
         lamp, screen, column = lamps[line // width], screens[line // width], line % width
-        sums = b[line * height : (line + 1) * height]
+        own, sums = lines[line % len(lines)], b[line * height : (line + 1) * height]
         sums[:] = 0
         row = 0
         while row < height:
             row, met = trace_rows(
-                lamp, screen, heard[line], column, row, height, whole, size, strides, scale, tall, state, traced
+                lamp, screen, own, heard[line], column, row, height, whole, size, strides, scale, tall, state, traced
             )
             for lane in range(met):
                 _gather(x, traced, lane, sums[traced.rays[lane]])
@@ -200,7 +226,9 @@ def _forward(
 def adjoint(
     lamps: Array,
     screens: Array,
+    lines: Array,
     shadows: Array,
+    boxes: Array,
     shape: tuple[int, int],
     heard: Array,
     grid: Triple,
@@ -215,7 +243,8 @@ def adjoint(
     times a number, which is above 0 where the point lies between lamp and screen or beyond the screen.
     """
     bricks = math.prod((side + BRICK - 1) // BRICK for side in grid)
-    tasks.run(_adjoint, bricks, _work(heard, grid), lamps, screens, shadows, shape, heard, grid, scale, tall, b, x)
+    data = lamps, screens, lines, shadows, boxes, shape, heard
+    tasks.run(_adjoint, bricks, _work(heard, grid), *data, grid, scale, tall, b, x)
 
 
 @compiled
@@ -224,7 +253,9 @@ def _adjoint(
     last: int,
     lamps: Array,
     screens: Array,
+    lines: Array,
     shadows: Array,
+    boxes: Array,
     shape: tuple[int, int],
     heard: Array,
     grid: Triple,
@@ -250,12 +281,18 @@ def _adjoint(
         low, size, strides = (low_x, low_y, low_z), (size_x, size_y, size_z), (nz, nx * nz, 1)
         for view in range(len(lamps)):
             lamp, screen = lamps[view], screens[view]
-            left, right, bottom, top = _shadow(shadows[view], shape, low, size)
+            box = boxes[view % len(boxes)]
+            if len(box):
+                left, right, bottom, top = box[brick, 0], box[brick, 1], box[brick, 2], box[brick, 3]
+            else:
+                left, right, bottom, top = _shadow(shadows[view], shape, low, size)
             for column in range(left, right):
                 line, row = view * width + column, bottom
                 while row < top:
+                    own = lines[line % len(lines)]
                     row, met = trace_rows(
-                        lamp, screen, heard[line], column, row, top, low, size, strides, scale, tall, state, traced
+                        *(lamp, screen, own, heard[line], column, row, top, low, size, strides, scale, tall),
+                        *(state, traced),
                     )
                     for lane in range(met):
                         _scatter(brick_x, traced, lane, b[line * height + traced.rays[lane]])
@@ -282,3 +319,51 @@ def _shadow(shadow: Array, shape: tuple[int, int], low: Triple, size: Triple) ->
         int(min(max(math.floor(bottom - 1e-6), 0.0), most)),
         int(min(max(math.ceil(top + 1e-6) + 1, 0.0), float(shape[1]))),
     )
+
+
+def boxes(lines: Array, heard: Array, shape: tuple[int, int], grid: Triple) -> Array:
+    """Which pixels of each view may meet each brick, ``(views, bricks, 4)``: as `_shadow` says of straight light."""
+    bricks = tuple((side + BRICK - 1) // BRICK for side in grid[::-1])
+    found = np.empty((len(lines) // shape[0], math.prod(bricks), 4), np.int64)
+    tasks.run(_boxes, len(found), 20 * heard.size * math.prod(bricks), lines, heard, shape, grid, bricks, found)
+    return found
+
+
+@compiled
+def _boxes(
+    first: int,
+    last: int,
+    lines: Array,
+    heard: Array,
+    shape: tuple[int, int],
+    grid: Triple,
+    bricks: Triple,
+    found: Array,
+) -> None:
+    """Do views `first` to before `last`."""
+    width, height = shape
+    sides = (grid[2], grid[1], grid[0])
+    for view in range(first, last):
+        found[view, :, 0], found[view, :, 1], found[view, :, 2], found[view, :, 3] = width, 0, height, 0
+        for column in range(width):
+            for row in range(height):
+                if not heard[view * width + column, row]:
+                    continue
+                line = lines[view * width + column, row]
+                for brick in range(found.shape[1]):
+                    place = (brick % bricks[0], brick // bricks[0] % bricks[1], brick // (bricks[0] * bricks[1]))
+                    enters, leaves = 0.0, 1.0
+                    for axis in range(3):
+                        low = place[axis] * BRICK - 1e-6
+                        high = min((place[axis] + 1) * BRICK, sides[axis]) + 1e-6
+                        way = line[3 + axis] - line[axis]
+                        if abs(way) < 1e-300:
+                            if not low < line[axis] < high:
+                                leaves = -1.0
+                        else:
+                            one, two = (low - line[axis]) / way, (high - line[axis]) / way
+                            enters, leaves = max(enters, min(one, two)), min(leaves, max(one, two))
+                    if enters <= leaves:
+                        box = found[view, brick]
+                        box[0], box[1] = min(box[0], column), max(box[1], column + 1)
+                        box[2], box[3] = min(box[2], row), max(box[3], row + 1)

@@ -17,6 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 from lightcube.errors import InputError
 from lightcube.kernels.layout import columns_from_pictures
 from lightcube.optics.grid import PARALLEL
+from lightcube.optics.refraction import bent
 from lightcube.optics.rig import Rig
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ class Mixture:
         picture = rig.sums.picture[views]
         starts = np.searchsorted(picture, np.arange(picture[0], picture[-1] + 2))
         share = rig.sums.of_colours(channels)[views, colours]
-        if rig.fading.is_none:
+        if rig.fading.is_none and rig.glass is None:
             return cls(starts, share, *np.ones((2, len(picture), 1), np.float32))
         light, shadow = (
             columns_from_pictures(each[:, rows, :, None]).reshape(len(picture), -1)
@@ -151,7 +152,9 @@ def falling_light(rig: Rig, chosen: Sequence[int] | None = None) -> tuple[NDArra
     With u the unit direction of the beam through the pixel at q, n the screen's normal and l the place of a point lamp:
     ``g = (full_at / |q - l|)^2 |u.n|``, each factor only where it is asked for, and
     ``a = exp(-max(0, u.q - reach) / falloff)``, a factor for the lamp and one for the screen. ``u.q`` is how far
-    the light travels from where it is nearest to the cube's centre to the screen.
+    the light travels from where it is nearest to the cube's centre to the screen. Glass lets some light pass beside it,
+    which has no shadow, and some through it (`lightcube.optics.refraction`): then g is their sum, times that above, and
+    a the latter's part of it.
     """
     views, fading = rig.views, rig.fading
     rows, columns = views.picture_shape
@@ -160,6 +163,10 @@ def falling_light(rig: Rig, chosen: Sequence[int] | None = None) -> tuple[NDArra
     numbers = range(len(views)) if chosen is None else chosen
     light = np.ones((len(numbers), rows, columns), np.float32)
     shadow = np.ones_like(light)
+    if rig.glass is not None:
+        found = bent(rig, numbers)
+        light[:] = found.beside + found.through
+        shadow[:] = np.divide(found.through, light, where=light > 0, out=np.ones_like(light))
     for k, v in enumerate(numbers):
         asked = fading.cosine[v], np.isfinite(fading.full_at_mm[v]), np.isfinite(fading.reach_mm[v])
         if not np.any(np.hstack(asked)):

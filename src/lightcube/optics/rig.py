@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Counts, Flags, Indices, Numbers, Reals, as_indices, as_numbers, locked
 from lightcube.optics.checks import check_fields, checked
+from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.tables import (
     POWER_MAX,
@@ -49,6 +50,8 @@ _SAME_STOP = 1e-6
 _SAME_PIXEL = 1e-6
 #: A part of a vector smaller than this is none.
 _NONE = 1e-9
+#: A screen stands so many times as far as the focus of round glass, at least.
+_BEYOND = 1.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +68,9 @@ class Rig:
         Of each picture.
     lamps, screens
         What stands in the room.
+    glass
+        What bends the light on its way to the voxels; None = nothing. Where each colour has an index of refraction each
+        view is of one colour.
 
     Raises
     ------
@@ -88,6 +94,7 @@ class Rig:
     stops: Stops
     lamps: Lamps
     screens: Screens
+    glass: Glass | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -101,6 +108,32 @@ class Rig:
         for numbers, names in ((self.sums.lamp, self.lamps.names), (self.stops.screen, self.screens.names)):
             if np.any((numbers < 0) | (numbers >= len(names))):
                 raise InputError("a rig's lamps and screens must be numbers of the names that it has, from 0")
+        if self.glass is not None:
+            self._check_glass(self.glass)
+
+    def _check_glass(self, glass: Glass) -> None:
+        """Raise `InputError` where light cannot be followed through the glass."""
+        if np.any(self.views.lamps[:, 3] != 0):
+            raise InputError("glass bends parallel light only: give its lamps a direction, not a place")
+        if len(glass.iors) > 1 and np.any(np.sum(self.sums.share > 0, axis=1) > 1):
+            raise InputError("with an index of refraction for each colour a rig's views must be of one colour each")
+        if glass.is_round and glass.bends:
+            light = self._light
+            ahead = light if glass.form == "sphere" else light * (1.0, 1.0, 0.0)
+            away = np.sum(self.views.origins_mm * ahead, axis=1) / np.linalg.norm(ahead, axis=1)
+            least = _BEYOND * glass.focus_mm(light)
+            if np.any(away < least):
+                view = int(np.argmax(least - away))
+                raise InputError(
+                    f"a screen {away[view]:.4g} mm behind the axis is within the focus of the {glass.form}, where "
+                    f"several beams meet: stand it at least {least[view]:.4g} mm behind the axis"
+                )
+
+    @property
+    def _light(self) -> Reals:
+        """``(views, 3)``: unit directions of parallel light."""
+        light = self.views.lamps[:, :3]
+        return np.asarray(light / np.linalg.norm(light, axis=1, keepdims=True))
 
     @classmethod
     @checked
@@ -181,6 +214,7 @@ class Rig:
             len(self.views) == len(self)
             and np.all(self.sums.share == 1)
             and self.fading.is_none
+            and self.glass is None
             and not np.any(self.sums.square)
         )
 
@@ -195,7 +229,8 @@ class Rig:
     def mirrors(self) -> bool:
         """Whether half a turn of the table shows every picture mirrored: level light, and screens that go with it.
 
-        Not where lamps have a disc: half a turn on, what was near the screen, and sharp, is far from it.
+        Not where lamps have a disc: half a turn on, what was near the screen, and sharp, is far from it. Nor where
+        glass bends the light, but for a bath with flat sides.
         """
         axis = self.turning.axis / np.linalg.norm(self.turning.axis)
         light, across = (
@@ -204,7 +239,8 @@ class Rig:
         )
         upright = np.linalg.norm(np.cross(self.views.row_steps_mm, axis), axis=1)
         return bool(
-            np.all(self.turning.turns)
+            (self.glass is None or self.glass.form == "bath")
+            and np.all(self.turning.turns)
             and np.all(self.turning.way[:, 0] == self.turning.way[:, 1])
             and np.all(self.views.lamps[:, 3] == 0)
             and np.all(self.sums.disc_deg == 0)
@@ -246,7 +282,8 @@ class Rig:
         taken = self._with_views(self.views_of(chosen))
         counts = np.diff(self.starts)[chosen]
         sums = replace(taken.sums, picture=np.repeat(np.arange(len(chosen)), counts))
-        return Rig(taken.views, sums, taken.fading, taken.turning, _taken(self.stops, chosen), self.lamps, self.screens)
+        stops = _taken(self.stops, chosen)
+        return replace(taken, sums=sums, stops=stops)
 
     def _with_views(self, chosen: Counts) -> Rig:
         """Some of the views, which may be of no picture in order: to be given new ones."""
@@ -267,7 +304,15 @@ class Rig:
         pictures, number = np.unique(self.sums.picture[chosen], return_inverse=True)
         taken = self._with_views(chosen)
         sums, stops = replace(taken.sums, picture=number), _taken(self.stops, pictures)
-        return Rig(taken.views, sums, taken.fading, taken.turning, stops, self.lamps, self.screens)
+        return replace(taken, sums=sums, stops=stops)
+
+    def by_colour(self, channels: int) -> Rig:
+        """Each view as one of each colour, so that these may go different ways."""
+        each = self._with_views(np.repeat(np.arange(len(self.views)), channels))
+        share = self.sums.of_colours(channels).repeat(channels, axis=0)
+        alone = np.tile(np.eye(channels), (len(self.views), 1))
+        picture = self.sums.picture.repeat(channels)
+        return replace(each, sums=replace(each.sums, share=share * alone, picture=picture), stops=self.stops)
 
     def squared(self, side: float) -> Rig:
         """The same with pixels that show means over squares of a side in pixels, exactly; for films only."""
@@ -356,7 +401,7 @@ class Rig:
             disc_deg=np.zeros(len(kept)),
         )
         views = replace(views, lamps=lamps, origins_mm=origins_mm)
-        return Rig(views, sums, copied.fading, copied.turning, self.stops, self.lamps, self.screens)
+        return replace(copied, views=views, sums=sums, stops=self.stops)
 
     @checked
     def shifted(self, offsets: NDArray[np.integer]) -> Rig:
@@ -387,8 +432,11 @@ class Rig:
             return self
         views, light = self.views, self.views.lamps[:, :3]
         normals = np.cross(views.column_steps_mm, views.row_steps_mm)
-        behind = np.sum(views.origins_mm * normals, axis=1) / np.sum(light * normals, axis=1)
-        middles_mm = behind[:, None] * light
+        start = np.zeros((len(views), 3))
+        if self.glass is not None:
+            start[:, 2] = self.glass.rise_mm(self._light)
+        behind = np.sum((views.origins_mm - start) * normals, axis=1) / np.sum(light * normals, axis=1)
+        middles_mm = start + behind[:, None] * light
         off = -views.place_of(middles_mm)  # of the pictures, pixels right and down
         pixels = np.rint(off)
         rest = np.where(np.abs(off - pixels) < _SAME_PIXEL, 0.0, off - pixels)
@@ -418,9 +466,16 @@ class Rig:
         )  # of the disc's points, for each mm that light goes behind the cube
         wider = behind * aside + np.hypot(*grid.shape[1:]) / 2 * (np.hypot(1, aside) - 1)
         rows, columns = raster_shape(grid, float(np.max(np.degrees(raised + wide))), (high, across))
+        columns = columns if self.glass is None else math.ceil(columns * self._wider(self.glass))
         beyond = (np.max(higher) / high, np.max(wider) / across)
         more_rows, more_columns = (2 * math.ceil(float(each) - _NONE) for each in beyond)
         return rows + more_rows, columns + more_columns
+
+    def _wider(self, glass: Glass) -> float:
+        """How many times as wide as straight light a round body shows itself on its screens, at least 1."""
+        if not (glass.is_round and glass.bends):
+            return 1.0
+        return max(1.0, float(np.max(self.behind_mm / glass.focus_mm(self._light))) - 1)
 
     @property
     def behind_mm(self) -> Reals:
@@ -456,6 +511,7 @@ def turntable(
     black: float = BLACK,
     lamp_deg: float = 0.0,
     screen_mm: float | None = None,
+    glass: Glass | None = None,
 ) -> Rig:
     """A cube on a turntable in parallel light, before a vertical screen with rows and columns whole voxels apart.
 
@@ -473,11 +529,14 @@ def turntable(
         Of the lamp and the screen, as `Rig.of` takes them.
     lamp_deg, screen_mm
         Of a lamp with a disc and its screen, as `soft` takes them; 0 = the lamp has none.
+    glass
+        What bends the light: a body, or bath, around the grid; None = nothing.
 
     Notes
     -----
     Parallel light casts the same picture on every parallel screen, so the screen's plane is put through the
-    cube's centre, unless the lamp has a disc. The picture's middle is where the beam through that centre lands.
+    cube's centre, unless the lamp has a disc or there is glass. The picture's middle is where the beam through that
+    centre lands; of a block of glass, where it would land without.
 
     Examples
     --------
@@ -494,10 +553,33 @@ def turntable(
     >>> lc.turntable(lc.Grid((4, 6, 6)), [0, 90], pixel=2).picture_shape
     (2, 5)
     """
-    check_lamp(lamp_deg, screen_mm)
+    bends = glass is not None and (glass.bends or glass.is_bath)
+    check_lamp(lamp_deg, screen_mm, matters=bends)
     views = turntable_views(grid, angles_deg, elevation_deg=elevation_deg, picture_shape=picture_shape, pixel=pixel)
     sharp = Rig.of(views, power=power, power_max=power_max, black=black)
+    if glass is not None and bends:
+        sharp = in_glass(sharp, grid, glass, screen_mm)
     return soft(sharp, grid, lamp_deg, screen_mm) if lamp_deg else sharp
+
+
+def in_glass(rig: Rig, grid: Grid, glass: Glass, screen_mm: float | None = None) -> Rig:
+    """A turntable's rig with glass around the grid, and its screens so far behind it that pictures come out well.
+
+    Parameters
+    ----------
+    screen_mm
+        As `soft` takes it; default three widths behind a block, and one and a half behind what is round.
+    """
+    body = glass.around(grid)
+    light, views = rig._light, rig.views
+    behind_mm = body.far_mm if screen_mm is None else swept_mm(grid) + screen_mm
+    further = (behind_mm - rig.behind_mm) / np.linalg.norm(light[:, :2], axis=1)
+    origins_mm = views.origins_mm + further[:, None] * light
+    origins_mm[:, 2] += body.rise_mm(light)
+    moved = replace(rig, views=replace(views, origins_mm=origins_mm))
+    if len(set(body.iors)) > 1:
+        moved = moved.by_colour(len(body.iors))
+    return replace(moved, glass=body)
 
 
 def soft(rig: Rig, grid: Grid, lamp_deg: float, screen_mm: float | None = None) -> Rig:
@@ -519,6 +601,8 @@ def soft(rig: Rig, grid: Grid, lamp_deg: float, screen_mm: float | None = None) 
             "screen too: raise it less, or make it smaller"
         )
     wanted_mm = swept_mm(grid) + (grid.size_mm[1] if screen_mm is None else screen_mm)
+    if rig.glass is not None and screen_mm is None:
+        wanted_mm = rig.glass.far_mm
     light = rig.views.lamps[:, :3]
     further = (wanted_mm - rig.behind_mm) / np.linalg.norm(light[:, :2], axis=1)
     views = replace(rig.views, origins_mm=rig.views.origins_mm + further[:, None] * light)

@@ -272,13 +272,16 @@ def swept_mm(grid: Grid) -> float:
     return math.hypot(*grid.shape[1:]) / 2 * grid.voxel_mm
 
 
-def check_lamp(lamp_deg: float, screen_mm: float | None) -> None:
-    """Raise `InputError` unless a lamp can have such a disc, and a screen stand so far behind the cube."""
+def check_lamp(lamp_deg: float, screen_mm: float | None, *, matters: bool = False) -> None:
+    """Raise `InputError` unless a lamp can have such a disc, and a screen stand so far behind the cube.
+
+    Where the distance of a screen `matters` it may be said of lamps without a disc too.
+    """
     if not 0 <= lamp_deg < 90:
         raise InputError(f"a lamp's disc has an angular diameter from 0 to below 90 degrees, not {lamp_deg:g}")
     if screen_mm is None:
         return
-    if not lamp_deg:
+    if not (lamp_deg or matters):
         raise InputError(
             "how far away the screen stands changes nothing unless the lamp has a size: give its angular diameter too"
         )

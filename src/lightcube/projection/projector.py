@@ -21,6 +21,7 @@ from lightcube.kernels.layout import (
 from lightcube.optics.arrays import Counts, Flags, Floats, Reals, as_numbers
 from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
+from lightcube.optics.refraction import bent
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 from lightcube.optics.views import Views, check_reach
@@ -335,6 +336,8 @@ def _engine(grid: Grid, rig: Rig | Views, heard: Flags | None) -> Engine:
     from lightcube.projection.rays import Rays
     from lightcube.projection.stacked import StackedBeams, is_stacked
 
+    if isinstance(rig, Rig) and rig.glass is not None:
+        return Rays(grid, rig.views, heard, bent(rig))
     views = rig if isinstance(rig, Views) else rig.views
     return StackedBeams(grid, views, heard) if is_stacked(grid, views) else Rays(grid, views, heard)
 

@@ -1,4 +1,4 @@
-"""The matrix of rays in any direction: parallel or from a point, onto screens in any position."""
+"""The matrix of rays in any direction: parallel or from a point, onto screens in any position, and bent by glass."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from lightcube.kernels.layout import empty
 from lightcube.kernels.ray import MOST_PARTS, most_pieces
 from lightcube.kernels.ray_matrix import trace_all
 from lightcube.optics.grid import Grid
+from lightcube.optics.refraction import Bent
 from lightcube.optics.views import Views
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ class Rays:
     heard
         ``(views, rows, columns)`` bool: the pixels that count; the rows of the others in the matrix are empty.
         None = all.
+    bent
+        Where rays go in glass: only what they run through it counts; None = all is straight.
     """
 
     level = False
@@ -39,7 +42,9 @@ class Rays:
     grid: Grid
     shape: tuple[int, int]
 
-    def __init__(self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None) -> None:
+    def __init__(
+        self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None, bent: Bent | None = None
+    ) -> None:
         if math.prod(grid.shape) > _MOST_VOXELS:
             raise InputError(
                 f"a cube of {math.prod(grid.shape):,} voxels is too large for rays in any direction, which number "
@@ -63,18 +68,37 @@ class Rays:
         listening = np.ones((len(views), rows, columns), bool) if heard is None else heard
         lines = listening[:, ::-1].transpose(0, 2, 1).reshape(len(views) * columns, rows)
         self._heard = np.ascontiguousarray(lines, np.uint8)
+        self._lines, self._boxes = np.empty((1, 0, 6)), np.empty((1, 0, 4), np.int64)
+        if bent is not None:
+            self._bend(bent)
         self.shape = (len(views) * columns * rows, int(np.prod(grid.shape)))
+
+    def _bend(self, bent: Bent) -> None:
+        """Let each pixel have the piece of its ray inside the glass; where there is none it is not heard."""
+        middle = np.array(self.grid.shape[::-1]) / 2
+        pieces = np.concatenate([each / self.grid.sides_mm + middle for each in (bent.enters_mm, bent.leaves_mm)], -1)
+        rows = self._picture[1]
+        by_column = (each[:, ::-1].swapaxes(1, 2) for each in (pieces, bent.through > 0))
+        self._lines, lit = (np.ascontiguousarray(each).reshape(-1, rows, *each.shape[3:]) for each in by_column)
+        self._heard *= lit
+        self._boxes = rays.boxes(self._lines, self._heard, self._picture, self.grid.shape)
+
+    @property
+    def _rays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """What the kernels find the pixels' rays by."""
+        return self._lamps, self._screens, self._lines
 
     def forward(self, x: Floats) -> Floats:
         """``A @ x`` of a contiguous block of columns."""
         b = empty((self.shape[0], x.shape[1]), x.dtype)
-        rays.forward(self._lamps, self._screens, self._picture, self._heard, self.grid.shape, *self._sides, x, b)
+        rays.forward(*self._rays, self._picture, self._heard, self.grid.shape, *self._sides, x, b)
         return b
 
     def adjoint(self, b: Floats) -> Floats:
         """``A.T @ b`` of a contiguous block of columns."""
         x = empty((self.shape[1], b.shape[1]), b.dtype)
-        data = self._lamps, self._screens, shadow_matrices(self._lamps, self._screens), self._picture, self._heard
+        shadows = shadow_matrices(self._lamps, self._screens)
+        data = *self._rays, shadows, self._boxes, self._picture, self._heard
         rays.adjoint(*data, self.grid.shape, *self._sides, b, x)
         return x
 
@@ -85,7 +109,7 @@ class Rays:
         unknowns, lengths = np.empty(most, np.int64), np.empty(most)
         if not self._heard.reshape(-1)[index]:
             return unknowns[:0], lengths[:0]
-        data = self._lamps, self._screens, self._picture, index, self.grid.shape, *self._sides
+        data = *self._rays, self._picture, index, self.grid.shape, *self._sides
         count = rays.trace(*data, unknowns, lengths)
         return unknowns[:count], lengths[:count]
 
@@ -93,7 +117,7 @@ class Rays:
         """Return the same matrix, float64."""
         from scipy.sparse import csr_array  # here: it takes longer to load than a small cube to play
 
-        data = self._lamps, self._screens, self._picture, self._heard, self.grid.shape, *self._sides
+        data = *self._rays, self._picture, self._heard, self.grid.shape, *self._sides
         offsets = np.zeros(self.shape[0] + 1, np.int64)
         trace_all(*data, offsets, np.empty(0, np.int64), np.empty(0))
         unknowns, lengths = np.empty(offsets[-1], np.int64), np.empty(offsets[-1])

@@ -10,7 +10,6 @@ from lightcube.optics.arrays import Floats, Images, Reals
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture, shown_light
 from lightcube.optics.rig import Rig
-from lightcube.optics.stack import Stack
 from lightcube.projection.projector import Projector
 
 #: Views that are computed together at least: enough for all threads; and pixels at most, to bound memory.
@@ -44,8 +43,7 @@ def shadows(
     begun = None
     for batch in _batches(rig):
         own = picture[batch]
-        lit = rig.of_views(batch) if isinstance(grid, Stack) else rig.views.take(batch)
-        matrix = Projector(grid, lit, None if all_inside else rig.inside[own])
+        matrix = Projector(grid, rig.of_views(batch), None if all_inside else rig.inside[own])
         absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
         mixture = Mixture.of(rig, channels, colours, rows, batch).in_parts(matrix.parts, matrix.areas)
         light = shown_light(mixture, powers[batch].repeat(matrix.parts, axis=0), absorbance, shape)

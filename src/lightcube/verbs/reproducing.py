@@ -332,13 +332,20 @@ def _disc(cube: Cube, angles_deg: NDArray[np.float64]) -> list[str] | None:
     return None
 
 
-def _made(cube: Cube, angles_deg: NDArray[np.float64], **disc: float) -> Rig:
-    """A turntable of the cube's elevation and pictures at these angles."""
+def _made(cube: Cube, angles_deg: NDArray[np.float64], lamp_deg: float = 0.0, screen_mm: float | None = None) -> Rig:
+    """A turntable of the cube's elevation, glass and pictures at these angles."""
     views = cube.rig.views
     elevation_deg = float(views.elevations_deg[0])
     shape = views.picture_shape
     return turntable(
-        cube.grid, angles_deg, elevation_deg=elevation_deg, picture_shape=shape, pixel=_pixel(cube), **disc
+        cube.grid,
+        angles_deg,
+        elevation_deg=elevation_deg,
+        picture_shape=shape,
+        pixel=_pixel(cube),
+        lamp_deg=lamp_deg,
+        screen_mm=screen_mm,
+        glass=cube.rig.glass,
     )
 
 
