@@ -1,4 +1,4 @@
-"""The plain second opinion on glass, against numbers that Mitsuba 3 made (`tests/forward/mitsuba/glass.py`)."""
+"""Glass, and the plain second opinion on it, against numbers that Mitsuba 3 made (`tests/forward/mitsuba/glass.py`)."""
 
 from functools import cache
 from pathlib import Path
@@ -8,6 +8,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from lightcube.forward.casting import cast
+from lightcube.optics.cube import Cube
+from lightcube.optics.glass import Glass
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import turntable
 from tests.helpers.plain_glass import Block, Body, Cylinder, Sphere, absorbance, traced
 
 NUMBERS = Path(__file__).parents[1] / "forward" / "mitsuba" / "glass.npz"
@@ -55,6 +60,22 @@ def test_a_block_of_glass_shows_what_mitsuba_sees(view: int) -> None:
     square, bias = chi_square(view, 1.5)
     assert 0.8 < square < 1.2
     assert abs(bias) < 0.002
+
+
+@pytest.mark.parametrize("view", [0, 1])
+def test_what_is_cast_is_what_mitsuba_sees(view: int) -> None:
+    """The room of the same block, made anew by its angle and elevation alone; straight light is far off."""
+    own = stored()
+    grid = Grid(own["extinction"].shape, float(own["voxel_mm"]))
+    angle_deg = float(own["block_angles_deg"][view])
+    shape = own["block_shown"].shape[1:]
+    chi = []
+    for glass in (Glass(1.5), None):
+        rig = turntable(grid, [angle_deg], elevation_deg=35.0, picture_shape=shape, glass=glass)
+        off = next(cast(Cube(own["extinction"][None].astype(np.float32), grid, rig)))[..., 0] - own["block_shown"][view]
+        chi.append(float(np.mean(off**2 / own["block_variance"][view])))
+    assert 0.85 < chi[0] < 1.15
+    assert chi[1] > 20
 
 
 def test_another_index_is_seen() -> None:
