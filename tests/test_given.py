@@ -42,6 +42,7 @@ GIVEN: dict[str, dict[str, Any]] = {
     "Cube": {"extinction": CUBE.extinction, "grid": GRID, "rig": RIG},
     "Films": {},
     "Dyes": {"names": ("a", "b"), "extinction": np.array([[1.0, 2, 3], [3, 2, 1]])},
+    "Glass": {},
     "Grid": {"shape": (3, 5, 7)},
     "Label": {"title": "a"},
     "Lamp": {"name": "sun", "direction": (1, 0, -0.5)},

@@ -34,6 +34,7 @@ __getattr__, __dir__, __all__ = when_used(
         "Grid": "optics.grid",
         "Films": "optics.attenuator",
         "attenuator": "optics.attenuator",
+        "Glass": "optics.glass",
         "Light": "optics.light",
         "Material": "optics.material",
         "Move": "optics.moves",

@@ -26,6 +26,7 @@ from lightcube.jobs.reading import load
 from lightcube.optics.attenuator import Films, attenuator
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
+from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
@@ -74,6 +75,7 @@ __all__ = [
     "Cube",
     "Dyes",
     "Films",
+    "Glass",
     "Grid",
     "InputError",
     "Label",

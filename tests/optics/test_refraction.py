@@ -61,7 +61,9 @@ def landed(rig: Rig, form: Form, glass: Glass, seed: int) -> tuple[list[plain.Tr
         ahead = np.array([light[0], light[1], 0]) / np.hypot(light[0], light[1])
         turn = np.stack([ahead, [-ahead[1], ahead[0], 0], [0, 0, 1]])
     normal = np.cross(views.column_steps_mm[0], views.row_steps_mm[0])
-    kept, places, bright = [], [], []
+    kept: list[plain.Traced] = []
+    places: list[Reals] = []
+    bright: list[float] = []
     while len(kept) < BEAMS:
         start = random.uniform(-1, 1, 3) * 0.5 * np.array([glass.radius_mm * 2, glass.radius_mm * 2, 8.0])
         beam = plain.traced(body, turn @ start, turn @ light, glass.iors[0])

@@ -20,6 +20,7 @@ _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "shape": lambda text: arguments.whole_numbers(text, ",", "--shape", 3),
     "focus": lambda text: arguments.two_numbers(text, "--focus"),
     "angles_deg": lambda text: arguments.numbers(text, "--angles-deg"),
+    "ior": lambda text: arguments.numbers(text, "--ior"),
     "grain": lambda text: arguments.number_or_auto(text, "--grain"),
     "material": read_dyes,
 }

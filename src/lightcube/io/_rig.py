@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import fields
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from lightcube.optics.glass import Glass
 from lightcube.optics.rig import Rig
 from lightcube.optics.tables import Fading, Lamps, Screens, Stops, Sums, Turning
 from lightcube.optics.views import Views
@@ -82,6 +83,16 @@ class _ScreensJson(BaseModel):
     endless: list[bool]
 
 
+class _GlassJson(BaseModel):
+    model_config = _STRICT
+
+    ior: Annotated[list[_Number], Field(min_length=1, max_length=3)]
+    form: Literal["block", "cylinder", "sphere", "bath", "round-bath"]
+    bottom: Literal["open", "blocked"]
+    bath_mm: _Number | None
+    size_mm: Annotated[list[_Number | None], Field(min_length=3, max_length=3)]
+
+
 class RigJson(BaseModel):
     """`lightcube.optics.rig.Rig`, one list per array; infinity, which JSON has not, is null."""
 
@@ -94,10 +105,11 @@ class RigJson(BaseModel):
     stops: _StopsJson
     lamps: _LampsJson
     screens: _ScreensJson
+    glass: _GlassJson | None = None
 
     def rig(self) -> Rig:
         """Return the same as arrays; `InputError` where they do not fit each other."""
-        said = {name: _infinite(part) for name, part in self.model_dump().items()}
+        said = {name: _infinite(part) for name, part in self.model_dump(exclude={"glass"}).items()}
         views = said["views"]
         made = Views(**{**views, "picture_shape": tuple(views["picture_shape"])})
         return Rig(
@@ -108,12 +120,30 @@ class RigJson(BaseModel):
             Stops(**{**said["stops"], "films": np.array(said["stops"]["films"], np.float64)}),
             Lamps(**said["lamps"]),
             Screens(**said["screens"]),
+            None if self.glass is None else _glass(self.glass),
         )
 
 
 def rig_to_json(rig: Rig) -> dict[str, Any]:
     """`rig` as plain JSON values; every number comes back bit for bit."""
-    return {each.name: _plain(getattr(rig, each.name)) for each in fields(rig)}
+    tables = (each.name for each in fields(rig) if each.name != "glass")
+    said = {name: _plain(getattr(rig, name)) for name in tables}
+    return said if rig.glass is None else said | {"glass": _finite_glass(rig.glass)}
+
+
+def _finite_glass(glass: Glass) -> dict[str, Any]:
+    """A glass that is around a grid as plain JSON."""
+    return {each.name: _finite(_listed(getattr(glass, each.name))) for each in fields(glass)}
+
+
+def _listed(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _glass(said: _GlassJson) -> Glass:
+    """The same as a value."""
+    x, y, z = (math.inf if side is None else side for side in said.size_mm)
+    return Glass(tuple(said.ior), said.form, said.bottom, said.bath_mm, (x, y, z))
 
 
 def _plain(part: Any) -> dict[str, Any]:

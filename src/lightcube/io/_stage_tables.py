@@ -10,6 +10,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 from pydantic_core import PydanticCustomError
 
 from lightcube.errors import InputError
+from lightcube.optics.glass import Bottom, Form
 from lightcube.optics.transfer import decode
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import Fit
@@ -64,6 +65,15 @@ class TurntableTable(Table):
     def angles_deg(self) -> tuple[float, ...]:
         """Of the stops, degrees."""
         return self.stops_deg if self.count is None else tuple(spread_angles(self.count, 360.0).tolist())
+
+
+class GlassTable(Table):
+    """What bends the light, as `lightcube.optics.glass.Glass`, which checks what its numbers may be."""
+
+    ior: Number | tuple[Number, Number, Number] = 1.5
+    form: Form = "block"
+    bottom: Bottom = "open"
+    bath_mm: Number | None = None
 
 
 class LampTable(Table):
@@ -146,3 +156,4 @@ class StageFile(Table):
     lamp: tuple[LampTable, ...] = ()
     screen: tuple[ScreenTable, ...] = ()
     picture: tuple[PictureTable, ...] = ()
+    glass: GlassTable | None = None

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -15,6 +15,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Reals
 from lightcube.optics.checks import check_fields
+from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
 from lightcube.optics.moves import Move, moved
@@ -197,6 +198,8 @@ class Stage:
         Whether the table carries the cube.
     material
         What bounds the extinction of this block; None = as the recipe says.
+    glass
+        What bends the light on its way to the voxels; None = nothing.
 
     Raises
     ------
@@ -212,6 +215,7 @@ class Stage:
     axis: Vector = (0.0, 0.0, 1.0)
     cube_turns: bool = True
     material: Material | None = None
+    glass: Glass | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -276,6 +280,9 @@ class Stage:
             Lamps(tuple(lamps), least, most),
             Screens(tuple(screens), np.array([each.black for each in self.screens]), np.zeros(len(screens), np.bool_)),
         )
+        if self.glass is not None and (self.glass.bends or self.glass.is_bath):
+            body = self.glass.around(self.grid)
+            standing = replace(standing.by_colour(3) if len(set(body.iors)) > 1 else standing, glass=body)
         if isinstance(self.grid, Stack):
             standing = moved(standing, self.grid, [shot.move for shot in self.shots])
         return standing.turned([self.stops_deg[shot.stop] for shot in self.shots])

@@ -9,6 +9,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Numbers, Reals, keep
 from lightcube.optics.checks import check_fields, checked
+from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.tables import POWER_MAX, check_black, power_bounds
@@ -19,6 +20,8 @@ from lightcube.wording import counted
 
 #: Elevation of the lamp, in degrees, where nothing says another: it holds most (measured).
 RAISED_DEG = 35.0
+#: The same of round glass, whose light goes further down on its way to the screen (measured).
+ROUND_DEG = 20.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +36,8 @@ class Turntable:
     span_deg
         Degrees over which angles are spread evenly, instead of those that came with the pictures.
     elevation_deg
-        Of the lamp, in degrees; default the one that came with the pictures, else 35.
+        Of the lamp, in degrees; default the one that came with the pictures, else 35, and 20 behind round glass. Of a
+        bath it is outside.
     power, power_max
         Power of the lamp where it is fixed, and its largest where it is not, as `lightcube.optics.rig.Rig.of` has them.
     black
@@ -45,7 +49,10 @@ class Turntable:
         than what it shows.
     screen_mm
         How far behind the circle that the turning cube's corners sweep the screen stands, mm, where the lamp has a
-        disc; default the cube's width. Without a disc it does not matter.
+        disc, or there is glass; default the cube's width, and with glass as `lightcube.optics.rig.in_glass` has it.
+        Else it does not matter.
+    glass
+        What bends the light: the clear body of the cube, or its bath; None = nothing.
 
     Examples
     --------
@@ -64,6 +71,7 @@ class Turntable:
     lamp_deg: float = 0.0
     screen_mm: float | None = None
     pixel: int = 1
+    glass: Glass | None = None
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -82,12 +90,13 @@ class Turntable:
             check_elevation(self.elevation_deg)
         power_bounds(self.power, self.power_max)
         check_black(self.black)
-        check_lamp(self.lamp_deg, self.screen_mm)
+        check_lamp(self.lamp_deg, self.screen_mm, matters=self.glass is not None)
 
     def elevation_of(self, pictures: Pictures) -> float:
         """Elevation of the lamp that pictures are shown with, degrees."""
         said = pictures.elevation_deg if self.elevation_deg is None else self.elevation_deg
-        return check_elevation(RAISED_DEG if said is None else said)
+        round_glass = self.glass is not None and self.glass.is_round
+        return check_elevation((ROUND_DEG if round_glass else RAISED_DEG) if said is None else said)
 
     @checked
     def rig(self, pictures: Pictures, grid: Grid, *, picture_width: float = 1.0) -> Rig:
@@ -122,13 +131,16 @@ class Turntable:
             black=self.black,
             lamp_deg=self.lamp_deg,
             screen_mm=self.screen_mm,
+            glass=self.glass,
         )
 
     def _angles(self, pictures: Pictures, elevation_deg: float) -> Reals:
         """One angle per picture: those asked for, else those that came along, else spread evenly."""
         angles_deg = pictures.angles_deg if self.angles_deg is None and self.span_deg is None else self.angles_deg
         if angles_deg is None:
-            return distinct_angles(spread_angles(len(pictures), self.span_deg, elevation_deg=elevation_deg))
+            lens = self.glass is not None and self.glass.is_round  # half a turn on, it shows no mirror image
+            span_deg = 360.0 if lens and self.span_deg is None else self.span_deg
+            return distinct_angles(spread_angles(len(pictures), span_deg, elevation_deg=elevation_deg))
         chosen = distinct_angles(angles_deg)
         if len(chosen) != len(pictures):
             raise InputError(

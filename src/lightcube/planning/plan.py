@@ -363,7 +363,8 @@ def narrower(planned: Plan, width: float) -> Targets:
         elevation_deg=rig.elevation_deg,
         pixel=voxels_a_pixel(rig, planned.grid),
         lamp_deg=disc_deg,
-        screen_mm=max(0.0, float(rig.behind_mm[0]) - swept_mm(planned.grid)) if disc_deg else None,
+        screen_mm=max(0.0, float(rig.behind_mm[0]) - swept_mm(planned.grid)) if disc_deg or rig.glass else None,
+        glass=rig.glass,
     )
     narrow = said.rig(planned.pictures, planned.grid, picture_width=width)
     targets = fitted(planned.pictures, replace(narrow, lamps=rig.lamps, screens=rig.screens), planned.fit)

@@ -10,6 +10,7 @@ from lightcube.backward.recipe import Powers, Quality, Recipe
 from lightcube.errors import InputError
 from lightcube.optics.attenuator import Films
 from lightcube.optics.dyes import Dyes
+from lightcube.optics.glass import Bottom, Form, Glass
 from lightcube.optics.light import Beams, Light
 from lightcube.optics.material import Material
 from lightcube.optics.tables import power_bounds
@@ -32,7 +33,7 @@ FILM_MOST = 32
 #: What is said of cubes, and not of films.
 _NOT_OF_FILMS = (
     *("shape", "slices_tall", "picture_width", "hold_deg", "order", "shift", "mat", "elevation_deg", "span_deg"),
-    *("angles_deg", "paper", "lamp_deg", "screen_mm", "grain"),
+    *("angles_deg", "paper", "lamp_deg", "screen_mm", "grain", "ior", "form", "bottom", "bath_mm"),
 )
 
 #: What options are about, in the order in which people are told of them.
@@ -175,7 +176,11 @@ class Options:
     ] = None
     screen_mm: Annotated[
         float | None,
-        Option("Lamp", "With --lamp-deg: mm from the turning cube's reach to the wall.  [default: the cube's width]"),
+        Option(
+            "Lamp",
+            "With --lamp-deg or --ior: mm from the turning cube's reach to the wall.  [default: the cube's width; "
+            "behind glass further]",
+        ),
     ] = None
     black: Annotated[
         float | None,
@@ -196,6 +201,30 @@ class Options:
             "Solve for amounts of dyes, within what they can make: a material's file (TOML), or the name of one, as "
             "lightcube materials lists them.  [default: any colours]",
         ),
+    ] = None
+    ior: Annotated[
+        tuple[float, ...] | None,
+        Option(
+            "Material",
+            "Index of refraction of clear glass or resin around the voxels, 1 to 4, or R,G,B: light bends.  "
+            "[default: none; with --form 1.5]",
+        ),
+    ] = None
+    form: Annotated[
+        Form | None,
+        Option(
+            "Material",
+            "What the light enters: the block, a cylinder or sphere cut of it, or a bath around it, square or round.  "
+            "[default: block]",
+        ),
+    ] = None
+    bottom: Annotated[
+        Bottom | None,
+        Option("Material", "Whether light may leave a block of glass through its bottom.  [default: open]"),
+    ] = None
+    bath_mm: Annotated[
+        float | None,
+        Option("Material", "From side to side of a bath, in mm.  [default: 1.1 times what the cube sweeps]"),
     ] = None
     quality: Annotated[
         Quality | None, Option("Quality", "At most 30, 200 or 400 passes over all pictures.  [default: normal]")
@@ -267,6 +296,13 @@ class Options:
         return Films(self.films, pixels=cells // pixel, cells_a_pixel=pixel, **given)  # type: ignore[arg-type]
 
     @property
+    def glass(self) -> Glass | None:
+        """What bends the light, where that is said."""
+        said = {"ior": self.ior, "form": self.form, "bottom": self.bottom, "bath_mm": self.bath_mm}
+        given: dict[str, Any] = {name: value for name, value in said.items() if value is not None}
+        return Glass(**given) if given else None
+
+    @property
     def middle(self) -> tuple[float, float]:
         """What stays in the middle of cropped pictures; `InputError` where nothing is cropped, or it cannot be."""
         if self.focus is not None and self.fit != "crop":
@@ -309,10 +345,15 @@ class Options:
             )
         power_bounds(self.lamp_power, self.lamp_max)
         power = self.lamp_power if chooses or self.lamp_power is not None else 1.0
-        said = {"angles_deg": self.angles_deg, "power": power, "power_max": self.lamp_max, "black": self.black}
+        said: dict[str, Any] = {
+            "angles_deg": self.angles_deg,
+            "power": power,
+            "power_max": self.lamp_max,
+            "black": self.black,
+        }
         said |= {"span_deg": self.span_deg, "elevation_deg": self.elevation_deg}
-        said |= {"lamp_deg": self.lamp_deg, "screen_mm": self.screen_mm, "pixel": self.pixel}
-        return Turntable(**{name: value for name, value in said.items() if value is not None})  # type: ignore[arg-type]
+        said |= {"lamp_deg": self.lamp_deg, "screen_mm": self.screen_mm, "pixel": self.pixel, "glass": self.glass}
+        return Turntable(**{name: value for name, value in said.items() if value is not None})
 
     def as_in_the_paper(self) -> "Options":
         """The paper's own set-up; `InputError` where options contradict it."""
@@ -328,6 +369,8 @@ class Options:
             "--lamp-max": self.lamp_max,
             "--lamp-deg": self.lamp_deg or None,
             "--screen-mm": self.screen_mm,
+            "--ior": self.ior,
+            "--form": self.form,
             "--hold-deg": self.hold_deg,
             "--shift": self.shift or None,
             "--light": None if self.light == "thin" else self.light,

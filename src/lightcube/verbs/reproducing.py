@@ -21,6 +21,7 @@ from lightcube.errors import InputError, without_secrets
 from lightcube.optics.attenuator import Films
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
+from lightcube.optics.glass import Glass
 from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.stack import Stack
@@ -138,6 +139,8 @@ def _turntable_options(cube: Cube, command: Command) -> Iterator[str]:
     if pixel != 1:
         yield from ("--pixel", str(pixel))
     yield from ("--elevation-deg", _number(float(views.elevations_deg[0])))
+    if cube.rig.glass is not None:
+        yield from _glass(cube.rig.glass)
     said, angles_deg = _angles(cube)
     yield from said
     disc = _disc(cube, angles_deg)
@@ -204,6 +207,17 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from _passes(remembered(cube), command)
     elif quality != "normal":
         yield from ("--quality", quality)
+
+
+def _glass(glass: Glass) -> Iterator[str]:
+    """What bends the light."""
+    yield from ("--ior", _listed(np.array(glass.iors)))
+    if glass.form != "block":
+        yield from ("--form", glass.form)
+    if glass.bottom != "open":
+        yield from ("--bottom", glass.bottom)
+    if glass.bath_mm is not None:
+        yield from ("--bath-mm", _number(glass.bath_mm))
 
 
 def _material(dyes: Dyes, command: Command) -> str:
@@ -306,13 +320,13 @@ def _usual_units(cube: Cube, targets: Targets) -> int:
 
 def _angles(cube: Cube) -> tuple[list[str], NDArray[np.float64]]:
     """The option that gives the cube's angles, and what it gives: exactly them if any does."""
-    views = cube.rig.views
+    views = cube.rig.views.take(cube.rig.starts[:-1])
     angles_deg = views.angles_deg
     for offset in (1 / 2, 1 / 3):  # as `lightcube.optics.views.spread_angles` begins
         span_deg = round(float(angles_deg[0]) / offset * len(views), 6)
         if 0 < span_deg <= 360:
             spread_deg = spread_angles(len(views), span_deg)
-            if np.array_equal(_made(cube, spread_deg).views.lamps, views.lamps):
+            if np.array_equal(_made(cube, spread_deg).views.lamps, cube.rig.views.lamps):
                 return ["--span-deg", _number(span_deg)], spread_deg
     return ["--angles-deg", _listed(angles_deg)], np.round(angles_deg, _DIGITS)
 
@@ -320,9 +334,9 @@ def _angles(cube: Cube) -> tuple[list[str], NDArray[np.float64]]:
 def _disc(cube: Cube, angles_deg: NDArray[np.float64]) -> list[str] | None:
     """The options of the lamp's disc that give exactly the cube's lamps and screens at these angles, or None."""
     lamp_deg = float(cube.rig.sums.disc_deg[0])
-    if not lamp_deg:
+    if not lamp_deg and cube.rig.glass is None:
         return [] if _same(cube, _made(cube, angles_deg)) else None
-    said = ["--lamp-deg", _number(lamp_deg)]
+    said = ["--lamp-deg", _number(lamp_deg)] if lamp_deg else []
     if _same(cube, _made(cube, angles_deg, lamp_deg=lamp_deg)):
         return said
     away_mm = float(cube.rig.behind_mm[0]) - swept_mm(cube.grid)
