@@ -95,7 +95,11 @@ def designs(n: int = 40, count: int = 12, wide: int = 24) -> None:
 
 def large() -> None:
     """n = 64, sixteen photographs of 32 x 32: a block at 35 degrees and a cylinder at 20 beside straight light."""
-    for name, form, elevation_deg in (("straight", None, 35.0), ("block", "block", 35.0), ("cylinder", "cylinder", 20.0)):
+    for name, form, elevation_deg in (
+        ("straight", None, 35.0),
+        ("block", "block", 35.0),
+        ("cylinder", "cylinder", 20.0),
+    ):
         began = time.monotonic()
         cube = solved(room(form, elevation_deg, 360.0, IOR, 64, 16, 32), 64)  # type: ignore[arg-type]
         mean, worst = psnr(cube)
@@ -107,7 +111,11 @@ def speed() -> None:
     from lightcube.optics.light import judged
 
     grid, usual = lc.Grid((64,) * 3, 100 / 64), 0.0
-    for name, form, elevation_deg in (("straight", None, 35.0), ("block", "block", 35.0), ("cylinder", "cylinder", 20.0)):
+    for name, form, elevation_deg in (
+        ("straight", None, 35.0),
+        ("block", "block", 35.0),
+        ("cylinder", "cylinder", 20.0),
+    ):
         rig = judged(room(form, elevation_deg, 360.0, IOR, 64, 16, 32), grid)  # type: ignore[arg-type]
         matrix = lc.Projector(grid, rig)
         x = np.random.default_rng(1).random((matrix.shape[1], 3), np.float32)

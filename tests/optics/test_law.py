@@ -144,7 +144,7 @@ def test_a_part_of_a_rig_makes_a_part_of_the_mixture() -> None:
     columns = whole.shadow.reshape(len(light), rig.picture_shape[1], rig.picture_shape[0])
     assert np.array_equal(columns, shadow[:, ::-1].transpose(0, 2, 1))
     assert len(np.unique(columns[5])) > 5
-    some = Mixture.of(rig, 3, slice(1, 3), slice(1, 2), slice(2, int(starts[2]) + 1))
+    some = Mixture.of(rig.of_views(slice(2, int(starts[2]) + 1)), 3, slice(1, 3), slice(1, 2))
     assert some.starts.tolist() == [0, counts[0] - 2, counts[0] + counts[1] - 2, counts[0] + counts[1] - 1]
     assert np.array_equal(some.share, rig.sums.share[2 : starts[2] + 1, 1:])
     assert np.array_equal(some.light, light[2 : starts[2] + 1, 1])

@@ -228,6 +228,7 @@ def fingerprint(job: Job) -> Fingerprint:
         "voxels": f"{nz} x {ny} x {nx}",
         "voxel side": grid.voxel_mm if grid.tall == 1 else f"{grid.voxel_mm!r} wide and {grid.slice_mm!r} tall",
         **({"films": f"{grid.heights_mm} mm in {grid.index!r}"} if isinstance(grid, Stack) else {}),
+        **({} if targets.rig.glass is None else {"glass": repr(targets.rig.glass)}),
         "transfer": targets.transfer,
         **{_WORDS.get(name, name): value for name, value in job.recipe.plain().items()},
         "dyes": None if job.recipe.dyes is None else _digest(job.recipe.dyes.plain()),
@@ -269,8 +270,8 @@ def _said(value: str | float | None) -> str:
 
 
 def _arrays(rig: Rig) -> list[NDArray[Any]]:
-    """All of a rig as arrays."""
-    parts = [getattr(rig, each.name) for each in fields(rig)]
+    """All of a rig but its glass as arrays."""
+    parts = [getattr(rig, each.name) for each in fields(rig) if each.name != "glass"]
     return [np.asarray(getattr(part, each.name)) for part in parts for each in fields(part)]
 
 

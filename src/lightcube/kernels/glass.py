@@ -37,6 +37,8 @@ _NONE = 1e-12
 _EXACT, _MOST_STEPS = 1e-14, 60
 #: Nearer to the axis than this, as a part of the radius, things are as on it.
 _AXIS = 1e-9
+#: Beams that lie as near to each other, in voxels, are the same.
+_SAME = 1e-7
 _DARK = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -115,17 +117,17 @@ def landing(beta: float, ior: float, away: float) -> tuple[float, float, float, 
 
 
 @compiled
-def meeting(place: float, ior: float, away: float) -> float:
+def meeting(place: float, ior: float, away: float, guess: float) -> float:
     """How far off the axis the beam meets the disc that lands at `place`, at least 0; below 0 where none does.
 
-    The inverse of `landing`, for lines beyond the focus.
+    The inverse of `landing`, for lines beyond the focus. A `guess` above 0 is where the root is looked for first.
     """
     quarter = math.sqrt(0.5)
     r = math.atan2(quarter, ior - quarter)  # a beam that is turned by a right angle, where there is one
     low, high = 0.0, min(ior * math.sin(r), 1.0) if ior > math.sqrt(2.0) else 1.0
     if ior <= math.sqrt(2.0) and landing(high, ior, away)[0] <= place:
         return -1.0
-    beta = min(place / (away * 2 * (1 - 1 / ior) - 1), 0.9 * high)
+    beta = guess if 0 < guess < high else min(place / (away * 2 * (1 - 1 / ior) - 1), 0.9 * high)
     for _ in range(_MOST_STEPS):
         found, growth, _, _ = landing(beta, ior, away)
         if found > place:
@@ -140,7 +142,7 @@ def meeting(place: float, ior: float, away: float) -> float:
 
 
 @compiled
-def _through_cylinder(q: Array, d: Array, half: Array, ior: float, normal: Array) -> Beam:
+def _through_cylinder(q: Array, d: Array, half: Array, ior: float, normal: Array, last: Array) -> Beam:
     """The beam of a pixel behind a cylinder about z of radius ``half[0]`` that stands on something."""
     level = math.hypot(d[0], d[1])
     ahead_x, ahead_y = d[0] / level, d[1] / level
@@ -153,7 +155,7 @@ def _through_cylinder(q: Array, d: Array, half: Array, ior: float, normal: Array
         one, two = q[2] - slope * radius * (away + chord), q[2] - slope * radius * (away - chord)
         beside = 1.0 if min(one, two) > high or max(one, two) < -high else 0.0
     index = math.sqrt(ior * ior - d[2] * d[2]) / level
-    beta = meeting(abs(aside), index, away)
+    beta = last[0] = meeting(abs(aside), index, away, last[0])
     if beta < 0:
         return beside, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     _, growth, turn, leaves = landing(beta, index, away)
@@ -178,7 +180,7 @@ def _through_cylinder(q: Array, d: Array, half: Array, ior: float, normal: Array
 
 
 @compiled
-def _through_sphere(q: Array, d: Array, half: Array, ior: float, normal: Array) -> Beam:
+def _through_sphere(q: Array, d: Array, half: Array, ior: float, normal: Array, last: Array) -> Beam:
     """The beam of a pixel behind a sphere of radius ``half[0]``."""
     radius = half[0]
     away = (q[0] * d[0] + q[1] * d[1] + q[2] * d[2]) / radius
@@ -187,7 +189,7 @@ def _through_sphere(q: Array, d: Array, half: Array, ior: float, normal: Array) 
     beside = 1.0 if aside >= 1 else 0.0
     if aside > 0:
         x, y, z = x / aside, y / aside, z / aside
-    beta = meeting(aside, ior, away)
+    beta = last[0] = meeting(aside, ior, away, last[0])
     if beta < 0:
         return beside, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     _, growth, turn, leaves = landing(beta, ior, away)
@@ -206,15 +208,15 @@ def _through_sphere(q: Array, d: Array, half: Array, ior: float, normal: Array) 
 
 
 @compiled
-def _beam(form: int, q: Array, d: Array, half: Array, ior: float, blocked: bool, normal: Array) -> Beam:
-    """The beam of a pixel at q, which sits on a screen of this unit normal."""
+def _beam(form: int, q: Array, d: Array, half: Array, ior: float, blocked: bool, normal: Array, last: Array) -> Beam:
+    """The beam of a pixel at q, which sits on a screen of this unit normal; `last` remembers the root of the last."""
     if form == BLOCK:
         return _through_block(q, d, half, ior, blocked)
     if form == BATH:
         return _through_bath(q, d, half, ior)
     if form == CYLINDER:
-        return _through_cylinder(q, d, half, ior, normal)
-    return _through_sphere(q, d, half, ior, normal)
+        return _through_cylinder(q, d, half, ior, normal, last)
+    return _through_sphere(q, d, half, ior, normal, last)
 
 
 def beams(
@@ -235,9 +237,9 @@ def beams(
     lines
         ``(views, rows, columns, 6)``: where the latter enters and leaves the body; 0 where there is none.
     """
-    views, rows = light.shape[:2]
-    work = 500 * light.size
-    tasks.run(_beams, views * rows, work, form, half, blocked, iors, lights, screens, light, lines)
+    views, columns = light.shape[0], light.shape[2]
+    work = 200 * light.size
+    tasks.run(_beams, views * columns, work, form, half, blocked, iors, lights, screens, light, lines)
 
 
 @compiled
@@ -253,16 +255,67 @@ def _beams(
     light: Array,
     lines: Array,
 ) -> None:
-    """Do picture rows `first` to before `last`, counted through all views."""
+    """Do picture columns `first` to before `last`, counted through all views."""
     rows, columns = light.shape[1], light.shape[2]
     for line in range(first, last):
-        view, row = line // rows, line % rows
+        view, column = line // columns, line % columns
         screen = screens[view]
         normal = np.cross(screen[1], screen[2])
         normal /= math.sqrt(np.sum(normal * normal))
-        for column in range(columns):
+        beta = np.zeros(1)
+        for row in range(rows):
             q = screen[0] + column * screen[1] + row * screen[2]
-            found = _beam(form, q, lights[view], half, iors[view], blocked, normal)
+            found = _beam(form, q, lights[view], half, iors[view], blocked, normal, beta)
             light[view, row, column, 0], light[view, row, column, 1] = found[0], found[1]
             for k in range(6):
                 lines[view, row, column, k] = found[2 + k]
+
+
+def columns(lines: Array, lit: Array, apart: int, ends: Array, together: Array) -> None:
+    """Find the beam that the pixels of each picture column have in common, but for being moved up.
+
+    Parameters
+    ----------
+    lines
+        ``(views, rows, columns, 6)``: where beams enter and leave, in voxels.
+    lit
+        ``(views, rows, columns)``: pixels that have a beam.
+    apart
+        Slices from a row to the next.
+    ends
+        ``(views, columns, 6)``: set to the common beam, as that of the lowest row.
+    together
+        ``(views, rows, columns)``: set to whether a pixel has it.
+    """
+    tasks.run(_columns, len(lit), 20 * lit.size, lines, lit, apart, ends, together)
+
+
+@compiled
+def _columns(first: int, last: int, lines: Array, lit: Array, apart: int, ends: Array, together: Array) -> None:
+    """Do views `first` to before `last`."""
+    rows, width = lit.shape[1:]
+    own = np.empty(6)
+    for view in range(first, last):
+        for column in range(width):
+            found = False
+            for row in range(rows):
+                together[view, row, column] = False
+                if not lit[view, row, column]:
+                    continue
+                own[:] = lines[view, row, column]
+                lift = apart * (rows - 1 - row)
+                own[2], own[5] = own[2] - lift, own[5] - lift
+                if not found and row + 1 < rows and lit[view, row + 1, column]:
+                    below = lines[view, row + 1, column]
+                    found = (
+                        abs(below[2] - own[2] - lift + apart) < _SAME and abs(below[5] - own[5] - lift + apart) < _SAME
+                    )
+                    for axis in (0, 1, 3, 4):
+                        found = found and abs(below[axis] - own[axis]) < _SAME
+                    if found:
+                        ends[view, column] = own
+                if found:
+                    same = True
+                    for axis in range(6):
+                        same = same and abs(ends[view, column, axis] - own[axis]) < _SAME
+                    together[view, row, column] = same

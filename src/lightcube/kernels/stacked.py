@@ -2,7 +2,8 @@
 
 ``x`` is ``(ny * nx, slices * channels)`` and ``b`` is ``(beams, rows * channels)``. Beam ``view * width + column``
 starts at ``beams[view, 0] + column * beams[view, 1]`` and runs along ``beams[view, 2]`` (x, y, z in voxels) for
-the lowest picture row; row ``j`` is the same beam ``j`` voxels higher. So a piece in slice ``level`` joins column
+the lowest picture row, from ``beams[view, 3, 0]`` to ``beams[view, 3, 1]`` widths of a voxel behind its start; row
+``j`` is the same beam ``j`` voxels higher. So a piece in slice ``level`` joins column
 ``i`` of ``b`` to column ``i + level * channels`` of ``x``. Where beams are level, rows of the source may be longer.
 
 Where rows are `apart` slices apart, more than one, row ``j`` of a picture touches slice ``level + apart * j``: every
@@ -363,10 +364,11 @@ def trace_column(
     beams: Array, width: int, beam: int, nx: int, ny: int, scale: float, voxels: Array, levels: Array, lengths: Array
 ) -> int:
     """Trace beam number `beam` through the whole grid; return how many pieces it has."""
-    start, step, light = beams[beam // width, 0], beams[beam // width, 1], beams[beam // width, 2]
+    own = beams[beam // width]
+    start, step, light, ends = own[0], own[1], own[2], own[3]
     column = beam % width
     px, py, pz = start[0] + column * step[0], start[1] + column * step[1], start[2] + column * step[2]
-    ray = (px, py, pz, light[0], light[1], light[2], -np.inf, np.inf)
+    ray = (px, py, pz, light[0], light[1], light[2], ends[0], ends[1])
     return trace(ray, (nx, ny, 0), (1, nx, 1), scale, voxels, levels, lengths)
 
 

@@ -86,12 +86,12 @@ def trace_tile(
     state, size = np.zeros((FIELDS, ABREAST)), (nx, ny, 0)
     met, waiting, taken = 0, 0, 0
     for each in range(view, after):
-        start, step, light = beams[each, 0], beams[each, 1], beams[each, 2]
+        start, step, light, ends = beams[each, 0], beams[each, 1], beams[each, 2], beams[each, 3]
         low_each, high_each = max(low, windows[each, 0]), min(high, windows[each, 1])
         first, last = _meeting(beams, each, low_each, high_each, x, y, nx, ny)
         for column in range(first, last):
             px, py, pz = start[0] + column * step[0] - x, start[1] + column * step[1] - y, start[2] + column * step[2]
-            ray = (px, py, pz, light[0], light[1], light[2], -np.inf, np.inf)
+            ray = (px, py, pz, light[0], light[1], light[2], ends[0], ends[1])
             if waiting + parts_of(ray) > ABREAST:
                 taken = _march(state, waiting, size, strides, traced, taken, met)
                 waiting = 0

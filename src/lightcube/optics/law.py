@@ -76,17 +76,13 @@ class Mixture:
         channels: int,
         colours: slice = slice(None),
         rows: slice = slice(None),
-        views: slice = slice(None),
     ) -> "Mixture":
-        """How a rig's views add up; some colours, rows, or views only, of whose pictures the first is number 0."""
-        picture = rig.sums.picture[views]
-        starts = np.searchsorted(picture, np.arange(picture[0], picture[-1] + 2))
-        share = rig.sums.of_colours(channels)[views, colours]
+        """How a rig's views add up; some colours or rows only."""
+        starts, share = rig.starts, rig.sums.of_colours(channels)[:, colours]
         if rig.fading.is_none and rig.glass is None:
-            return cls(starts, share, *np.ones((2, len(picture), 1), np.float32))
+            return cls(starts, share, *np.ones((2, len(rig.views), 1), np.float32))
         light, shadow = (
-            columns_from_pictures(each[:, rows, :, None]).reshape(len(picture), -1)
-            for each in falling_light(rig, range(*views.indices(len(rig.views))))
+            columns_from_pictures(each[:, rows, :, None]).reshape(len(rig.views), -1) for each in falling_light(rig)
         )
         return cls(starts, share, light, shadow)
 

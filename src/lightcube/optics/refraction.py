@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -22,27 +23,50 @@ class Bent:
 
     Parameters
     ----------
-    enters_mm, leaves_mm
-        ``(views, rows, columns, 3)``: where the beam of a pixel enters and leaves the glass; the same where none does.
+    lines_mm
+        ``(views, rows, columns, 6)``: where the beam of a pixel enters the glass, and where it leaves it; 0 where none
+        does.
     beside
         ``(views, rows, columns)``: light of a lamp of power 1 that reaches the pixel past the glass.
     through
         The same through the glass, were its voxels clear.
     """
 
-    enters_mm: Reals
-    leaves_mm: Reals
+    lines_mm: Reals
     beside: Reals
     through: Reals
+
+    @property
+    def enters_mm(self) -> Reals:
+        """``(views, rows, columns, 3)``: where beams enter the glass."""
+        return self.lines_mm[..., :3]
+
+    @property
+    def leaves_mm(self) -> Reals:
+        """``(views, rows, columns, 3)``: where beams leave the glass."""
+        return self.lines_mm[..., 3:]
+
+
+#: What was found of rigs that are still in use: the matrix and the law of light ask one after the other.
+_found: WeakKeyDictionary[Rig, Bent] = WeakKeyDictionary()
 
 
 def bent(rig: Rig, chosen: Sequence[int] | None = None) -> Bent:
     """The beams of all views of a rig in glass, or of those that are `chosen`."""
+    if chosen is not None and len(chosen) < len(rig.views):
+        return _bent(rig, chosen)
+    if rig not in _found:
+        _found[rig] = _bent(rig, range(len(rig.views)))
+    return _found[rig]
+
+
+def _bent(rig: Rig, chosen: Sequence[int]) -> Bent:
+    """The beams of those views, computed."""
     from lightcube.kernels import glass as kernels  # here: the compiler comes with it
 
     glass = known(rig)
-    numbers = np.arange(len(rig.views)) if chosen is None else np.asarray(chosen, np.intp)
-    views = rig.views if chosen is None else rig.views.take(numbers)
+    numbers = np.asarray(chosen, np.intp)
+    views = rig.views.take(numbers)
     rows, columns = views.picture_shape
     first = views.origins_mm - (columns - 1) / 2 * views.column_steps_mm - (rows - 1) / 2 * views.row_steps_mm
     lights = views.lamps[:, :3] / np.linalg.norm(views.lamps[:, :3], axis=1, keepdims=True)
@@ -64,7 +88,7 @@ def bent(rig: Rig, chosen: Sequence[int] | None = None) -> Bent:
         light,
         lines,
     )
-    return Bent(lines[..., :3], lines[..., 3:], light[..., 0], light[..., 1])
+    return Bent(lines, light[..., 0], light[..., 1])
 
 
 def known(rig: Rig) -> Glass:

@@ -314,6 +314,15 @@ class Rig:
         picture = self.sums.picture.repeat(channels)
         return replace(each, sums=replace(each.sums, share=share * alone, picture=picture), stops=self.stops)
 
+    def as_one_colour(self) -> Rig:
+        """The inverse of `by_colour`, where each colour has an index of refraction: all have the mean of them."""
+        if self.glass is None or len(self.glass.iors) == 1:
+            return self
+        one = self._with_views(self.starts[:-1])
+        sums = replace(one.sums, share=np.ones((len(self), 1)))
+        glass = replace(self.glass, ior=float(np.mean(self.glass.iors)))
+        return replace(one, sums=sums, stops=self.stops, glass=glass)
+
     def squared(self, side: float) -> Rig:
         """The same with pixels that show means over squares of a side in pixels, exactly; for films only."""
         return replace(self, sums=replace(self.sums, square=np.full(len(self.views), float(side))))

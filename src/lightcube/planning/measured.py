@@ -6,6 +6,8 @@ Pixels of several voxels are rehearsed as such: three cubes with pixels of 2 x 2
 1.9 dB better, than was told (benchmarks/light.py pixel).
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from lightcube.errors import InputError
@@ -15,7 +17,8 @@ from lightcube.optics.rig import Rig
 
 def is_measured(rig: Rig, grid: Grid) -> bool:
     """Whether one parallel lamp, raised alike for all pictures, shines on a screen behind, its pixels whole voxels."""
-    return rig.is_thin and rig.elevation_deg is not None and voxels_a_pixel(rig, grid) > 0
+    straight = rig if rig.glass is None else replace(rig, glass=None)
+    return straight.is_thin and rig.elevation_deg is not None and voxels_a_pixel(rig, grid) > 0
 
 
 def voxels_a_pixel(rig: Rig, grid: Grid) -> int:
@@ -27,10 +30,13 @@ def voxels_a_pixel(rig: Rig, grid: Grid) -> int:
 
 
 def unmeasured(rig: Rig) -> list[str]:
-    """A sentence where a lamp has a size: rehearsals mind it, but their law was fitted to lamps without one."""
-    if not np.any(rig.sums.disc_deg):
-        return []
-    return ["how much a lamp's size costs was not measured: pictures may become worse than expected"]
+    """A sentence where a lamp has a size, or there is glass: rehearsals mind it, but their law was fitted without."""
+    found = {"a lamp's size": bool(np.any(rig.sums.disc_deg)), "glass": rig.glass is not None}
+    return [
+        f"how much {what} costs was not measured: pictures may become worse than expected"
+        for what, is_there in found.items()
+        if is_there
+    ]
 
 
 def raised(rig: Rig, grid: Grid) -> float:

@@ -24,7 +24,7 @@ from lightcube.pictures.fitting import fit as fitted
 from lightcube.pictures.pictures import Pictures
 from lightcube.pictures.targets import Targets
 from lightcube.pictures.turntable import Turntable
-from lightcube.planning import films
+from lightcube.planning import films, glass
 from lightcube.planning.feasibility import doubtful, impossible
 from lightcube.planning.measured import is_measured, unmeasured, voxels_a_pixel
 from lightcube.planning.prediction import Prediction
@@ -112,6 +112,7 @@ class Plan:
     def doubtful(self) -> list[str]:
         """What is probably not meant in a room that is described, which pictures are out of reach, what is unknown."""
         unknown = unmeasured(self.targets.rig) if self.prediction.is_known else []
+        unknown = [*glass.sentences(self.targets), *unknown]
         if self.stage is None:
             return unknown
         doubts = films.doubtful(self.stage) if isinstance(self.grid, Stack) else doubtful(self.stage)
@@ -194,14 +195,16 @@ def plan(
     def as_wide(width: float) -> Plan:
         grid, rig = _cube_for(pictures, shape or n, (size_mm, tall), table, width)
         targets = fitted(pictures, rig, fit)
+        glass.check_lit(targets, grid)
         recipe = replace(asked, hold_deg=least_hold_deg(rig, grid, asked)) if longest_hold else asked
         return Plan(pictures, targets, grid, recipe, fit, Prediction.unknown(len(targets)))
 
     def predicted(planned: Plan) -> Plan:
-        return replace(planned, prediction=small.predict(planned.targets, planned.grid, planned.recipe))
+        return replace(planned, prediction=small.predict(_foretold(planned), planned.grid, planned.recipe))
 
     if picture_width is None:
-        best = _widest(lambda width: predicted(as_wide(width)))
+        widths = WIDTHS if table.glass is None else _lit_widths(as_wide)
+        best = _widest(lambda width: predicted(as_wide(width)), widths)
     else:
         best = predicted(as_wide(picture_width)) if chooses else as_wide(picture_width)
     best = held_longest(best, small) if longest_hold else best
@@ -240,11 +243,17 @@ def plan_stage(
     if isinstance(stage.grid, Stack):
         asked = replace(asked, enough_db=math.inf, material=asked.material or stage.material)
     targets = fitted(pictures, rig, ways)
+    glass.check_lit(targets, stage.grid)
     made = Plan(pictures, targets, stage.grid, asked, ways, Prediction.unknown(len(targets)), stage=stage)
     if not (told or smooth) or made.impossible or not is_measured(rig, stage.grid):
         return made
-    made = replace(made, prediction=(rehearsals or Rehearsals()).predict(targets, stage.grid, asked))
+    made = replace(made, prediction=(rehearsals or Rehearsals()).predict(_foretold(made), stage.grid, asked))
     return _smoothed(made) if smooth else made
+
+
+def _foretold(planned: Plan) -> Targets:
+    """The targets that small cubes are asked for: all colours alike where each has an index of refraction."""
+    return replace(planned.targets, rig=planned.targets.rig.as_one_colour())
 
 
 def _smoothed(planned: Plan) -> Plan:
@@ -292,25 +301,37 @@ def spread(planned: Plan, targets: Targets, shift: int) -> Targets:
     return replace(targets, rig=targets.rig.shifted(spread_over_screen(targets, planned.grid, shift)))
 
 
-def _widest(predicted: Callable[[float], Plan]) -> Plan:
-    """Return the plan for the largest of `WIDTHS` with good pictures, for half the width, or for the smallest one.
+def _lit_widths(as_wide: Callable[[float], Plan]) -> tuple[float, ...]:
+    """Those of `WIDTHS` at which glass lights all of the pictures; the smallest is not asked."""
+    found = list(WIDTHS[:1])
+    for width in WIDTHS[1:]:
+        try:
+            as_wide(width)
+        except InputError:
+            break
+        found.append(width)
+    return tuple(found)
+
+
+def _widest(predicted: Callable[[float], Plan], widths: tuple[float, ...] = WIDTHS) -> Plan:
+    """Return the plan for the largest of the `widths` with good pictures, for half the width, or for the smallest one.
 
     What is tried next is where the last one's PSNR, and how it fell from the one before, lead to.
     """
     tried: dict[int, Plan] = {}
-    at, fall = WIDTHS.index(HALF), _FALL
-    good, poor = -1, len(WIDTHS)
+    at, fall = min(widths.index(HALF) if HALF in widths else len(widths), len(widths) - 1), _FALL
+    good, poor = -1, len(widths)
     while good < at < poor:
-        tried[at] = predicted(WIDTHS[at])
+        tried[at] = predicted(widths[at])
         spare = tried[at].prediction.psnr_mean - PLANNED_DB
-        if WIDTHS[at] == HALF and LEAST_DB - PLANNED_DB <= spare < 0:
+        if widths[at] == HALF and LEAST_DB - PLANNED_DB <= spare < 0:
             return tried[at]
         good, poor = (at, poor) if spare >= 0 else (good, at)
-        if min(good, len(WIDTHS) - 1 - poor) >= 0:
+        if min(good, len(widths) - 1 - poor) >= 0:
             fell = tried[good].prediction.psnr_mean - tried[poor].prediction.psnr_mean
-            fall = min(max(fell / math.log(WIDTHS[poor] / WIDTHS[good]), _FALLS[0]), _FALLS[1])
-        goal = WIDTHS[at] * math.exp(spare / fall)
-        at = min(max(bisect_right(WIDTHS, goal) - 1, good + 1), poor - 1)
+            fall = min(max(fell / math.log(widths[poor] / widths[good]), _FALLS[0]), _FALLS[1])
+        goal = widths[at] * math.exp(spare / fall)
+        at = min(max(bisect_right(widths, goal) - 1, good + 1), poor - 1)
     return tried[max(good, 0)]
 
 

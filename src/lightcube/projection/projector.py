@@ -333,11 +333,12 @@ def _engine(grid: Grid, rig: Rig | Views, heard: Flags | None) -> Engine:
 
         lit = Rig.of(rig, np.zeros(len(rig))) if isinstance(rig, Views) else rig
         return Rectangles(grid, lit) if np.any(lit.sums.square) else Middles(grid, lit)
+    from lightcube.projection.bent import BentBeams
     from lightcube.projection.rays import Rays
     from lightcube.projection.stacked import StackedBeams, is_stacked
 
     if isinstance(rig, Rig) and rig.glass is not None:
-        return Rays(grid, rig.views, heard, bent(rig))
+        return BentBeams(grid, rig.views, heard, bent(rig))
     views = rig if isinstance(rig, Views) else rig.views
     return StackedBeams(grid, views, heard) if is_stacked(grid, views) else Rays(grid, views, heard)
 

@@ -76,11 +76,10 @@ class Rays:
     def _bend(self, bent: Bent) -> None:
         """Let each pixel have the piece of its ray inside the glass; where there is none it is not heard."""
         middle = np.array(self.grid.shape[::-1]) / 2
-        pieces = np.concatenate([each / self.grid.sides_mm + middle for each in (bent.enters_mm, bent.leaves_mm)], -1)
+        pieces = bent.lines_mm / np.tile(self.grid.sides_mm, 2) + np.tile(middle, 2)
         rows = self._picture[1]
-        by_column = (each[:, ::-1].swapaxes(1, 2) for each in (pieces, bent.through > 0))
-        self._lines, lit = (np.ascontiguousarray(each).reshape(-1, rows, *each.shape[3:]) for each in by_column)
-        self._heard *= lit
+        self._lines = np.ascontiguousarray(pieces[:, ::-1].swapaxes(1, 2)).reshape(-1, rows, 6)
+        self._heard *= (bent.through > 0)[:, ::-1].swapaxes(1, 2).reshape(-1, rows)
         self._boxes = rays.boxes(self._lines, self._heard, self._picture, self.grid.shape)
 
     @property
@@ -97,7 +96,8 @@ class Rays:
     def adjoint(self, b: Floats) -> Floats:
         """``A.T @ b`` of a contiguous block of columns."""
         x = empty((self.shape[1], b.shape[1]), b.dtype)
-        shadows = shadow_matrices(self._lamps, self._screens)
+        straight = not self._lines.shape[1]
+        shadows = shadow_matrices(self._lamps, self._screens) if straight else np.zeros((len(self._lamps), 3, 4))
         data = *self._rays, shadows, self._boxes, self._picture, self._heard
         rays.adjoint(*data, self.grid.shape, *self._sides, b, x)
         return x

@@ -43,9 +43,10 @@ def shadows(
     begun = None
     for batch in _batches(rig):
         own = picture[batch]
-        matrix = Projector(grid, rig.of_views(batch), None if all_inside else rig.inside[own])
+        lit = rig.of_views(batch)
+        matrix = Projector(grid, lit, None if all_inside else rig.inside[own])
         absorbance = matrix.forward(columns.reshape(matrix.shape[1], -1))
-        mixture = Mixture.of(rig, channels, colours, rows, batch).in_parts(matrix.parts, matrix.areas)
+        mixture = Mixture.of(lit, channels, colours, rows).in_parts(matrix.parts, matrix.areas)
         light = shown_light(mixture, powers[batch].repeat(matrix.parts, axis=0), absorbance, shape)
         if begun is not None:
             light[0] += begun

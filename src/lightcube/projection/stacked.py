@@ -3,6 +3,8 @@
 All beams of a picture column are the same beam, moved up by whole slices: one traversal serves them all.
 """
 
+from __future__ import annotations
+
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +15,7 @@ from lightcube.kernels import stacked
 from lightcube.kernels.layout import LINE, empty, is_worth_lines
 from lightcube.kernels.ray import MOST_PARTS, most_pieces
 from lightcube.kernels.tasks import threads
-from lightcube.optics.arrays import Flags
+from lightcube.optics.arrays import Flags, Reals
 from lightcube.optics.grid import PARALLEL, Grid
 from lightcube.optics.views import Views
 
@@ -61,7 +63,8 @@ class StackedBeams:
         light = views.lamps[:, :3] / np.linalg.norm(views.lamps[:, :3], axis=1, keepdims=True)
         light = light * (grid.voxel_mm / sides_mm)  # in voxels a voxel's width of the way
         corner = lowest_left / sides_mm + (nx / 2, ny / 2, nz / 2)
-        self.beams = np.stack([corner, views.column_steps_mm / sides_mm, light], axis=1)
+        ends = np.tile([-np.inf, np.inf, 0.0], (len(views), 1))
+        self.beams = np.stack([corner, views.column_steps_mm / sides_mm, light, ends], axis=1)
         slope = np.max(np.abs(light[:, 2]) / np.hypot(light[:, 0], light[:, 1]))
         self.rise = math.ceil(slope * math.hypot(nx, ny)) + 2
         self._apart = views.slices_a_row(grid)
@@ -70,6 +73,38 @@ class StackedBeams:
         self._stacked = 1 if self.level else rows
         self._windows = _windows(np.ones((len(views), rows, self._width), bool) if heard is None else heard)
         self.shape = (len(views) * self._width * self._stacked, ny * nx * (1 if self.level else nz))
+
+    @classmethod
+    def of_columns(cls, grid: Grid, views: Views, pieces: Reals, heard: Flags) -> StackedBeams:
+        """Those of views whose picture columns have a beam each, which runs from somewhere to somewhere.
+
+        Parameters
+        ----------
+        pieces
+            ``(views, columns, 6)``: two ends of each column's beam for the lowest row, from the middle, in voxels.
+        heard
+            ``(views, rows, columns)``: the pixels that count; others may have a beam too.
+        """
+        made = cls(grid, views, heard)
+        views_count, rows, width = heard.shape
+        ways = (pieces[..., 3:] - pieces[..., :3]).reshape(-1, 3)
+        lengths = np.linalg.norm(ways * (1.0, 1.0, grid.tall), axis=1, keepdims=True)
+        used = np.any(heard, axis=1).reshape(-1)
+        light = np.where(used[:, None], ways / np.where(lengths > 0, lengths, 1.0), (1.0, 0.0, 0.0))
+        ends = np.hstack([np.zeros_like(lengths), lengths, np.zeros_like(lengths)])
+        middle = np.array(grid.shape[::-1]) / 2
+        made.beams = np.stack([pieces.reshape(-1, 6)[:, :3] + middle, np.zeros_like(light), light, ends], axis=1)
+        made._width, made.level, made._stacked = 1, False, rows
+        made.rise = (
+            math.ceil(np.max(np.abs(light[:, 2]) / np.hypot(light[:, 0], light[:, 1])) * math.hypot(*grid.shape[1:]))
+            + 2
+        )
+        inside = np.flatnonzero(np.any(heard, axis=(0, 2))[::-1])
+        low, high = (int(inside[0]), int(inside[-1]) + 1) if len(inside) else (0, 0)
+        made._windows = np.tile(np.array([0, 1, low, high], np.int64), (views_count * width, 1))
+        made._windows[~used, 1] = 0
+        made.shape = (views_count * width * rows, int(np.prod(grid.shape)))
+        return made
 
     def forward(self, x: Floats) -> Floats:
         """``A @ x`` of a contiguous block of columns."""
@@ -110,7 +145,7 @@ class StackedBeams:
         unknowns, inside = self._unknowns(voxels[:count], levels[:count] + lift * self._apart)
         return unknowns[inside], lengths[:count][inside]
 
-    def to_sparse(self) -> "csr_array":
+    def to_sparse(self) -> csr_array:
         """Return the same matrix, float64."""
         from scipy.sparse import csr_array  # here: it takes longer to load than a small cube to play
 
@@ -146,7 +181,7 @@ class StackedBeams:
     def _voxels(self) -> int:
         return self.grid.shape[1] * self.grid.shape[2]
 
-    def _classes(self, channels: int, dtype: "np.dtype[Any]") -> Floats:
+    def _classes(self, channels: int, dtype: np.dtype[Any]) -> Floats:
         """Room for the unknowns, their slices sorted by class."""
         return empty((self._voxels * self._apart, -(-self.grid.shape[0] // self._apart) * channels), dtype)
 
