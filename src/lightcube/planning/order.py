@@ -19,7 +19,7 @@ from lightcube.optics.arrays import Counts, Images, Reals, keep, locked
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.light import Light
-from lightcube.optics.views import Views
+from lightcube.optics.rig import Rig
 from lightcube.pictures.resampling import shares
 from lightcube.pictures.targets import Targets
 from lightcube.planning.measured import raised
@@ -108,7 +108,7 @@ def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Or
     candidates = [np.arange(len(targets)), canonical[tour]]
     tiles = _tiles(len(targets), draft.rig.picture_shape)
     if len(targets) > 1 and max(tiles) > 1:
-        parts = _parts(draft.rig.views, small, _features(draft, tiles)[canonical], tiles)
+        parts = _parts(draft.rig, small, _features(draft, tiles)[canonical], tiles)
         candidates += [canonical[order] for order in _walks(parts, tour)]
     scores = [_draft_db(draft, small, candidate, drafted) for candidate in candidates]
     best = int(np.argmax(scores))
@@ -158,13 +158,13 @@ def _features(draft: Targets, tiles: tuple[int, int]) -> Reals:
     return np.ascontiguousarray(seen.transpose(0, 2, 1, 3).reshape(len(draft), tiles[0] * tiles[1], -1))
 
 
-def _parts(views: Views, grid: Grid, features: Reals, tiles: tuple[int, int]) -> Images:
+def _parts(rig: Rig, grid: Grid, features: Reals, tiles: tuple[int, int]) -> Images:
     """``(stop seen, stop, picture, tile and channel)``: what a picture at a stop adds to what is left unfitted."""
-    stops, size = len(views), tiles[0] * tiles[1]
-    rows, columns = views.picture_shape
+    stops, size = len(rig), tiles[0] * tiles[1]
+    rows, columns = rig.picture_shape
     # equations run over a view's columns, each bottom-up: hence the flip
     tiling = csr_array(np.kron(shares(columns, tiles[1]), shares(rows, tiles[0])[:, ::-1]))
-    beams = Projector(grid, views).to_sparse()
+    beams = Projector(grid, rig).to_sparse()
     # with level beams the matrix is that of one slice, the same for all
     slices = stops * rows * columns // beams.shape[0]
     matrix = block_diag([tiling] * stops, format="csr") @ kron(beams, eye_array(slices), format="csr")

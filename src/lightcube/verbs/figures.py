@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from lightcube.backward.wishes import held
+from lightcube.optics.grid import Grid
+from lightcube.optics.rig import Rig
 from lightcube.optics.stage import Stage
 from lightcube.planning import feasibility
 from lightcube.planning.consistency import check
@@ -25,11 +27,16 @@ def table(planned: Plan, order: "Order | None", remedies: Mapping[str, float]) -
     if order is not None:
         used = "used" if planned.order is not None else "not used"
         rows["best order"] = f"worth {order.best_db - order.given_db:.1f} dB in a draft, {used}"
-    if is_measured(planned.targets.rig, planned.grid):
+    if _speaks_of_each_other(planned.targets.rig, planned.grid):
         rows |= _contradictions(check(planned.targets, planned.grid))
     rows |= {f"with {change}": f"PSNR of {decibels:.0f} dB expected" for change, decibels in remedies.items()}
     lines = [f"{name:<15} {value}" for name, value in rows.items()]
     return lines if planned.stage is None else [*lines, *([""] if lines else []), *_places(planned.stage)]
+
+
+def _speaks_of_each_other(rig: Rig, grid: Grid) -> bool:
+    """Whether pictures can be held against each other: they are cast by straight light, as it was measured."""
+    return rig.glass is None and is_measured(rig, grid)
 
 
 def _expected(planned: Plan) -> dict[str, str]:
@@ -87,6 +94,6 @@ def facts(planned: Plan, order: "Order | None") -> dict[str, Any]:
         "impossible": planned.impossible,
         "doubtful": planned.doubtful,
     }
-    if is_measured(targets.rig, planned.grid):
+    if _speaks_of_each_other(targets.rig, planned.grid):
         known |= check(targets, planned.grid)
     return known if planned.stage is None else known | feasibility.facts(planned.stage)
