@@ -156,7 +156,7 @@ def test_tiles_are_weighted_means(shape: tuple[int, int]) -> None:
 def test_the_model_is_what_ridge_regression_leaves(elevation_deg: float, tiles: tuple[int, int]) -> None:
     targets = unrelated(3, elevation_deg)
     features = orders._features(targets, tiles)
-    parts = orders._parts(targets.rig.views, GRID, features, tiles)
+    parts = orders._parts(targets.rig, GRID, features, tiles)
     order = [1, 2, 0]
     left = sum(parts[:, stop, order[stop]] for stop in range(3))
     matrix = np.zeros((3, 5, 3, 105))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lightcube.errors import InputError
 from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
 from lightcube.optics.tables import POWER_MAX
@@ -54,6 +55,8 @@ def check(targets: Targets, grid: Grid) -> dict[str, Any]:
     ``moments``
         See there.
     """
+    if targets.rig.glass is not None:
+        raise InputError("what pictures demand of each other is known of straight light only: check them without glass")
     elevation_deg, lamp_max = raised(targets.rig, grid), float(targets.rig.lamps.most.max())
     rows, columns = targets.rig.views.picture_shape
     white, blank = plain_rows(targets)

@@ -17,8 +17,9 @@ from lightcube.optics.rig import Rig
 
 def is_measured(rig: Rig, grid: Grid) -> bool:
     """Whether one parallel lamp, raised alike for all pictures, shines on a screen behind, its pixels whole voxels."""
-    straight = rig if rig.glass is None else replace(rig, glass=None)
-    return straight.is_thin and rig.elevation_deg is not None and voxels_a_pixel(rig, grid) > 0
+    one = rig.as_one_colour()
+    straight = one if one.glass is None else replace(one, glass=None)
+    return straight.is_thin and one.elevation_deg is not None and voxels_a_pixel(rig, grid) > 0
 
 
 def voxels_a_pixel(rig: Rig, grid: Grid) -> int:

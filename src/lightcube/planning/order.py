@@ -93,6 +93,7 @@ def best_order(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Or
     ``pictures^3`` numbers per tile and colour: from 139 pictures on there is no room for two tiles a side, and the
     tour is all there is beside the given order.
     """
+    targets = replace(targets, rig=targets.rig.as_one_colour())
     raised(targets.rig, grid)
     recipe = recipe or Recipe()
     bound = recipe.bounded_by.of_any_size(grid)

@@ -200,7 +200,7 @@ def plan(
         return Plan(pictures, targets, grid, recipe, fit, Prediction.unknown(len(targets)))
 
     def predicted(planned: Plan) -> Plan:
-        return replace(planned, prediction=small.predict(_foretold(planned), planned.grid, planned.recipe))
+        return replace(planned, prediction=small.predict(planned.targets, planned.grid, planned.recipe))
 
     if picture_width is None:
         widths = WIDTHS if table.glass is None else _lit_widths(as_wide)
@@ -247,13 +247,8 @@ def plan_stage(
     made = Plan(pictures, targets, stage.grid, asked, ways, Prediction.unknown(len(targets)), stage=stage)
     if not (told or smooth) or made.impossible or not is_measured(rig, stage.grid):
         return made
-    made = replace(made, prediction=(rehearsals or Rehearsals()).predict(_foretold(made), stage.grid, asked))
+    made = replace(made, prediction=(rehearsals or Rehearsals()).predict(targets, stage.grid, asked))
     return _smoothed(made) if smooth else made
-
-
-def _foretold(planned: Plan) -> Targets:
-    """The targets that small cubes are asked for: all colours alike where each has an index of refraction."""
-    return replace(planned.targets, rig=planned.targets.rig.as_one_colour())
 
 
 def _smoothed(planned: Plan) -> Plan:
@@ -381,7 +376,7 @@ def narrower(planned: Plan, width: float) -> Targets:
     disc_deg = float(rig.sums.disc_deg[0])
     said = Turntable(
         angles_deg=rig.stops.angle_deg,
-        elevation_deg=rig.elevation_deg,
+        elevation_deg=rig.as_one_colour().elevation_deg,
         pixel=voxels_a_pixel(rig, planned.grid),
         lamp_deg=disc_deg,
         screen_mm=max(0.0, float(rig.behind_mm[0]) - swept_mm(planned.grid)) if disc_deg or rig.glass else None,

@@ -139,6 +139,7 @@ def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Predi
     InputError
         Where `solve` would refuse them.
     """
+    targets = replace(targets, rig=targets.rig.as_one_colour())
     raised(targets.rig, grid)
     asked = recipe or Recipe()
     reached, width = rehearse(targets, grid, asked)

@@ -188,11 +188,12 @@ def is_poor(planned: Plan) -> bool:
 def what_to_change(planned: Plan, remedies: Mapping[str, float]) -> list[str]:
     """Sentences on what is wrong with the pictures, and on what would help, by the PSNR that it brings.
 
-    None of a stage: they name options that it leaves no room for.
+    None of a stage: they name options that it leaves no room for. In glass pictures are not held against each other.
     """
     if planned.stage is not None:
         return []
-    found = advice(check(planned.targets, planned.grid), crowded=is_poor(planned))
+    straight = planned.targets.rig.glass is None
+    found = advice(check(planned.targets, planned.grid), crowded=is_poor(planned)) if straight else []
     return [*(f"wrong: {sentence}" for sentence in found), *_helps(remedies)]
 
 
