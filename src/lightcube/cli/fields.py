@@ -21,6 +21,7 @@ _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "focus": lambda text: arguments.two_numbers(text, "--focus"),
     "angles_deg": lambda text: arguments.numbers(text, "--angles-deg"),
     "grain": lambda text: arguments.number_or_auto(text, "--grain"),
+    "clear": lambda text: arguments.colours(text, "--clear"),
     "material": read_dyes,
 }
 
