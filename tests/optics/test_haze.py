@@ -77,5 +77,5 @@ def test_it_is_told_what_the_clear_material_will_do() -> None:
     (line,) = clearest(lc.Material(dyes=hazy()), GRID)
     assert line == f"clear material takes up to {1 - math.exp(-1.6):.0%} of the light along 40 mm"
     assert "33% aside, mostly ahead" in clearest(lc.Material(dyes=hazy(haze=0.01, g=0.9)), GRID)[1]
-    assert clearest(lc.Material(dyes=hazy(haze=0.01, g=0.9)), GRID)[1].endswith("31.0% of all light: they drown")
+    assert clearest(lc.Material(dyes=hazy(haze=0.01, g=0.9)), GRID)[1].endswith("31.0% of all light: they get pale")
     assert clearest(lc.Material(dyes=hazy(haze=0.01)), GRID)[1].endswith("1.0% of all light: hardly seen")

@@ -19,7 +19,7 @@ from lightcube.optics.stack import Stack
 
 #: Clear material that takes a smaller part than this is not told; from such parts of veil on, what pictures become.
 _FAINT = 0.005
-_VEILS = ((0.25, "they drown"), (0.05, "they get pale"), (0.015, "a little of their depth goes"), (0.0, "hardly seen"))
+_VEILS = ((0.6, "they drown"), (0.1, "they get pale"), (0.015, "a little of their depth goes"), (0.0, "hardly seen"))
 #: A voxel is as full of a dye as it can be from this part of its limit on.
 _FULL = 0.999
 #: A dye that takes less than this part of another colour with it makes its own colour alone.
@@ -46,6 +46,7 @@ def facts(dyes: Dyes) -> dict[str, Any]:
         known |= {} if limit == 1 else {f"{name}_limit": float(limit)}
         known |= {} if curve is None else {f"{name}_dot_gain_at_half": float(np.interp(0.5, *curve.T) - 0.5)}
     known[f"base_{called}"] = np.round(dyes.base / unit, 6).tolist()
+    known |= {"haze_per_mm": dyes.haze, "haze_g": dyes.g} if dyes.haze else {}
     return known
 
 
