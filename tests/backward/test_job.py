@@ -168,6 +168,7 @@ def test_fingerprints_name_what_changed() -> None:
         (job(hold_deg=1.5), "hold was 0 and is 1.5"),
         (replace(one, units=3), "units was 1 and is 3"),
         (job(max_extinction=2.0), "largest extinction was none and is 2"),
+        (job(material=Material(clear=0.25)), "least extinction was 0 and is 0.25"),
     ]
     assert differences(fingerprint(one), fingerprint(job())) == []
     for other, sentence in changes:

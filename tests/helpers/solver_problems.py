@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
+from lightcube.solvers.contract import Bounds, Callback, Floats, Operator, Progress, Result, State, Wanted
 
 Matrix = NDArray[np.float64]
 
@@ -88,7 +88,7 @@ def plain_descent(
     wanted: Wanted,
     *,
     x0: Floats | None = None,
-    bounds: tuple[float, float] = (0.0, np.inf),
+    bounds: Bounds = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
     state: State | None = None,

@@ -13,13 +13,16 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from PIL import Image
 
+from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
 from lightcube.io import TransparentPictures, is_stage, read_stage, read_stage_targets
+from lightcube.optics.material import Material
 from lightcube.optics.stage import Lamp, Screen
 from lightcube.optics.transfer import from_levels
 from lightcube.optics.views import DoubtfulAngles, spread_angles
 from lightcube.pictures.fitting import fit
 from lightcube.pictures.pictures import Pictures
+from lightcube.planning.plan import plan_stage
 
 SUN = {"name": "sun", "direction": [1, 0.25, -0.5]}
 BULB = {"name": "bulb", "position_mm": [-300, 20, 150.5]}
@@ -48,6 +51,25 @@ def stage_file(folder: Path, tables: dict[str, Any]) -> Path:
     file = folder / "stage.toml"
     file.write_text("".join(f"{key} = {toml(value)}\n" for key, value in tables.items()), encoding="utf-8")
     return file
+
+
+def test_what_the_clearest_voxel_takes_is_said_of_the_cube(tmp_path: Path) -> None:
+    picture(tmp_path / "one.png", 5, 7)
+
+    def planned(cube: dict[str, Any], recipe: Recipe | None = None) -> Material:
+        stage, pictures, ways = read_stage(stage_file(tmp_path, MINIMAL | {"cube": {"shape": [4, 5, 6]} | cube}))
+        return plan_stage(stage, pictures, ways, recipe, told=False).recipe.bounded_by
+
+    assert planned({}) == Recipe().bounded_by
+    assert planned({"clear": 0.01}) == Material(3.0, "voxel", clear=0.01)
+    assert planned({"clear": [0.01, 0.02, 0.03]}, Recipe(material=Material(2.0))) == Material(
+        2.0, clear=(0.01, 0.02, 0.03)
+    )
+    said = Recipe().in_clear(0.05)
+    assert planned({"clear": 0.01}, said) == said.bounded_by, "who solves says otherwise"
+    for wrong in (-1, [0.1, 0.2], "much"):
+        with pytest.raises(InputError, match="clear"):
+            planned({"clear": wrong})
 
 
 def test_slices_may_be_taller_than_voxels_are_wide(tmp_path: Path) -> None:

@@ -29,6 +29,7 @@ from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.material import Material
 from lightcube.optics.rig import turntable
 from tests.backward.test_job import DYED, LEVEL, RAISED, job, same
 from tests.cli.test_cli import pressed, run
@@ -50,6 +51,7 @@ main()
 """
 PASSES = 4 if INTERPRETED else 300
 ANOTHER = Cube(np.zeros((3, 2, 3, 4), np.float32), Grid((2, 3, 4)), turntable(Grid((2, 3, 4)), [0.0]))
+CLEAR = Material(4.0, clear=(0.02, 0.03, 0.01))
 LEVEL_LAMP = ("--elevation-deg", "0", "--max-extinction", "1")
 
 
@@ -278,7 +280,15 @@ def begun(out: Path, made: Job, *pieces: str) -> DiskStore:
 
 @pytest.mark.parametrize(
     "options",
-    [{}, RAISED, LEVEL, {**LEVEL, "method": "sirt", "max_extinction": 2.0}, {**LEVEL, "material": DYED}],
+    [
+        {},
+        RAISED,
+        LEVEL,
+        {**LEVEL, "method": "sirt", "max_extinction": 2.0},
+        {**LEVEL, "material": DYED},
+        {"material": CLEAR},
+        {**LEVEL, "material": CLEAR},
+    ],
     ids=str,
 )
 def test_a_job_comes_back_from_the_disk(options: dict[str, Any], tmp_path: Path) -> None:

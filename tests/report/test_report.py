@@ -186,6 +186,7 @@ SOLVES = {
     "disc": "--n 6 --picture-width 0.5 --hold-deg 0.5 --lamp-deg 0.5 --iterations 2 --mat none",
     "disc, moved": "--shape 5,7,6 --size-mm 33.3 --picture-width 0.6 --elevation-deg 20 --angles-deg 3,100.52,181,-85 "
     "--lamp-deg 2.25 --screen-mm 12.1 --shift 1 --iterations 2",
+    "clear": "--n 6 --picture-width 0.5 --hold-deg 0 --clear 0.01,0.02,0.015 --max-extinction 0.4 --iterations 2",
     "dyes": "--n 6 --picture-width 0.5 --hold-deg 0 --material polyjet --iterations 2",
     "units": "--n 6 --picture-width 0.5 --hold-deg 0 --iterations 3 --unit 1/3",
 }

@@ -22,6 +22,7 @@ from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.grid import Grid
+from lightcube.optics.haze import Phase, veil_part
 from lightcube.optics.rig import soft, turntable
 from lightcube.optics.transfer import encode
 from lightcube.pictures.fitting import as_levels
@@ -286,6 +287,33 @@ def test_robust_scores_every_disturbance() -> None:
     lighter = [decibels(picture + 0.01, targets, view) for view, picture in enumerate(play(cube))]
     assert figures["black"] == pytest.approx({"psnr_mean": np.mean(lighter), "psnr_min": min(lighter)}, rel=1e-4)
     assert figures["all"]["psnr_mean"] < min(each["psnr_mean"] for name, each in figures.items() if name != "all")
+
+
+@pytest.mark.parametrize("phase", ["isotropic", "forward"])
+def test_haze_is_a_loss_that_is_made_good_and_an_even_veil(phase: Phase) -> None:
+    cube = make_cube([20.0, 75.0, 250.0], 35.0)
+    found = np.stack(list(disturbed(cube, Disturbance(haze=0.4, phase=phase))))
+    clear = play(cube, picture_only=True)
+    np.testing.assert_allclose(found.mean(axis=(1, 2)), clear.mean(axis=(1, 2)), rtol=1e-5)  # lamps are turned up
+    loss = np.float32(0.4 / max(cube.grid.size_mm))
+    straight = play(replace(cube, extinction=cube.extinction + loss), picture_only=True)
+    part = veil_part(0.4, phase)
+    gain = (1 - part) * clear.mean(axis=(1, 2), keepdims=True) / straight.mean(axis=(1, 2), keepdims=True)
+    veil = found - gain * straight
+    np.testing.assert_allclose(veil, np.broadcast_to(veil.mean(axis=(1, 2), keepdims=True), veil.shape), rtol=1e-3)
+    np.testing.assert_allclose(veil.mean(axis=(1, 2)), part * clear.mean(axis=(1, 2)), rtol=1e-3)
+
+
+def test_more_haze_costs_more_and_most_where_it_throws_light_ahead() -> None:
+    cube = make_cube([20.0, 75.0, 250.0], 35.0)
+    figures = robust(cube, cast_targets(cube))
+    thin, thick, ahead, thick_ahead = (
+        figures[name]["psnr_mean"] for name in ("haze", "haze-more", "haze-ahead", "haze-ahead-more")
+    )
+    assert figures["undisturbed"]["psnr_mean"] > thin > max(thick, ahead)
+    assert min(thick, ahead) > thick_ahead
+    assert str(DISTURBANCES["haze-more"]) == "haze that throws 33 % to all sides along the cube (an estimate)"
+    assert str(DISTURBANCES["haze-ahead"]) == "haze that throws 10 % ahead along the cube (an estimate)"
 
 
 def marks(work: Callable[[Callable[[int, int], None]], object]) -> list[tuple[int, int]]:

@@ -84,6 +84,7 @@ BOUNDS: dict[str, dict[str, Any]] = {
     "one lamp": {"powers": "shared", "lamp_max": 3.0},
     "weak lamps": {"lamp_max": 1.5},
     "extinction of a voxel": {"material": Material(0.04, "voxel")},
+    "what is clear": {"material": Material(0.5, clear=(0.01, 0.02, 0.03))},
     "dyes": {"material": Material(dyes=read_dyes("pla"))},
     "black": {"black": 0.3},
     "all": {"lamp_power": 2.0, "max_extinction": 0.03, "black": 0.2},
@@ -100,6 +101,8 @@ def test_what_bounded_the_cube_bounds_the_smaller_one(
     assert small.extinction.max() <= (
         bounds["material"].most(cube.grid) if "material" in bounds else bounds.get("max_extinction", np.inf)
     ) * (1 + 1e-6)
+    clear = np.broadcast_to(cube.provenance["clear"], 3).astype(np.float32)
+    assert np.all(small.extinction.min(axis=(1, 2, 3)) >= clear)
     least, most = bounds.get("lamp_power", 0), bounds.get("lamp_power", bounds.get("lamp_max", 16))
     assert np.all((least <= small.powers) & (small.powers <= most))
     if bounds.get("powers") == "shared":

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from importlib.metadata import version
@@ -23,6 +23,7 @@ from lightcube.optics.light import Light, finer
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 from lightcube.pictures.targets import Targets
+from lightcube.solvers.contract import Bounds
 
 #: Passes at each of the coarser sizes at most; no more than of the cube itself.
 COARSE_PASSES = 100
@@ -154,6 +155,12 @@ class Job:
         """The largest extinction, 1/mm; that of coarser cubes too."""
         return self.recipe.bounded_by.most(self.grid)
 
+    def bounds(self, part: Part, columns: int) -> Bounds:
+        """Of the extinction of a part of the cube, or of a coarser one, in so many columns, 1/mm."""
+        least = self.recipe.bounded_by.least(self.grid, self.channels)[part.colours]
+        same = bool(np.all(least == least[0]))
+        return float(least[0]) if same else np.resize(least, columns), self.max_extinction
+
     @cached_property
     def level(self) -> bool:
         """Whether each slice of the cube casts one row of the pictures by itself, at all angles that are asked for."""
@@ -232,9 +239,15 @@ def fingerprint(job: Job) -> Fingerprint:
         "transfer": targets.transfer,
         **{_WORDS.get(name, name): value for name, value in job.recipe.plain().items()},
         "dyes": None if job.recipe.dyes is None else _digest(job.recipe.dyes.plain()),
+        **_by_colour("least extinction", job.recipe.bounded_by.clear),
         "units": job.units,
         "voxels to start from": None if job.start is None else _checksum(job.start),
     }
+
+
+def _by_colour(name: str, clear: float | Sequence[float]) -> Fingerprint:
+    """A number, or a text of those of each colour."""
+    return {name: clear if isinstance(clear, float) else ", ".join(f"{each:g}" for each in clear)}
 
 
 def differences(old: Fingerprint, new: Fingerprint) -> list[str]:
@@ -251,6 +264,7 @@ _WORDS = {
     "powers": "lamp powers",
     "hold_deg": "hold",
     "max_extinction": "largest extinction",
+    "clear": "least extinction",
     "per": "what extinction is counted along",
     "enough_db": "PSNR that is enough",
     "dtype": "precision",

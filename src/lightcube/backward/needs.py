@@ -216,7 +216,7 @@ def measured_speed(job: Job) -> Speed:
     problem.solve(
         job.recipe.solver,
         (high, high) if job.frozen else (low, high),
-        job.max_extinction,
+        job.bounds(problem.part, problem.light.shape[1]),
         iterations=_TIMED,
         callback=lambda progress: marks.append(time.perf_counter()),
     )

@@ -109,7 +109,7 @@ def solve_piece(
         result = problem.solve(
             job.recipe.solver,
             bounds,
-            job.max_extinction,
+            job.bounds(problem.part, problem.light.shape[1]),
             x0=None if start is None else problem.unknowns(start),
             callback=watch,
             state=_handed(state),

@@ -27,7 +27,7 @@ from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
 from lightcube.projection.shadows import shadows
-from lightcube.solvers.contract import Lighting, Result, Wanted
+from lightcube.solvers.contract import Bounds, Lighting, Result, Wanted
 from lightcube.solvers.method import Method
 
 Floats = NDArray[np.floating[Any]]
@@ -102,12 +102,12 @@ class Problem:
         """``(channel, z, y, x)`` of the unknowns `x`: that of the part."""
         return self.voxels(x) if self.dyes is None else self.dyes.mixed(self.voxels(x))
 
-    def solve(self, method: Method, lamp_bounds: tuple[Floats, Floats], most: float, **options: Any) -> Result:
-        """Solve by a method: no extinction above `most` without dyes, and what else a solver takes."""
+    def solve(self, method: Method, lamp_bounds: tuple[Floats, Floats], bounds: Bounds, **options: Any) -> Result:
+        """Solve by a method: without dyes extinction within bounds, and what else a solver takes."""
         wanted = self.wanted(lamp_bounds)
         if self.dyes is not None:
             return solve_amounts(method, self.matrix, wanted, self.dyes, **options)
-        return method.solve(self.matrix, wanted, bounds=(0.0, most), **options)
+        return method.solve(self.matrix, wanted, bounds=bounds, **options)
 
     @property
     def is_lit(self) -> Flags:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Literal, NamedTuple
 
@@ -169,6 +169,10 @@ class Recipe:
         """What voxels are mixed of, if anything."""
         return self.bounded_by.dyes
 
+    def in_clear(self, clear: float | Sequence[float]) -> Recipe:
+        """The same, where the clearest voxel takes so much, 1/mm."""
+        return replace(self, material=replace(self.bounded_by, clear=clear))
+
     def for_any_size(self, grid: Grid) -> Recipe:
         """The same, bounded as in a grid of these voxels, for grids of others: what smaller cubes are solved by."""
         return replace(self, material=self.bounded_by.of_any_size(grid))
@@ -184,6 +188,7 @@ class Recipe:
         flat = {each.name: getattr(self, each.name) for each in fields(self)}
         del flat["material"], flat["light"], flat["mat"]
         material = {name: getattr(self.bounded_by, name) for name in _MATERIAL}
+        material["clear"] = np.asarray(self.bounded_by.clear).tolist()
         flat |= {"method": self.solver.name, **material, **asdict(self.beams)}
         flat["dyes"] = None if self.dyes is None else self.dyes.plain()
         flat |= {f"mat_{each.name}": None if self.mat is None else getattr(self.mat, each.name) for each in fields(Mat)}

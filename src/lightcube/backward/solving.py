@@ -102,6 +102,7 @@ def make_job(
     check_targets(targets, grid)
     _check_method(recipe, targets.rig)
     _check_dyes(recipe, targets)
+    recipe.bounded_by.least(grid, targets.pictures.shape[-1])
     recipe = recipe.with_passes
     voxels = None if start is None else _as_start(start, grid, targets, recipe)
     job = Job(targets, grid, recipe, start=voxels, provenance=dict(provenance or {}))

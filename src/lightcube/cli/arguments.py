@@ -29,6 +29,14 @@ def two_numbers(text: str, option: str) -> tuple[float, float]:
     return said[0], said[1]
 
 
+def colours(text: str, option: str) -> tuple[float, ...]:
+    """One number, or one of each of three colours."""
+    said = numbers(text, option)
+    if len(said) not in (1, 3):
+        raise InputError(f"{option} {text}: give one number, or one of red, green and blue, such as 0.01,0.01,0.02")
+    return said
+
+
 def number_or_auto(text: str, option: str) -> float | None:
     """A number, or None where it is to be chosen: auto."""
     try:

@@ -22,6 +22,7 @@ _TEXTS: Mapping[str, Callable[[str], Any]] = {
     "angles_deg": lambda text: arguments.numbers(text, "--angles-deg"),
     "ior": lambda text: arguments.numbers(text, "--ior"),
     "grain": lambda text: arguments.number_or_auto(text, "--grain"),
+    "clear": lambda text: arguments.colours(text, "--clear"),
     "material": read_dyes,
 }
 

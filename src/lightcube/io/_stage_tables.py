@@ -14,7 +14,7 @@ from lightcube.optics.glass import Bottom, Form
 from lightcube.optics.transfer import decode
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import Fit
-from lightcube.scene.description import Count, Line, Number, Point, Positive, hex_colour
+from lightcube.scene.description import AtLeastZero, Count, Line, Number, Point, Positive, hex_colour
 from lightcube.wording import counted
 
 
@@ -40,12 +40,16 @@ class Table(BaseModel):
 
 
 class CubeTable(Table):
-    """The cube: `shape` in voxels ``(z, y, x)``, `size_mm` along its longest side, how tall its slices are."""
+    """The cube: `shape` in voxels ``(z, y, x)``, `size_mm` along its longest side, how tall its slices are.
+
+    `clear` is what its clearest voxel takes of the light, 1/mm, one number or one of each colour.
+    """
 
     shape: tuple[Count, Count, Count]
     size_mm: Positive = 100.0
     slices_tall: Count = 1
     turns: Flag = True
+    clear: AtLeastZero | tuple[AtLeastZero, AtLeastZero, AtLeastZero] = 0.0
 
 
 class TurntableTable(Table):

@@ -19,7 +19,7 @@ from lightcube.io._toml import read_tables
 from lightcube.optics.arrays import Reals
 from lightcube.optics.checks import checked
 from lightcube.optics.dyes import Calibration, DyeKind, Dyes
-from lightcube.scene.description import AtLeastZero, Fraction, Line, hex_colour, sentence
+from lightcube.scene.description import AtLeastZero, Fraction, Line, Number, hex_colour, sentence
 
 #: A density is the logarithm to the base 10 of what is let through, absorbance the natural one.
 LN10 = math.log(10)
@@ -76,6 +76,8 @@ class MaterialFile(_Table):
     date: datetime.date | Line | None = None
     instrument: Line | None = None
     base: Absorbing | None = None
+    haze: AtLeastZero = 0.0
+    g: Number = 0.0
     ink: Annotated[dict[Line, InkTable], Field(min_length=1, max_length=12)]
 
     @property
@@ -100,6 +102,8 @@ class MaterialFile(_Table):
                 kind=self.kind,
                 gain=tuple(None if ink.dot_gain is None else np.array(ink.dot_gain) for ink in inks),
                 scattering=np.array([ink.scattering for ink in inks]),
+                haze=self.haze,
+                g=self.g,
                 **made,
             )
         except InputError as error:
@@ -156,6 +160,7 @@ def as_toml(dyes: Dyes) -> str:
     key, unit = ("density", LN10) if is_ink else ("extinction", 1.0)
     lines = [f'calibration = "{dyes.calibration}"', f'kind = "{dyes.kind}"']
     lines += [f"base = {{ {key} = {_numbers(dyes.base / unit)} }}"] if np.any(dyes.base) else []
+    lines += [f"haze = {dyes.haze:.6g}", f"g = {dyes.g:.6g}"] if dyes.haze else []
     for number, name in enumerate(dyes.names):
         lines += ["", f"[ink.{_key(name)}]", f"{key} = {_numbers(dyes.extinction[number] / unit)}"]
         curve = dyes.gain[number]

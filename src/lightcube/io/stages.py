@@ -22,6 +22,7 @@ from lightcube.io.pictures import read_pictures
 from lightcube.optics.checks import checked
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
+from lightcube.optics.material import Material
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import Transfer, check_transfer
 from lightcube.optics.views import doubt_angles
@@ -179,7 +180,8 @@ def _stage(said: StageFile) -> Stage:
         said.turntable.angles_deg,
         said.turntable.axis,
         said.cube.turns,
-        glass=None if said.glass is None else Glass(**said.glass.said()),
+        Material(clear=said.cube.clear) if said.cube.clear else None,
+        None if said.glass is None else Glass(**said.glass.said()),
     )
     for number, table in enumerate(said.picture, start=1):
         if table.lamps is None and len(names) > 1:

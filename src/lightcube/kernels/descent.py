@@ -15,19 +15,28 @@ _PARTS, _RUN = 64, 512
 
 
 def step(
-    x: Array, before: Array, ahead: Array, slopes: Array, steps: Array, stride: Array, lower: float, upper: float
+    x: Array,
+    before: Array,
+    ahead: Array,
+    slopes: Array,
+    steps: Array,
+    stride: Array,
+    lower: float | Array,
+    upper: float,
 ) -> Array:
     """Replace `before` by the point after `x`; return for each column how much the momentum points uphill.
 
     With ``y = x + ahead (x - before)`` the new point is ``y - stride steps slopes``, kept between the bounds, and
     what is returned is the sum of ``(y - new) (new - x) / steps``. Arrays are ``(unknowns, columns)``, but ``ahead``
-    and ``stride`` one number per column; unknowns with a step of 0 stay where they are.
+    and ``stride``, and ``lower`` where it is no number, one number per column; unknowns with a step of 0 stay where
+    they are.
     """
     rows, columns = x.shape
     lines = max(1, min(_RUN // columns, rows // _PARTS))
-    patterns = np.tile(ahead, lines), np.tile(stride, lines)
+    least = np.full(columns, lower, x.dtype)
+    patterns = (np.tile(each, lines) for each in (ahead, stride, least))
     sums = np.zeros((_PARTS, lines * columns))
-    tasks.run(_step, _PARTS, x.size, x, before, slopes, steps, *patterns, lower, upper, sums)
+    tasks.run(_step, _PARTS, x.size, x, before, slopes, steps, *patterns, upper, sums)
     return added(added(sums).reshape(lines, columns))
 
 
@@ -41,7 +50,7 @@ def _step(
     steps: Array,
     ahead: Array,
     stride: Array,
-    lower: float,
+    lower: Array,
     upper: float,
     sums: Array,
 ) -> None:
@@ -62,14 +71,14 @@ def _step_run(
     steps: Array,
     ahead: Array,
     stride: Array,
-    lower: float,
+    lower: Array,
     upper: float,
     sums: Array,
 ) -> None:
     for i in range(len(x)):
         here, length = x[i], steps[i]
         start = here + ahead[i] * (here - before[i])
-        new = min(max(start - stride[i] * length * slopes[i], lower), upper)
+        new = min(max(start - stride[i] * length * slopes[i], lower[i]), upper)
         before[i] = new if length > 0 else here
         sums[i] += (start - new) * (new - here) / length if length > 0 else 0
 

@@ -25,7 +25,7 @@ def sweep_block(
     b: Floats,
     active: NDArray[np.bool_],
     relaxation: Floats,
-    lower: float,
+    lower: Floats,
     upper: float,
     x: Floats,
 ) -> None:
@@ -51,7 +51,7 @@ def sweep_block(
         for p in range(indptr[row], indptr[row + 1]):
             length, voxel = data[p], indices[p]
             for j in range(width):
-                x[voxel, j] = min(max(x[voxel, j] + length * step[j], lower), upper)
+                x[voxel, j] = min(max(x[voxel, j] + length * step[j], lower[j]), upper)
 
 
 @compiled
@@ -66,7 +66,7 @@ def _sweep(
     b: Floats,
     active: NDArray[np.bool_],
     relaxation: Floats,
-    lower: float,
+    lower: Floats,
     upper: float,
     x: Floats,
 ) -> None:
@@ -85,7 +85,7 @@ def _sweep(
             b[:, first:last],
             active[:, first:last],
             relaxation[first:last],
-            lower,
+            lower[first:last],
             upper,
             mine,
         )
@@ -120,10 +120,11 @@ def sweep(
     relaxation
         ``(columns,)``.
     lower, upper
-        Bounds that every row action keeps.
+        Bounds that every row action keeps; the lower one a number, or ``(columns,)``.
     x
         ``(unknowns, columns)``.
     """
     blocks, work = (x.shape[1] + BLOCK - 1) // BLOCK, len(data) * x.shape[1]
     system = indptr, indices, data, inverse_norms
-    tasks.run(_sweep, blocks, work, *system, order, b, active, relaxation, lower, upper, x)
+    least = np.full(x.shape[1], lower, x.dtype)
+    tasks.run(_sweep, blocks, work, *system, order, b, active, relaxation, least, upper, x)

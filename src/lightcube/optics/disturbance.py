@@ -1,10 +1,12 @@
 """A set-up that is a little off: turned, moved, too bright, coarse, not quite black; films that lie or print wrong."""
 
+import math
 from dataclasses import dataclass, fields
 
 import numpy as np
 
 from lightcube.errors import InputError
+from lightcube.optics.haze import Phase
 
 
 @dataclass(frozen=True)
@@ -31,6 +33,11 @@ class Disturbance:
         behind the turning cube's reach (`lightcube.optics.rig.soft`).
     further
         By how much of the cube's width every screen stands too far away, along the light through its picture's middle.
+    haze
+        Optical thickness along the cube's longest side of haze that the cube was not made for: lamps are turned up for
+        what it takes, and its veil is `lightcube.optics.haze.veil_part`'s estimate.
+    phase
+        Where haze throws light.
     """
 
     turn_deg: float = 0.0
@@ -42,17 +49,21 @@ class Disturbance:
     turn_of_64_deg: float = 0.0
     disc_deg: float = 0.0
     further: float = 0.0
+    haze: float = 0.0
+    phase: Phase = "isotropic"
 
     def __post_init__(self) -> None:
         numbers = self.turn_deg, self.turn_of_64_deg, self.right_voxels, self.up_voxels, self.lamp, self.black
-        least = min(self.levels, self.black, self.disc_deg)
-        if not np.all(np.isfinite([*numbers, self.disc_deg, self.further])) or self.lamp <= -1 or least < 0:
+        least = min(self.levels, self.black, self.disc_deg, self.haze)
+        if not np.all(np.isfinite([*numbers, self.disc_deg, self.further, self.haze])) or self.lamp <= -1 or least < 0:
             raise InputError(
-                f"no set-up is off by {self!r}: give finite numbers, lamp above -1, levels, black, disc of at least 0"
+                f"no set-up is off by {self!r}: give finite numbers, lamp above -1, levels, black, disc, haze of at "
+                "least 0"
             )
 
     def __str__(self) -> str:
         off = "too far" if self.further > 0 else "too near"
+        aside = "ahead" if self.phase == "forward" else "to all sides"
         said = {
             f"turned {self.turn_deg:g}°": self.turn_deg,
             f"turned {self.turn_of_64_deg:g}° · 64 / n": self.turn_of_64_deg,
@@ -63,6 +74,7 @@ class Disturbance:
             f"black at {100 * self.black:.3g} % of white": self.black,
             f"lamp of {self.disc_deg:g}°, screen a cube's width behind": self.disc_deg,
             f"screen {100 * abs(self.further):g} % of the cube's width {off}": self.further,
+            f"haze that throws {-100 * math.expm1(-self.haze):.0f} % {aside} along the cube (an estimate)": self.haze,
         }
         return ", ".join(words for words, number in said.items() if number) or "as made"
 
@@ -81,6 +93,10 @@ DISTURBANCES = {
     "disc": Disturbance(disc_deg=0.5),
     "far": Disturbance(further=0.05),
     "near": Disturbance(further=-0.05),
+    "haze": Disturbance(haze=0.1),
+    "haze-more": Disturbance(haze=0.4),
+    "haze-ahead": Disturbance(haze=0.1, phase="forward"),
+    "haze-ahead-more": Disturbance(haze=0.4, phase="forward"),
     "all": Disturbance(0.2, 0.5, 0.5, 0.02, 255, 0.01),
 }
 

@@ -51,7 +51,8 @@ class Dyes:
     label
         ``(dye, 3)`` levels from 0 to 255 by which the dye is known in pictures; default as it looks.
     base
-        ``(channel,)``: the clear material's own extinction, or a clear film's absorbance; default 0.
+        ``(channel,)``: what the clear material takes of the light, absorbed or thrown aside, 1/mm, or a clear film's
+        absorbance; default 0.
     calibration
         Whether it was measured.
     kind
@@ -61,6 +62,8 @@ class Dyes:
         (1, 1), both rising; None = they come out as they are sent. Default none.
     scattering
         ``(dye,)``, 1/mm: light that is thrown aside. It is kept and told; nothing here reckons with it.
+    haze, g
+        How much of `base` is thrown aside, 1/mm, and the mean cosine of where to: 0 = to all sides alike, 0.9 = ahead.
 
     Raises
     ------
@@ -77,6 +80,8 @@ class Dyes:
     kind: DyeKind = "resin"
     gain: tuple[Reals | None, ...] = ()
     scattering: Reals = field(default_factory=_none)
+    haze: float = 0.0
+    g: float = 0.0
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -90,6 +95,7 @@ class Dyes:
         for name in ("base", "scattering"):
             if not _are_within(getattr(self, name)):
                 raise InputError(f"the {name} of a material must be numbers from 0 to {_MOST:g}: mend it")
+        _check_haze(self)
         self._fill_labels()
         if self.gain and len(self.gain) != dyes:
             raise InputError(f"{counted(dyes, 'dye')} with {counted(len(self.gain), 'dot gain')}: give one for each")
@@ -227,6 +233,20 @@ def _check_extinction(names: tuple[str, ...], extinction: Reals) -> None:
     sizes = np.linalg.svd(extinction / extinction.max(axis=1, keepdims=True), compute_uv=False)
     if extinction.shape[1] > 1 and (len(sizes) < 2 or sizes[1] < _ALIKE * sizes[0]):
         raise InputError(f"{', '.join(names)} absorb all colours alike, and make only greys or tints: add another dye")
+
+
+def _check_haze(dyes: Dyes) -> None:
+    if not -1 <= dyes.g <= 1:
+        raise InputError(f"g is a mean cosine, from -1 to 1, not {dyes.g:g}")
+    if not dyes.haze >= 0:
+        raise InputError(f"haze is a number per mm of at least 0, not {dyes.haze:g}")
+    if dyes.haze and dyes.kind == "ink":
+        raise InputError("haze is of blocks, per mm, and inks lie on films: leave it out")
+    if dyes.haze > dyes.base.min():
+        raise InputError(
+            f"haze is a part of what the clear material takes, and base takes less than {dyes.haze:g} per mm of a "
+            "colour: add the haze to each number of base"
+        )
 
 
 def _curve(name: str, points: Reals | None) -> Reals | None:

@@ -197,7 +197,7 @@ class Stage:
     cube_turns
         Whether the table carries the cube.
     material
-        What bounds the extinction of this block; None = as the recipe says.
+        What bounds the extinction of this block; None = as the recipe says. Of cubes only what is clear counts.
     glass
         What bends the light on its way to the voxels; None = nothing.
 

@@ -242,6 +242,8 @@ def plan_stage(
     asked, rig = recipe or Recipe(), stage.rig()
     if isinstance(stage.grid, Stack):
         asked = replace(asked, enough_db=math.inf, material=asked.material or stage.material)
+    elif stage.material is not None and not asked.bounded_by.clear and asked.dyes is None:
+        asked = asked.in_clear(stage.material.clear)
     targets = fitted(pictures, rig, ways)
     glass.check_lit(targets, stage.grid)
     made = Plan(pictures, targets, stage.grid, asked, ways, Prediction.unknown(len(targets)), stage=stage)

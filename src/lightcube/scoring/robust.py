@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.forward.casting import cast
+from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
-from lightcube.optics.rig import soft
+from lightcube.optics.haze import veil_part
+from lightcube.optics.rig import Rig, soft
 from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import Views
@@ -36,8 +38,21 @@ def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float
     if disturbance.levels:
         rounded = _rounded(cube.extinction, disturbance.levels)
         cube = replace(cube, extinction=rounded, amounts=None, dyes=None)
-    for picture in cast(cube, rig, cube.powers * (1 + disturbance.lamp)):
+    powers = cube.powers * (1 + disturbance.lamp)
+    shown = cast(cube, rig, powers)
+    for picture in _hazy(cube, rig, powers, disturbance) if disturbance.haze else shown:
         yield picture + np.float32(disturbance.black)
+
+
+def _hazy(cube: Cube, rig: Rig, powers: Reals, disturbance: Disturbance) -> Iterator[NDArray[np.float32]]:
+    """What a cube shows through haze, as bright as without: what goes straight on, exactly, under an even veil."""
+    loss = np.float32(disturbance.haze / max(cube.grid.size_mm))
+    hazy = replace(cube, extinction=cube.extinction + loss, amounts=None, dyes=None)
+    part = np.float32(veil_part(disturbance.haze, disturbance.phase))
+    for clear, straight in zip(cast(cube, rig, powers), cast(hazy, rig, powers), strict=True):
+        bright, left = (picture.mean(axis=(0, 1), dtype=np.float64) for picture in (clear, straight))
+        gain = np.divide(bright, left, out=np.zeros_like(left), where=left > 0).astype(np.float32)
+        yield (1 - part) * gain * straight + part * bright.astype(np.float32)
 
 
 def _ways(views: Views) -> NDArray[np.float64]:
@@ -75,8 +90,9 @@ def robust(cube: Cube, targets: Targets, *, callback: Callable[[int, int], None]
     The `disturbances` are: none, the cube turned by 0.2 degrees, by 0.2 degrees times 64 / n of its n voxels across,
     half a voxel to the right, half a voxel up, every lamp power 2 % too high, extinction in 8 bits, a screen's black of
     1 % of white, on a turntable a lamp of half a degree, under lamps that are near or have a disc screens 5 % of the
-    cube's width too far and too near, and all at once but the lamp's size, the screens and the second turn. Those of
-    films are `lightcube.scoring.films.robust`'s.
+    cube's width too far and too near, haze of an optical thickness of 0.1 and 0.4 along the cube that throws light to
+    all sides or ahead, and all at once but the lamp's size, the screens, haze and the second turn. Those of films are
+    `lightcube.scoring.films.robust`'s.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from lightcube.errors import InputError
 from lightcube.kernels.layout import copied
-from lightcube.solvers.contract import Floats, Operator, State, Wanted
+from lightcube.solvers.contract import Bounds, Floats, Operator, State, Wanted
 from lightcube.wording import counted
 
 
@@ -24,7 +24,8 @@ class LinearProblem:
     weights: Floats
     #: ``(unknowns, columns)``, where to start: the solver's own array, within the bounds.
     x: Floats
-    lower: float
+    #: ``(columns,)``.
+    lower: Floats
     upper: float
     #: ``(lamps, channels)``.
     lamp_powers: Floats
@@ -40,17 +41,17 @@ def check_fits(A: Operator, wanted: Wanted) -> None:
         )
 
 
-def check_bounds(bounds: tuple[float, float]) -> tuple[float, float]:
-    """Return the bounds of `x` as floats, or raise `InputError` unless there is a number between them."""
-    lower, upper = (float(bound) for bound in bounds)
-    if not (lower <= upper and lower < np.inf and upper > -np.inf):  # also refuses NaN
-        raise InputError(f"bounds must be a lower bound and an upper bound that is not less, not ({lower}, {upper})")
-    return lower, upper
+def check_bounds(bounds: Bounds, columns: int) -> Bounds:
+    """Return the bounds of `x`, or raise `InputError` unless there is a number between them in each of its columns."""
+    least, upper = np.asarray(bounds[0], np.float64), float(bounds[1])
+    if least.shape not in ((), (columns,)):
+        raise InputError(f"lower bounds are one number, or one of each of the {columns} columns, not {least.shape}")
+    if not (np.all(least <= upper) and np.all(least < np.inf) and upper > -np.inf):  # also refuses NaN
+        raise InputError(f"bounds must be a lower bound and an upper bound that is not less, not ({least}, {upper})")
+    return (least if least.ndim else float(least)), upper
 
 
-def check_start(
-    x0: Floats | None, shape: tuple[int, int], bounds: tuple[float, float], dtype: np.dtype[np.floating[Any]]
-) -> Floats:
+def check_start(x0: Floats | None, shape: tuple[int, int], bounds: Bounds, dtype: np.dtype[np.floating[Any]]) -> Floats:
     """Return a fresh start of `shape` and `dtype` within `bounds` from `x0` (None = all 0), or raise `InputError`."""
     given = np.broadcast_to(dtype.type(0), shape) if x0 is None else np.asarray(x0)
     if given.shape != shape or not np.all(np.isfinite(given)):
@@ -104,9 +105,7 @@ def check_state(
     return copies
 
 
-def linear_problem(
-    method: str, A: Operator, wanted: Wanted, x0: Floats | None, bounds: tuple[float, float]
-) -> LinearProblem:
+def linear_problem(method: str, A: Operator, wanted: Wanted, x0: Floats | None, bounds: Bounds) -> LinearProblem:
     """Check what `method` was given and take logarithms; `InputError` names what cannot be used.
 
     The parameters are those of `lightcube.solvers.contract.Solver`.
@@ -116,12 +115,12 @@ def linear_problem(
     check_fits(A, wanted)
     if not wanted.has_fixed_lamps:
         raise InputError(f"method {method} cannot choose lamp powers: fix them, or use method display")
-    lower, upper = check_bounds(bounds)
+    lower, upper = check_bounds(bounds, wanted.light.shape[1])
     return LinearProblem(
         b=np.ascontiguousarray(wanted.absorbance()),
         weights=wanted.weights,
         x=check_start(x0, (A.shape[1], wanted.light.shape[1]), (lower, upper), wanted.light.dtype),
-        lower=lower,
+        lower=np.full(wanted.light.shape[1], lower, wanted.light.dtype),
         upper=upper,
         lamp_powers=wanted.lamp_bounds[0],
     )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.kernels import convex, display
-from lightcube.solvers.contract import Floats, Operator, Wanted
+from lightcube.solvers.contract import Bounds, Floats, Operator, Wanted
 
 #: The curvatures used hold as long as no beam's ln light rises by more than this.
 ROOM = 0.1
@@ -90,21 +90,21 @@ class ConvexObjective:
         convex.curvatures(ax, lamp.astype(ax.dtype), *data, ax.dtype.type(ROOM), values)
         return values
 
-    def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: tuple[float, float]) -> float:
+    def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: Bounds) -> float:
         """A number that the objective cannot fall below, by duality from the derivatives at `ax`; at least 0.
 
         For any s, the objective is at least ``min over lamps of s.lnP + min over x of -(A's).x - sum of conjugates``
         (R. T. Rockafellar, Convex Analysis, 1970, section 31). Writes over `ax`.
         """
         lower, upper = bounds
-        if lower == -np.inf:
+        if np.any(lower == -np.inf):
             return 0.0
         pull = self.descend(ax, ax, lamp)
         np.negative(pull, out=pull)
         if upper == np.inf:
             self._make_feasible(A, pull)
         back = A.adjoint(pull)
-        least = -lower * float(np.sum(np.minimum(back, 0), dtype=np.float64))
+        least = -float(np.sum(lower * np.sum(np.minimum(back, 0), axis=0, dtype=np.float64)))
         if upper < np.inf:
             least -= upper * float(np.sum(np.maximum(back, 0), dtype=np.float64))
         rows_of_lamp = (self.rows[first:last] for first, last in pairwise(self.starts))

@@ -12,7 +12,7 @@ from lightcube.kernels.layout import empty
 from lightcube.optics.arrays import Counts
 from lightcube.optics.law import Mixture
 from lightcube.solvers._convex import ROOM, ConvexObjective
-from lightcube.solvers.contract import Floats, Lighting, Operator, Wanted
+from lightcube.solvers.contract import Bounds, Floats, Lighting, Operator, Wanted
 
 #: Newton's steps for the powers of several lamps in each pass, at most; the longest one, and one so short that it is
 #: the last.
@@ -134,7 +134,7 @@ class Objective:
         objective.curvatures(*data, room, self.views, self._of_views(ax), self._of_views(values))
         return values
 
-    def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: tuple[float, float]) -> None:
+    def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: Bounds) -> None:
         """No bound is known: the problem is not convex."""
 
     def _of_views(self, block: Floats) -> Floats:

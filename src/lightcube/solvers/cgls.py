@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lightcube.optics.arrays import locked
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
+from lightcube.solvers.contract import Bounds, Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: A column has converged once the gradient that the bounds leave is this part of ``A.T W b``, in the 2-norm.
 _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -20,7 +20,7 @@ def cgls(
     wanted: Wanted,
     *,
     x0: Floats | None = None,
-    bounds: tuple[float, float] = (0.0, np.inf),
+    bounds: Bounds = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
     state: State | None = None,
@@ -79,7 +79,7 @@ def cgls(
         project = leaving_norm > free_norm
         p = free + _ratio(~fresh * free_norm**2, free_before**2).astype(dtype) * p
         if np.any(project):
-            p[:, project] = _projected_gradient(problem, x[:, project], g[:, project], d[:, project])
+            p[:, project] = _projected_gradient(problem, project, x, g, d)
         p[:, rests] = 0
         x, ax, clipped = _step(A, problem, x, ax, g, p)
         fresh, free_before = project | clipped, free_norm
@@ -137,10 +137,11 @@ def _better_end(
     """Of some columns, the better of a clipped step and of one that ends at the first bound it meets: x and A x."""
     x, p, x_far = x[:, columns], p[:, columns], np.ascontiguousarray(x_clipped[:, columns])
     ax_far = A.forward(x_far)
-    ahead = np.where(p > 0, problem.upper - x, problem.lower - x)
+    lower = problem.lower[columns]
+    ahead = np.where(p > 0, problem.upper - x, lower - x)
     room = np.divide(ahead, p, out=np.full_like(p, np.inf), where=p != 0)
     length = room.min(axis=0)
-    x_near = np.clip(x + length * p, problem.lower, problem.upper)
+    x_near = np.clip(x + length * p, lower, problem.upper)
     x_near = np.where(room == length, x_far, x_near)  # exactly on the bound that was met
     ax_near = ax[:, columns] + length * q[:, columns]
     b, w = problem.b[:, columns], problem.weights[:, columns]
@@ -154,10 +155,11 @@ def _parts_of_gradient(problem: LinearProblem, x: Floats, g: Floats) -> tuple[Fl
     return np.where(low | high, 0, g), np.where((low & ~high & (g > 0)) | (high & ~low & (g < 0)), g, 0)
 
 
-def _projected_gradient(problem: LinearProblem, x: Floats, g: Floats, d: Floats) -> Floats:
-    """Direction of a gradient step, scaled by its majorant `d` and clipped to the bounds."""
+def _projected_gradient(problem: LinearProblem, columns: NDArray[np.bool_], x: Floats, g: Floats, d: Floats) -> Floats:
+    """Of some columns, the direction of a gradient step, scaled by its majorant `d` and clipped to the bounds."""
+    x, g, d = x[:, columns], g[:, columns], d[:, columns]
     step = np.divide(g, d, out=np.zeros_like(g), where=d > 0)
-    return np.asarray(np.clip(x + step, problem.lower, problem.upper) - x)
+    return np.asarray(np.clip(x + step, problem.lower[columns], problem.upper) - x)
 
 
 def _ratio(above: PerColumn, below: PerColumn) -> PerColumn:

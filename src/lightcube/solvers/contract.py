@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.floating[Any]]
 #: Everything that a stopped solver needs to go on, beside what it was called with: plain arrays by name.
 State = Mapping[str, NDArray[Any]]
+#: Lower and upper bound of `x`; the lower one is a number, or one of each column, ``(columns,)``.
+Bounds = tuple[float | NDArray[np.float64], float]
 
 
 class Operator(Protocol):
@@ -293,7 +295,8 @@ class Solver(Protocol):
     x0
         ``(unknowns, columns)`` to start from; None = all 0 (fully transparent).
     bounds
-        Lower and upper bound of `x`; a method that cannot keep them says so.
+        Lower and upper bound of `x`; a method that cannot keep them says so. The lower one is a number, or where
+        colours differ in what the clear material absorbs one of each column, ``(columns,)``.
     iterations
         At most so many.
     callback
@@ -310,7 +313,7 @@ class Solver(Protocol):
         wanted: Wanted,
         *,
         x0: Floats | None = None,
-        bounds: tuple[float, float] = (0.0, np.inf),
+        bounds: Bounds = (0.0, np.inf),
         iterations: int = 100,
         callback: Callback | None = None,
         state: State | None = None,

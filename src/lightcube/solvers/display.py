@@ -20,7 +20,7 @@ from lightcube.optics.arrays import locked
 from lightcube.solvers._checks import check_bounds, check_fits, check_iterations, check_start, check_state
 from lightcube.solvers._convex import ConvexObjective
 from lightcube.solvers._objective import Objective
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
+from lightcube.solvers.contract import Bounds, Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: The metric is renewed after 1, 2, 4, 7, 11, 17, 26, ... iterations: each time costs as much as an iteration.
 _RENEWAL = 1.5
@@ -39,7 +39,7 @@ def display_values(
     wanted: Wanted,
     *,
     x0: Floats | None = None,
-    bounds: tuple[float, float] = (0.0, np.inf),
+    bounds: Bounds = (0.0, np.inf),
     iterations: int = 200,
     callback: Callback | None = None,
     state: State | None = None,
@@ -85,10 +85,10 @@ def display_values(
     check_fits(A, wanted)
     mixture = wanted.lighting.mixture
     goal = ConvexObjective.of(wanted) if mixture is None else Objective.of(wanted, mixture)
-    bounds = check_bounds(bounds)
     iterations = check_iterations(iterations)
     shape, dtype = (A.shape[1], wanted.light.shape[1]), wanted.light.dtype
-    limits: tuple[Any, ...] = tuple(dtype.type(bound) for bound in bounds)
+    lower, upper = bounds = check_bounds(bounds, shape[1])
+    limits: tuple[Any, ...] = (lower, dtype.type(upper))
     if state is None:
         at = _State.first(check_start(x0, shape, bounds, dtype), goal.low, goal.high)
     else:

@@ -12,7 +12,7 @@ from lightcube.optics.arrays import locked
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
+from lightcube.solvers.contract import Bounds, Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: A column has settled once a sweep changes it by at most this part of its largest number.
 _SETTLED = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -29,7 +29,7 @@ def gauss_seidel(
     wanted: Wanted,
     *,
     x0: Floats | None = None,
-    bounds: tuple[float, float] = (0.0, np.inf),
+    bounds: Bounds = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
     state: State | None = None,
@@ -72,7 +72,7 @@ def gauss_seidel(
     x, dtype = problem.x, problem.x.dtype
     rows = _Rows.of(A, dtype)
     judge = _Judge(problem, rows, half_level(wanted.light, wanted.transfer))
-    limits = dtype.type(problem.lower), dtype.type(problem.upper)
+    limits: tuple[Any, Any] = problem.lower, dtype.type(problem.upper)
     start, settled = x, False
     residuals: list[float] = []
     if state is not None:
@@ -103,7 +103,7 @@ def gauss_seidel(
         )
     reason = "callback" if asked else "converged" if settled else "iterations"
     undetermined = A.adjoint(judge.active.astype(dtype)) == 0
-    x[undetermined] = np.clip(dtype.type(0), *limits)
+    x = np.where(undetermined, np.clip(dtype.type(0), *limits), x)
     return Result(
         locked(x), problem.lamp_powers, np.array(residuals), np.argwhere(judge.rejected), locked(undetermined), reason
     )
@@ -138,7 +138,7 @@ class _Judge:
     def __init__(self, problem: LinearProblem, rows: _Rows, tolerance: Floats) -> None:
         present = problem.weights > 0
         with np.errstate(invalid="ignore"):  # a beam that misses the cube times an infinite bound
-            least, most = (np.nan_to_num(rows.sums * bound)[:, None] for bound in (problem.lower, problem.upper))
+            least, most = (np.nan_to_num(rows.sums[:, None] * bound) for bound in (problem.lower, problem.upper))
         self._impossible = present & ((problem.b < least - tolerance) | (problem.b > most + tolerance))
         self._present, self._tolerance = present, tolerance
         self._importance = np.where(present, problem.weights, 1)

@@ -11,7 +11,7 @@ from lightcube.errors import InputError
 from lightcube.optics.arrays import locked
 from lightcube.solvers._absorbance import half_level
 from lightcube.solvers._checks import LinearProblem, check_iterations, check_state, linear_problem
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
+from lightcube.solvers.contract import Bounds, Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: The largest matrix, in equations times unknowns.
 LARGEST = 250_000
@@ -31,7 +31,7 @@ def row_reduction(
     wanted: Wanted,
     *,
     x0: Floats | None = None,
-    bounds: tuple[float, float] = (0.0, np.inf),
+    bounds: Bounds = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
     state: State | None = None,
@@ -96,10 +96,10 @@ def row_reduction(
         return {**arrays, "history": np.array(residuals)}
 
     reason = "converged"
-    matrix = A.to_sparse().toarray()
+    matrix, lower = A.to_sparse().toarray(), problem.lower
     tolerance = half_level(wanted.light, wanted.transfer).astype(np.float64)
     for some, values, free, out in _solve(matrix, problem, tolerance, finished.copy()):
-        x[:, some] = np.clip(np.where(free, 0, values), problem.lower, problem.upper)
+        x[:, some] = np.clip(np.where(free, 0, values), lower[some], problem.upper)
         undetermined[:, some], rejected[:, some], finished[some] = free, out, True
         ax = A.forward(x)
         remaining = (problem.weights > 0) & ~rejected & finished
@@ -118,7 +118,7 @@ def _solve(
     matrix: Matrix, problem: LinearProblem, tolerance: Matrix, finished: Mask
 ) -> Iterator[tuple[NDArray[np.intp], Matrix, Mask, Mask]]:
     """For some unfinished columns after others: which, values, undetermined voxels and rejected equations."""
-    b = problem.b.astype(np.float64)
+    b, lower = problem.b.astype(np.float64), problem.lower
     patterns, pattern_of_column = np.unique(problem.weights > 0, axis=1, return_inverse=True)
     for pattern, present in enumerate(patterns.T):
         rows, columns = np.flatnonzero(present), np.flatnonzero(pattern_of_column == pattern)
@@ -130,7 +130,7 @@ def _solve(
         if not np.all(bad | finished[columns]):
             yield columns[~bad], values[:, ~bad], free, np.zeros((len(b), 1), np.bool_)
         for column in columns[bad & ~finished[columns]]:
-            fit = _fit(matrix[rows], b[rows, column], problem.weights[rows, column], problem.lower, problem.upper)
+            fit = _fit(matrix[rows], b[rows, column], problem.weights[rows, column], lower[column], problem.upper)
             disagreement = np.abs(b[rows, column] - matrix[rows] @ fit) / tolerance[rows, column]
             order = rows[np.argsort(disagreement, kind="stable")]
             met = int(np.sum(disagreement <= _MET))

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from lightcube.optics.arrays import locked
 from lightcube.solvers._checks import check_iterations, check_state, linear_problem
 from lightcube.solvers._momentum import run_ahead
-from lightcube.solvers.contract import Callback, Floats, Operator, Progress, Result, State, Wanted
+from lightcube.solvers.contract import Bounds, Callback, Floats, Operator, Progress, Result, State, Wanted
 
 #: A column has converged once a step is shorter than this part of its right-hand side (both in the method's norms).
 _TOLERANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 1e-12}
@@ -17,7 +17,7 @@ def sirt(
     wanted: Wanted,
     *,
     x0: Floats | None = None,
-    bounds: tuple[float, float] = (0.0, np.inf),
+    bounds: Bounds = (0.0, np.inf),
     iterations: int = 100,
     callback: Callback | None = None,
     state: State | None = None,

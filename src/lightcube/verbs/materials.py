@@ -12,7 +12,14 @@ from lightcube import io
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.gamut import alone, colours, out_of_reach
+from lightcube.optics.grid import Grid
+from lightcube.optics.haze import FORWARD, phase_of, veil_part
+from lightcube.optics.material import Material
+from lightcube.optics.stack import Stack
 
+#: Clear material that takes a smaller part than this is not told; from such parts of veil on, what pictures become.
+_FAINT = 0.005
+_VEILS = ((0.6, "they drown"), (0.1, "they get pale"), (0.015, "a little of their depth goes"), (0.0, "hardly seen"))
 #: A voxel is as full of a dye as it can be from this part of its limit on.
 _FULL = 0.999
 #: A dye that takes less than this part of another colour with it makes its own colour alone.
@@ -39,6 +46,7 @@ def facts(dyes: Dyes) -> dict[str, Any]:
         known |= {} if limit == 1 else {f"{name}_limit": float(limit)}
         known |= {} if curve is None else {f"{name}_dot_gain_at_half": float(np.interp(0.5, *curve.T) - 0.5)}
     known[f"base_{called}"] = np.round(dyes.base / unit, 6).tolist()
+    known |= {"haze_per_mm": dyes.haze, "haze_g": dyes.g} if dyes.haze else {}
     return known
 
 
@@ -50,6 +58,25 @@ def in_words(dyes: Dyes) -> list[str]:
             said.append(f"{colour} (nearest is {dye}, which takes {part:.0%} as much {other} with it)")
     reach = f"no mixture absorbs alone: {'; '.join(said)}" if said else "each colour can be absorbed almost alone"
     return [f"material: {', '.join(dyes.names)}; {reach}", *(f"doubtful: {sentence}" for sentence in dyes.doubts)]
+
+
+def clearest(material: Material, grid: Grid) -> list[str]:
+    """What the clear material takes of the light, and what its haze will do, by an estimate."""
+    dyes, side_mm = material.dyes, max(grid.size_mm)
+    most = float(np.max(material.clear if dyes is None else dyes.in_block(grid).base))
+    if most * side_mm < _FAINT or isinstance(grid, Stack):
+        return []
+    line = f"clear material takes up to {-math.expm1(-most * side_mm):.0%} of the light along {side_mm:.3g} mm"
+    if dyes is None:
+        parts = [f"{veil_part(most * side_mm, phase):.1%} of all light" for phase in ("isotropic", "forward")]
+        return [f"{line}; were all that haze, a veil of about {parts[0]} if thrown to all sides, {parts[1]} if ahead"]
+    if not dyes.haze:
+        return [line]
+    part, ahead = veil_part(dyes.haze * side_mm, phase_of(dyes.g)), dyes.g >= FORWARD
+    seen = next(words for least, words in _VEILS if part >= least)
+    thrown = f"{-math.expm1(-dyes.haze * side_mm):.0%} aside, {'mostly ahead' if ahead else 'to all sides'}"
+    veil = f"haze throws {thrown}, and lays a veil over the pictures, by an estimate {part:.1%} of all light: {seen}"
+    return [line, veil]
 
 
 def amounts(cube: Cube) -> dict[str, Any]:

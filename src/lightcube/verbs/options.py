@@ -33,7 +33,7 @@ FILM_MOST = 32
 #: What is said of cubes, and not of films.
 _NOT_OF_FILMS = (
     *("shape", "slices_tall", "picture_width", "hold_deg", "order", "shift", "mat", "elevation_deg", "span_deg"),
-    *("angles_deg", "paper", "lamp_deg", "screen_mm", "grain", "ior", "form", "bottom", "bath_mm"),
+    *("angles_deg", "paper", "lamp_deg", "screen_mm", "grain", "ior", "form", "bottom", "bath_mm", "clear"),
 )
 
 #: What options are about, in the order in which people are told of them.
@@ -192,6 +192,14 @@ class Options:
             "Material",
             "How quickly light may fade in the darkest glass, per mm (1/mm): 0.1 leaves 37 % after 10 mm.  "
             "[default: to 5 % along one voxel; thin beams: any]",
+        ),
+    ] = None
+    clear: Annotated[
+        tuple[float, ...] | None,
+        Option(
+            "Material",
+            "What the clearest glass takes of the light, absorbed or thrown aside by haze, per mm: 0.01 leaves 37 % "
+            "after 100 mm.  One number, or one of red, green, blue as 0.01,0.01,0.02.  [default: 0]",
         ),
     ] = None
     material: Annotated[
@@ -397,6 +405,8 @@ class Options:
             raise InputError(f"--quality is for method display: use --iterations with method {self.method}")
         if self.material is not None and self.max_extinction is not None:
             raise InputError("--material says how dark it can be: leave --max-extinction out")
+        if self.material is not None and self.clear is not None:
+            raise InputError("--material says what its clear part takes (base, haze): leave --clear out")
         said: dict[str, Any] = {
             "method": self.method,
             "powers": self.powers,
@@ -411,6 +421,7 @@ class Options:
         said = {name: value for name, value in said.items() if value is not None}
         fast = self.iterations is None and self.method == "display"
         recipe = Recipe.of_quality(self.quality or "normal", **said) if fast else Recipe(**said)
+        recipe = recipe if self.clear is None else recipe.in_clear(self.clear)
         return recipe if self.grain is None else self._with_grain(recipe, self.grain)
 
     def _with_grain(self, recipe: Recipe, grain: float) -> Recipe:

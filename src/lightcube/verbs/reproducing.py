@@ -193,8 +193,10 @@ def _solver_options(cube: Cube, command: Command) -> Iterator[str]:
         yield from ("--powers", made.powers)
     if made.dyes is not None:
         yield from ("--material", _material(made.dyes, command))
-    elif made.bounded_by != usual.bounded_by:
+    elif replace(made.bounded_by, clear=0.0) != usual.bounded_by:
         yield from ("--max-extinction", _number(made.bounded_by.most(cube.grid)))
+    if made.bounded_by.clear:
+        yield from ("--clear", ",".join(_number(each) for each in np.atleast_1d(made.bounded_by.clear)))
     if made.assembly_mm:
         yield from ("--assembly-mm", _number(made.assembly_mm))
     if made.seed:

@@ -57,6 +57,7 @@ def in_short(planned: Plan, order: "Order | None") -> list[str]:
         *expected(planned),
         *gain(planned, order),
         *([] if planned.recipe.dyes is None else materials.in_words(planned.recipe.dyes)),
+        *materials.clearest(planned.recipe.bounded_by, planned.grid),
         *(f"doubtful: {sentence}" for sentence in planned.doubtful),
         *unsampled(rig, "thin" if planned.recipe.beams.is_thin else "area"),
     ]
