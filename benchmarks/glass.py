@@ -87,8 +87,8 @@ def designs(n: int = 40, count: int = 12, wide: int = 24) -> None:
         mean, worst = psnr(cube)
         print(
             f"| {name} | {elevation_deg:g} | {lit:.3f} | {light.min():.2f} to {light.max():.2f} | "
-            f"{psnr(thin, light='thin')[0]:.1f} / {psnr(thin)[0]:.1f} | {mean:.1f} / {worst:.1f} | {off[0]} | {off[1]} | "
-            f"{took:.1f} |",
+            f"{psnr(thin, light='thin')[0]:.1f} / {psnr(thin)[0]:.1f} | {mean:.1f} / {worst:.1f} | {off[0]} | "
+            f"{off[1]} | {took:.1f} |",
             flush=True,
         )
 

@@ -30,7 +30,7 @@ class Disturbance:
         Light on the screen where it should be black, as a fraction of white, added in linear light.
     disc_deg
         Angular diameter of the lamp's disc where it should have none, degrees; the screen then stands one cube width
-        behind the turning cube's reach (`lightcube.optics.rig.soft`).
+        behind the turning cube's reach (`lightcube.optics.rig.soft`), and behind glass where it stands.
     further
         By how much of the cube's width every screen stands too far away, along the light through its picture's middle.
     haze
@@ -38,6 +38,8 @@ class Disturbance:
         what it takes, and its veil is `lightcube.optics.haze.veil_part`'s estimate.
     phase
         Where haze throws light.
+    ior
+        By how much the glass's index of refraction is too high.
     """
 
     turn_deg: float = 0.0
@@ -51,11 +53,16 @@ class Disturbance:
     further: float = 0.0
     haze: float = 0.0
     phase: Phase = "isotropic"
+    ior: float = 0.0
 
     def __post_init__(self) -> None:
         numbers = self.turn_deg, self.turn_of_64_deg, self.right_voxels, self.up_voxels, self.lamp, self.black
         least = min(self.levels, self.black, self.disc_deg, self.haze)
-        if not np.all(np.isfinite([*numbers, self.disc_deg, self.further, self.haze])) or self.lamp <= -1 or least < 0:
+        if (
+            not np.all(np.isfinite([*numbers, self.disc_deg, self.further, self.haze, self.ior]))
+            or self.lamp <= -1
+            or least < 0
+        ):
             raise InputError(
                 f"no set-up is off by {self!r}: give finite numbers, lamp above -1, levels, black, disc, haze of at "
                 "least 0"
@@ -72,7 +79,8 @@ class Disturbance:
             f"lamp {100 * self.lamp:+.3g} %": self.lamp,
             f"extinction in {self.levels + 1} levels": self.levels,
             f"black at {100 * self.black:.3g} % of white": self.black,
-            f"lamp of {self.disc_deg:g}°, screen a cube's width behind": self.disc_deg,
+            f"lamp of {self.disc_deg:g}°, screen a cube's width behind (as made, behind glass)": self.disc_deg,
+            f"index of refraction {self.ior:+g}": self.ior,
             f"screen {100 * abs(self.further):g} % of the cube's width {off}": self.further,
             f"haze that throws {-100 * math.expm1(-self.haze):.0f} % {aside} along the cube (an estimate)": self.haze,
         }
@@ -80,7 +88,7 @@ class Disturbance:
 
 
 #: What `robust` tries, by name; lamps of a size only where they have none, on a turntable; other distances of screens
-#: only where they matter.
+#: only where they matter, and other indices of refraction only of glass.
 DISTURBANCES = {
     "undisturbed": Disturbance(),
     "turned": Disturbance(turn_deg=0.2),
@@ -97,6 +105,8 @@ DISTURBANCES = {
     "haze-more": Disturbance(haze=0.4),
     "haze-ahead": Disturbance(haze=0.1, phase="forward"),
     "haze-ahead-more": Disturbance(haze=0.4, phase="forward"),
+    "index": Disturbance(ior=0.001),
+    "index-more": Disturbance(ior=0.01),
     "all": Disturbance(0.2, 0.5, 0.5, 0.02, 255, 0.01),
 }
 

@@ -24,8 +24,13 @@ from lightcube.scoring.metrics import check_same_views, psnr
 def disturbed(cube: Cube, disturbance: Disturbance) -> Iterator[NDArray[np.float32]]:
     """Yield what the screen shows at each stop of a disturbed set-up, ``(row, column, channel)``, linear light."""
     rig = cube.rig.turned(disturbance.turn_deg + disturbance.turn_of_64_deg * 64 / max(cube.grid.shape[1:]))
-    if disturbance.disc_deg:
+    if disturbance.disc_deg and rig.glass is None:
         rig = soft(rig, cube.grid, disturbance.disc_deg)
+    elif disturbance.disc_deg:
+        rig = replace(rig, sums=replace(rig.sums, disc_deg=np.full(len(rig.views), disturbance.disc_deg)))
+    if rig.glass is not None and disturbance.ior:
+        iors = tuple(ior + disturbance.ior for ior in rig.glass.iors)
+        rig = replace(rig, glass=replace(rig.glass, ior=iors))
     views = rig.views
     # In the cube's own axes it is the screen that moves, the other way.
     right, down = (
@@ -71,16 +76,18 @@ def _rounded(extinction: NDArray[np.float32], levels: int) -> NDArray[np.float32
 def disturbances(cube: Cube) -> dict[str, Disturbance]:
     """Those of `DISTURBANCES` that can befall a cube: parallel lamps of a turntable may have a disc unawares.
 
-    How far screens stand away matters under lamps that are near, or have a disc.
+    How far screens stand away matters under lamps that are near, or have a disc, and behind round glass.
     """
     rig = cube.rig
-    spreads = bool(np.any(rig.sums.disc_deg) or np.any(rig.views.lamps[:, 3]))
+    lens = rig.glass is not None and rig.glass.is_round
+    spreads = bool(lens or np.any(rig.sums.disc_deg) or np.any(rig.views.lamps[:, 3]))
     raised = None if np.any(rig.sums.disc_deg) or not np.all(rig.screens.endless) else rig.elevation_deg
     return {
         name: each
         for name, each in DISTURBANCES.items()
         if (not each.disc_deg or (raised is not None and abs(raised) + each.disc_deg / 2 < 90))
         and (spreads or not each.further)
+        and (rig.glass is not None or not each.ior)
     }
 
 
@@ -91,7 +98,8 @@ def robust(cube: Cube, targets: Targets, *, callback: Callable[[int, int], None]
     half a voxel to the right, half a voxel up, every lamp power 2 % too high, extinction in 8 bits, a screen's black of
     1 % of white, on a turntable a lamp of half a degree, under lamps that are near or have a disc screens 5 % of the
     cube's width too far and too near, haze of an optical thickness of 0.1 and 0.4 along the cube that throws light to
-    all sides or ahead, and all at once but the lamp's size, the screens, haze and the second turn. Those of films are
+    all sides or ahead, of glass an index of refraction 0.001 and 0.01 too high, and all at once but the lamp's size,
+    the screens, haze, the index and the second turn. Those of films are
     `lightcube.scoring.films.robust`'s.
 
     Parameters
