@@ -49,6 +49,7 @@ def test_there_is_a_stage_for_each_way_to_light_a_cube() -> None:
     assert {path.stem for path in STAGES} == {
         *("two-screens", "three-screens", "circling-lamp", "point-lamp", "hemisphere", "coloured-lamps"),
         *("soft-lamp", "fading"),
+        *(f"glass-{form}" for form in ("block", "cylinder", "sphere", "bath", "round-bath")),
     }
 
 
