@@ -12,6 +12,7 @@ from lightcube.optics.refraction import bent
 from lightcube.pictures.samples import photographs
 from lightcube.planning import glass as planning
 from lightcube.planning.prediction import predict
+from tests.conftest import INTERPRETED
 
 PICTURES = photographs(4)
 
@@ -49,6 +50,7 @@ def test_light_through_the_bottom_is_told_and_refused_where_it_is_most_of_a_pict
     assert not np.any(planning.lit(targets(0.5, 0.0)[0]).bottom)
 
 
+@pytest.mark.skipif(INTERPRETED, reason="small cubes that are interpreted are asked too little to tell widths apart")
 def test_plans_make_pictures_no_wider_than_glass_lights() -> None:
     """The widest of four level pictures would be as wide as the cube, of which 0.64 are lit."""
     pictures = photographs(3)

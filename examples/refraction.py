@@ -1,6 +1,6 @@
 """The picture of docs/glass.md: what glass does to a cube that does not know of it, and to cubes that do.
 
-    python examples/glass.py [FOLDER]
+    python examples/refraction.py [FOLDER]
 
 Half a minute; the picture goes to docs/pictures, or FOLDER.
 """
