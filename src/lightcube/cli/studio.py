@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from lightcube.cli.console import err, out
+from lightcube.cli.console import err
 from lightcube.errors import InputError
 
 
@@ -26,7 +26,7 @@ def studio(
         ) from error
 
     def ready(address: str) -> None:
-        out.print(address)
+        typer.echo(address)  # as it is: it holds the key
         err.print("the studio is open in your browser; Ctrl-C ends it, and nothing is lost")
         if not no_browser:
             webbrowser.open(address)

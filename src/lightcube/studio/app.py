@@ -56,6 +56,7 @@ def make_app(project: Project, token: str, hosts: frozenset[str] = LOOPBACK) -> 
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        desk.start()
         yield
         desk.close()
 

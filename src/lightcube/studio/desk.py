@@ -21,8 +21,10 @@ class Desk:
         What each part has to say of how it stands, by its name: it stands beside the settings in `state`.
     minding
         Called after every change of the settings.
-    closing
-        Called when the studio ends.
+    first_cube
+        Scene or voxels of a small cube, which can be turned before there is another one.
+    starting, closing
+        Called when the studio begins to be served, and when it ends.
     """
 
     def __init__(self, project: Project) -> None:
@@ -31,6 +33,9 @@ class Desk:
         self.parts: dict[str, Callable[[], Any]] = {}
         self.minding: list[Callable[[], None]] = []
         self.closing: list[Callable[[], None]] = []
+        self.starting: list[Callable[[], None]] = []
+        self.first_cube: Callable[[str], bytes | None] = lambda _: None
+        self.is_started = False
         self._lock = threading.Lock()
 
     def state(self) -> dict[str, Any]:
@@ -42,6 +47,12 @@ class Desk:
         """Change the settings, keep them, and tell everybody."""
         self.project.change(change)
         return self.changed()
+
+    def start(self) -> None:
+        """Begin what goes on by itself."""
+        self.is_started = True
+        for start in self.starting:
+            start()
 
     def changed(self) -> dict[str, Any]:
         """Tell everybody how the project stands now, and return it."""

@@ -6,6 +6,7 @@ import hashlib
 import json
 import secrets
 from collections.abc import Awaitable, Callable, MutableMapping
+from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
@@ -150,10 +151,8 @@ class Guard:
                 message["headers"] = [*message.get("headers", []), *more]
             await send(message)
 
-        try:
+        with suppress(_TooMuch):
             await self._app(scope, counted, secured)
-        except _TooMuch:
-            pass
         if over and not begun:
             await _answer(send, 413, sentence)
 
