@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -207,4 +208,7 @@ THINGS: Mapping[str, Thing] = {
 
 def make(name: str, source: Path, target: Path, label: Label, tell: Tell, *, captions: bool) -> Sequence[str]:
     """Make a thing's file of a cube's file; returns what is to be said of it. `InputError` where it cannot be."""
-    return THINGS[name].make(Order(load(str(source)), source, target, label, captions, tell))
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        said = THINGS[name].make(Order(load(str(source)), source, target, label, captions, tell))
+    return [*said, *(f"{each.message}" for each in warned if issubclass(each.category, UserWarning))]
