@@ -1,5 +1,6 @@
 """Class mode: what is drawn becomes a solid, contradictions are told, and a small cube's equations are right."""
 
+import base64
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ pytest.importorskip("fastapi", reason="the studio's extra is not installed")
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
+from lightcube import io
 from lightcube.errors import InputError
 from lightcube.studio import lessons
 from lightcube.studio.desk import Desk
@@ -48,7 +50,7 @@ def test_what_a_wall_forbids_is_lost_and_blamed() -> None:
     assert found["shares"] == [0.5, 0.0, 0.0]
     assert found["lost"][0] == [SIDE * "1"] * (SIDE // 2) + [SIDE * "."] * (SIDE // 2)
     assert found["said"] == [
-        "No object casts 50 % of the front while it stays inside the others: the side is empty there."
+        "No object casts 50 % of the front while it stays inside the others: the side is empty there."
     ]
 
 
@@ -92,3 +94,17 @@ def test_three_pictures_say_all_of_the_small_cube_and_fewer_do_not() -> None:
     assert [each["equations"] for each in found[:3]] == [3, 8, 13]
     assert [sum(each["right"]) for each in found] == [0, 3, *[9] * 6]
     assert found[2]["tints"] == lessons.small_cube()["tints"]
+
+
+@pytest.mark.parametrize("suffix", ["stl", "3mf"])
+def test_the_solid_is_a_file_to_print_and_its_shadows_are_known(
+    client: TestClient, tmp_path: Path, suffix: str
+) -> None:
+    boxes = {"front": DISC, "side": LOWER, "top": DISC, "way": "trim"}
+    found = client.post(f"/api/lessons/mesh/{suffix}", json=boxes).json()
+    (tmp_path / found["name"]).write_bytes(base64.b64decode(found["data"]))
+    mesh = io.read_solid(tmp_path / found["name"])
+    assert mesh.is_watertight
+    assert 40 < max(mesh.size_mm) < 100
+    assert any("shadows of the file overlap" in each for each in found["said"])
+    assert client.post("/api/lessons/mesh/exe", json=boxes).status_code == 422

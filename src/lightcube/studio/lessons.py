@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import base64
 import threading
+from dataclasses import replace
 from functools import lru_cache
-from typing import Annotated, Any
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from fastapi import APIRouter
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from lightcube import io
 from lightcube.errors import InputError
 from lightcube.optics.absorption import extinction, transmittance
 from lightcube.optics.arrays import Flags, locked
@@ -20,13 +24,14 @@ from lightcube.optics.rig import turntable
 from lightcube.optics.transfer import to_uint8
 from lightcube.optics.views import spread_angles
 from lightcube.projection.projector import Projector
-from lightcube.solids.reach import Reach, reach
+from lightcube.solids.reach import Reach, count_pieces, reach
 from lightcube.solids.repair import Repaired, Way, repair
 from lightcube.solids.shape import Shape, as_cube
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.walls import WALLS, walls
 from lightcube.solvers import METHODS, Wanted
 from lightcube.studio.desk import Desk
+from lightcube.verbs import hull_words, hulls
 from lightcube.viewer.description import zipped
 from lightcube.viewer.page import contents
 
@@ -64,6 +69,12 @@ def router(desk: Desk) -> APIRouter:
         with one_at_a_time:
             return solid(drawn)
 
+    @made.post("/mesh/{suffix}")
+    def mesh(suffix: Literal["stl", "3mf"], drawn: Drawn) -> dict[str, Any]:
+        """The solid as a file for a 3-D printer, and what that file really casts."""
+        with one_at_a_time:
+            return printable(drawn, suffix)
+
     @made.get("/cube")
     def equations() -> dict[str, Any]:
         """The cube of 3 x 3 x 3 voxels: its pictures, their equations, and what they say of the voxels."""
@@ -90,6 +101,22 @@ def solid(drawn: Drawn) -> dict[str, Any]:
         "overlaps": repaired.overlaps.tolist(),
         "repaired": _done(repaired),
         **_scene(repaired.shape),
+    }
+
+
+def printable(drawn: Drawn, suffix: Literal["stl", "3mf"]) -> dict[str, Any]:
+    """A file of the solid, in base64, and what is to be said of it: it is read again and held beside the drawings."""
+    repaired = repair(_silhouettes(drawn), _grid(), drawn.way)
+    shape = replace(repaired.shape, provenance={"repair": {"way": repaired.way}})
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"solid.{suffix}"
+        io.Output(path, "shape").write(shape)
+        found, data = hulls.certificate(str(path), shape), path.read_bytes()
+    said = hull_words.results(shape, found, count_pieces(shape.inside))
+    return {
+        "name": path.name,
+        "data": base64.b64encode(data).decode(),
+        "said": [each for each in said if "lightcube " not in each],
     }
 
 
@@ -129,7 +156,7 @@ def _said(found: Reach, drawn: Drawn) -> list[str]:
     for number, name in enumerate(WALLS[: drawn.count]):
         blamed = [WALLS[other] for other, part in found.blamed(number) if other >= 0 and part > 0]
         if blamed:
-            part = f"{100 * found.shares[number]:.0f} %" if found.shares[number] >= 0.01 else "a little"
+            part = f"{100 * found.shares[number]:.0f} %" if found.shares[number] >= 0.01 else "a little"
             verb = "is" if len(blamed) == 1 else "are"
             who = f"the {' and the '.join(blamed)} {verb} empty there"
             said.append(f"No object casts {part} of the {name} while it stays inside the others: {who}.")
@@ -140,7 +167,7 @@ def _said(found: Reach, drawn: Drawn) -> list[str]:
 
 def _done(repaired: Repaired) -> str:
     """What was done so that they agree, in a sentence."""
-    least = f"{100 * float(repaired.overlaps.min()):.0f} %"
+    least = f"{100 * float(repaired.overlaps.min()):.0f} %"
     if repaired.way == "warp":
         moved = f"{repaired.moved_px:.1f} pixels on average"
         return f"The outlines were bent by {moved}. What is cast overlaps what you drew by {least} or more."

@@ -4,6 +4,7 @@ import { mount } from "/viewer/app.js";
 import { fromBase64, readScene, readVoxels } from "/viewer/model/data.js";
 import { element } from "/viewer/tools/elements.js";
 import { createBox, letterOf, rowsOf } from "./boxes.js";
+import { sentenceOf } from "../tools/asking.js";
 
 const WALLS = [["front", "as the lamp before it sees it"], ["side", "from its right"], ["top", "from above"]];
 /** Milliseconds after a stroke until the solid is asked for. */
@@ -53,7 +54,10 @@ export function createSolidLesson(studio, said) {
   const blank = ["Empty boxes", WALLS.map(() => rowsOf(() => false))];
   const samples = [...SAMPLES, blank].map(([text, drawn]) =>
     element("button", { type: "button", class: "switch", text, click: () => take(drawn) }));
-  const choices = element("div", { class: "choices-of" }, repairs, element("p", { text: "Or begin with" }), ...samples);
+  const saves = element("div", { class: "row", role: "group", "aria-label": "Take the solid away" }, element("p", { text: "For a 3-D printer" }),
+    ...["stl", "3mf"].map((suffix) => element("button", { type: "button", class: "switch", text: `Make .${suffix}`, click: () => print(suffix) })));
+  const file = element("a", { class: "save", hidden: true });
+  const choices = element("div", { class: "choices-of" }, repairs, element("p", { text: "Or begin with" }), ...samples, saves, file);
   const now = { step: STEPS[0], way: "warp", asked: 0, waiting: 0, shown: null, scene: "" };
   boxes.forEach((box, i) => box.fill(SAMPLES[0][1][i]));
 
@@ -62,19 +66,35 @@ export function createSolidLesson(studio, said) {
     ask();
   }
 
+  /** What is asked for: the drawings, how many of them count, and how they are to agree. */
+  function wanted() {
+    const { count, way } = now.step;
+    return Object.assign({ count, way: way ? now.way : "none" }, ...WALLS.map(([name], i) => ({ [name]: boxes[i].rows })));
+  }
+
+  /** Make a file for a printer, say what it casts, and let it be saved. */
+  async function print(suffix) {
+    const made = await studio.ask(`/api/lessons/mesh/${suffix}`, { json: wanted() });
+    if (made === null) return;
+    said(made.said.map(sentenceOf).join("\n"));
+    if (file.href) URL.revokeObjectURL(file.href);
+    const bytes = fromBase64(made.data);
+    Object.assign(file, { href: URL.createObjectURL(new Blob([bytes])), download: made.name, hidden: false });
+    file.textContent = `Save ${made.name}, ${Math.ceil(bytes.length / 1000)} kB`;
+  }
+
   function ask() {
+    file.hidden = true;
     clearTimeout(now.waiting);
     now.waiting = setTimeout(answer, CALM);
   }
 
   async function answer() {
-    const { count, way, lost } = now.step;
+    const { way, lost } = now.step;
     const number = ++now.asked;
     ways.forEach((button, i) => button.setAttribute("aria-pressed", String(WAYS[i][0] === now.way)));
-    const json = { count, way: way ? now.way : "none" };
-    WALLS.forEach(([name], i) => (json[name] = boxes[i].rows));
     const slow = setTimeout(() => said("Working on it …"), SLOW);
-    const found = await post(json);
+    const found = await post(wanted());
     clearTimeout(slow);
     if (number !== now.asked) return;
     if (found.sentence) {
@@ -128,6 +148,6 @@ export function createSolidLesson(studio, said) {
 
 function sharesOf(found, i, { count, lost, way }) {
   if (i >= count) return "";
-  if (lost && found.shares[i] > 0) return `${Math.max(1, Math.round(100 * found.shares[i]))} % lost`;
-  return way ? `${Math.round(100 * found.overlaps[i])} % as drawn` : "";
+  if (lost && found.shares[i] > 0) return `${Math.max(1, Math.round(100 * found.shares[i]))} % lost`;
+  return way ? `${Math.round(100 * found.overlaps[i])} % as drawn` : "";
 }

@@ -101,7 +101,7 @@ export function createPlan(axes, title, now, does) {
 
   function draw() {
     const { lamps, screens } = now.room;
-    if (held === null) half = Math.max(LEAST, ...[...lamps, ...screens].flatMap((thing) => [Math.abs(thing.x), Math.abs(thing.y), Math.abs(thing.z)]).map((far) => far + 45));
+    if (held === null) half = Math.max(LEAST, ...[...lamps, ...screens].flatMap((thing) => [Math.abs(thing.x), Math.abs(thing.y), Math.abs(thing.z)]).map((far) => 1.12 * far + 45));
     drawing.setAttribute("viewBox", `${-half} ${-half} ${2 * half} ${2 * half}`);
     drawing.setAttribute("font-size", String(half / 15));
     const focused = drawing.contains(document.activeElement) ? document.activeElement.dataset.name : null;
