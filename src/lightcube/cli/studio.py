@@ -32,3 +32,4 @@ def studio(
             webbrowser.open(address)
 
     serve(folder, port, ready)
+    err.print("the studio is closed; the same command opens it again where it was")

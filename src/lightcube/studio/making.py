@@ -36,7 +36,7 @@ def words_of(making: Making) -> list[str]:
     for each in fields(Options):
         value = getattr(said, each.name)
         if value != getattr(usual, each.name):
-            words += [f"--{each.name.replace('_', '-')}", f"{value:g}" if isinstance(value, float) else str(value)]
+            words += [f"--{each.name.replace('_', '-')}", str(value).removesuffix(".0")]
     return words
 
 

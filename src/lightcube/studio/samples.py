@@ -66,7 +66,7 @@ def _ball() -> Images:
     for number in range(_BALLS):
         part = number / _BALLS
         height = 4 * part * (1 - part)
-        x, y = 2 + 1.5 * math.cos(2 * math.pi * part), 5.4 - 4.4 * height
+        x, y = 2 + 1.5 * math.sin(2 * math.pi * part), 5.4 - 4.4 * height
         ball = np.hypot(across - x, down - y) < 0.95
         shadow = np.hypot((across - x) / (0.95 - 0.3 * height), (down - 6.6) / 0.22) < 1
         made.append((_painted([(shadow, (0.66, 0.65, 0.68)), (ball, (0.88, 0.32, 0.16))]), f"ball {number + 1}"))

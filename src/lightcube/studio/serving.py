@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import uvicorn
@@ -48,7 +49,8 @@ def serve(folder: Path, port: int, ready: Callable[[str], None]) -> None:
         server.ready = lambda: ready(f"http://{_HOST}:{listening.getsockname()[1]}/?token={token}")
         server.ending = app.state.desk.hub.close
         try:
-            server.run(sockets=[listening])
+            with suppress(KeyboardInterrupt):  # how a studio is ended
+                server.run(sockets=[listening])
         finally:
             project.close()
 

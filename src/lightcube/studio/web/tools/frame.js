@@ -91,7 +91,7 @@ function headOf(studio, doors, open) {
     element: element("header", { class: "head" },
       element("h1", {}, element("img", { src: "/web/icon.svg", alt: "", width: "26", height: "26" }), element("span", { text: "Lightcube studio" })),
       title,
-      element("div", { class: "steps" }, undo, redo),
+      element("div", { class: "history" }, undo, redo),
       doors.length > 1 ? element("nav", { "aria-label": "Doors" }, ...links.map(([, link]) => link)) : null,
       theme),
     update(state) {
