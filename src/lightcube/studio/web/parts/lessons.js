@@ -17,7 +17,8 @@ export function mount(section, studio) {
     found.textContent = sentence && (bad ? sentenceOf(sentence) : sentence);
     found.toggleAttribute("data-bad", bad);
   };
-  const lessons = [createSolidLesson(studio, say), createCubeLesson(studio, say)];
+  // an answer that comes when another lesson is open says nothing
+  const lessons = [createSolidLesson, createCubeLesson].map((create, i) => create(studio, (...told) => now.lesson === lessons[i] && say(...told)));
   const now = { lesson: null, step: 0 };
   const tabs = lessons.map((lesson) => element("button", { type: "button", class: "switch", "aria-pressed": "false", text: lesson.title, click: () => begin(lesson) }));
   const title = element("h3");
@@ -46,11 +47,11 @@ export function mount(section, studio) {
 
   function show() {
     const { lesson, step } = now;
+    say("");
     title.textContent = lesson.steps[step].title;
     text.textContent = lesson.steps[step].text;
     count.textContent = `${step + 1} of ${lesson.steps.length}`;
     [back.disabled, on.disabled] = [step === 0, step === lesson.steps.length - 1];
-    say("");
     lesson.show(step);
   }
 
