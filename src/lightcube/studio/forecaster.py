@@ -64,7 +64,9 @@ def run(pipe: Connection) -> None:
         os.nice(5)  # a solve goes first
     looking = _Looking(pipe)
     with suppress(EOFError, OSError), _compiling(pipe):
-        looking.warm()
+        with suppress(_Newer):
+            looking.warm()
+        pipe.send(("ready", {}))
         while True:
             asked = pipe.recv()
             while pipe.poll():
@@ -88,7 +90,6 @@ class _Looking:
         planned = self._plan(images, ("a", "b"), Options(n=24, picture_width=0.5, hold_deg=0.0, grain=0.0))
         self._look(planned, _FIRST)
         self.kept = None
-        self.pipe.send(("ready", {}))
 
     def answer(self, asked: Asked) -> None:
         """Tell more and more of one question."""

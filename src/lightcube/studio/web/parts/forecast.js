@@ -97,7 +97,7 @@ function costsOf({ costs, pictures, full }) {
 
 /** A slider that sends what it says while it moves, not more often than can be answered. */
 function sliderOf({ name, label, low, high, step, ends, text, to = (value) => value, from = (value) => value }, studio) {
-  const value = element("output", {});
+  const value = element("span", { class: "now", "aria-hidden": "true" });
   const input = element("input", { type: "range", min: low, max: high, step, "aria-label": label });
   let [waiting, sent] = [0, 0];
   const send = () => {
@@ -134,7 +134,7 @@ function sliderOf({ name, label, low, high, step, ends, text, to = (value) => va
 function countOf(studio) {
   const slider = sliderOf({ name: "count", label: "How many", low: 2, high: 2, step: 1, ends: ["two", "all of them"], text: (value) => (value ? `the first ${value}` : "all of them") }, studio);
   const input = slider.element.querySelector("input");
-  const value = slider.element.querySelector("output");
+  const value = slider.element.querySelector(".now");
   let all = 2;
   return {
     element: slider.element,
