@@ -76,8 +76,8 @@ def _ball() -> Images:
 def _field() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Places across and down of all fine pixels, where letters stand in the middle."""
     fine = (np.arange(_SIDE * _FINE) + 0.5) / (_SIDE * _FINE) * 8.4
-    across, down = np.meshgrid(fine - 2.2, fine - 1.2)
-    return across, down
+    shape = len(fine), len(fine)
+    return np.broadcast_to(fine - 2.2, shape), np.broadcast_to((fine - 1.2)[:, None], shape)
 
 
 def _painted(shapes: list[tuple[NDArray[np.bool_], tuple[float, float, float]]]) -> NDArray[np.float32]:
