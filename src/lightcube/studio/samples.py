@@ -13,11 +13,12 @@ from lightcube.optics.transfer import decode
 from lightcube.studio.kept import smaller
 
 Images = list[tuple[NDArray[np.float32], str]]
+_Stroke = tuple[tuple[float, float], tuple[float, float]]
 
 #: Pixels along a side of what is drawn; strokes are made this many times finer, and averaged.
 _SIDE, _FINE = 240, 3
 #: Letters as strokes on a field of 4 x 6, and the colour of each, in display values.
-_LETTERS = {
+_LETTERS: dict[str, tuple[list[_Stroke], tuple[float, float, float]]] = {
     "L": ([((0, 0), (0, 6)), ((0, 6), (4, 6))], (0.90, 0.30, 0.22)),
     "I": ([((2, 0), (2, 6)), ((0.8, 0), (3.2, 0)), ((0.8, 6), (3.2, 6))], (0.96, 0.68, 0.20)),
     "N": ([((0, 6), (0, 0)), ((0, 0), (4, 6)), ((4, 6), (4, 0))], (0.22, 0.64, 0.42)),
@@ -76,8 +77,8 @@ def _ball() -> Images:
 def _field() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Places across and down of all fine pixels, where letters stand in the middle."""
     fine = (np.arange(_SIDE * _FINE) + 0.5) / (_SIDE * _FINE) * 8.4
-    across, down = np.meshgrid(fine - 2.2, fine - 1.2)
-    return across, down
+    shape = len(fine), len(fine)
+    return np.broadcast_to(fine - 2.2, shape), np.broadcast_to((fine - 1.2)[:, None], shape)
 
 
 def _painted(shapes: list[tuple[NDArray[np.bool_], tuple[float, float, float]]]) -> NDArray[np.float32]:
