@@ -29,7 +29,8 @@ from lightcube.solids.repair import Repaired, Way, repair
 from lightcube.solids.shape import Shape, as_cube
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.walls import WALLS, walls
-from lightcube.solvers import METHODS, Wanted
+from lightcube.solvers import METHODS
+from lightcube.solvers.contract import Wanted
 from lightcube.studio.desk import Desk
 from lightcube.verbs import hull_words, hulls
 from lightcube.viewer.description import zipped
@@ -190,7 +191,7 @@ def small_cube() -> dict[str, Any]:
     grid = Grid((3, 3, 3))
     truth = extinction(np.random.default_rng(2).uniform(0.3, 1.0, (3, 3, 3, 3)), grid.voxel_mm)
     every = Projector(grid, turntable(grid, spread_angles(_MOST_VIEWS)))
-    columns = truth.transpose(2, 3, 1, 0).reshape(9, 9)
+    columns: NDArray[np.float64] = truth.transpose(2, 3, 1, 0).reshape(9, 9).astype(np.float64)
     light = transmittance(every.forward(columns))
     lengths = every.forward(np.eye(9))
     views = lengths.reshape(_MOST_VIEWS, -1, 9)

@@ -89,7 +89,7 @@ class Taking:
                 known = self._made.get(name)
                 if known is not None and not self._path(known["file"]).is_file():
                     known = None
-                told = {"name": name, "title": thing.title, "said": thing.said, "suffix": thing.suffix}
+                told: dict[str, Any] = {"name": name, "title": thing.title, "said": thing.said, "suffix": thing.suffix}
                 told |= {"group": thing.group, "made": None, "failed": self._failed.get(name, "")}
                 if known is not None:
                     told["made"] = {**known, "is_old": known["of"] != cube}
