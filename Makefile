@@ -10,7 +10,7 @@
 
 PYTHON ?= python3
 COMPUTING := backward forward kernels laws optics planning projection scene scoring solids solvers
-EXTRAS ?= dev,heif,plot,notebook,remote,cluster
+EXTRAS ?= dev,heif,plot,notebook,remote,cluster,studio
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 

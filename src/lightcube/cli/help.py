@@ -15,6 +15,10 @@ _OTHERS = "Options"
 
 #: By command: what one might type, and what it is for.
 EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
+    "studio": [
+        ("lightcube studio holidays", "a project in the folder holidays, new or old"),
+        ("lightcube studio holidays --port 8080 --no-browser", "at a port of your choice, for a bookmark"),
+    ],
     "solve": [
         ("lightcube solve photos -o cube.zarr", "a folder of photographs, all else is chosen"),
         ("lightcube solve photos -o cube.zarr --n 64 --quality draft", "smaller and quicker, to try"),

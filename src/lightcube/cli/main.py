@@ -11,6 +11,9 @@ from lightcube.errors import InputError
 
 #: The commands, each in a module of its name, and what they say of themselves: only the one that is named is loaded.
 COMMANDS: Mapping[str, str] = {
+    "studio": (
+        "Open the studio in a browser: drop pictures, see what will come, watch it become, turn it, take it away."
+    ),
     "trace": "Ray-trace a moving scene: a folder of PNGs, or a movie by suffix.",
     "check": (
         "Say before solving what can be known: how good it will be, what contradicts itself, or on a stage cannot be."

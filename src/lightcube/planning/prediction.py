@@ -35,14 +35,16 @@ import numpy as np
 
 from lightcube.backward import solving
 from lightcube.backward.mat import widened
-from lightcube.backward.recipe import Recipe
+from lightcube.backward.pieces import Watching
+from lightcube.backward.recipe import Recipe, recipe_of
 from lightcube.backward.wishes import held
 from lightcube.errors import InputError
 from lightcube.forward.casting import cast
 from lightcube.optics.arrays import Images, Reals, keep, locked
 from lightcube.optics.checks import check_fields, checked
+from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, nearest, raster_shape
-from lightcube.optics.light import Light, finer, is_in_slices
+from lightcube.optics.light import Beams, Light, finer, is_in_slices
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import encode
 from lightcube.pictures.resampling import shares
@@ -142,9 +144,9 @@ def predict(targets: Targets, grid: Grid, recipe: Recipe | None = None) -> Predi
     targets = replace(targets, rig=targets.rig.as_one_colour())
     raised(targets.rig, grid)
     asked = recipe or Recipe()
-    reached, width = rehearse(targets, grid, asked)
+    small, width = rehearse(targets, grid, asked)
     level = targets.rig.elevation_deg == 0
-    told = law(reached, max(grid.shape[1:]) / width, rehearsal_of(asked), level=level, enough_db=asked.enough_db)
+    told = law(small, max(grid.shape[1:]) / width, rehearsal_of(asked), level=level, enough_db=asked.enough_db)
     return Prediction(told, width)
 
 
@@ -153,30 +155,62 @@ def rehearsal_of(recipe: Recipe) -> Rehearsal:
     return THIN if recipe.beams.is_thin else AREA
 
 
-def law(reached: Reals, ratio: float, by: Rehearsal, *, level: bool = False, enough_db: float = math.inf) -> Reals:
-    """PSNR to expect, dB, of pictures that `reached` so much in a cube narrower by `ratio`; see the module."""
-    more = by.bias + by.growth * (reached - 30) + (by.level if level else 0.0)
-    told = reached + (1 - 1 / ratio) * more
+def law(small: Reals, ratio: float, by: Rehearsal, *, level: bool = False, enough_db: float = math.inf) -> Reals:
+    """PSNR to expect, dB, of pictures that reached so much in a `small` cube, narrower by `ratio`; see the module."""
+    more = by.bias + by.growth * (small - 30) + (by.level if level else 0.0)
+    told = small + (1 - 1 / ratio) * more
     together = -10 * math.log10(float(np.mean(10 ** (-told / 10))))
     return np.clip(told - max(together - enough_db - _SPARE_DB, 0.0), 0.0, BEST_DB)
 
 
 def rehearse(targets: Targets, grid: Grid, recipe: Recipe) -> tuple[Reals, int]:
     """PSNR of each picture in a small cube, dB, and the width of that in voxels; takes what `predict` does."""
+    small, cube = rehearsed(targets, grid, recipe)
+    return reached(small, cube), max(cube.grid.shape[1:])
+
+
+def rehearsed(
+    targets: Targets,
+    grid: Grid,
+    recipe: Recipe,
+    *,
+    width: int | None = None,
+    passes: int | None = None,
+    points: Light | None = None,
+    start: Cube | None = None,
+    callback: Watching | None = None,
+) -> tuple[Targets, Cube]:
+    """The small pictures of a rehearsal and the cube that is solved for them.
+
+    Parameters
+    ----------
+    targets, grid, recipe
+        As `predict` takes them.
+    width, passes, points
+        Voxels across, passes, and points of a pixel; None = what predictions are fitted to.
+    start
+        A small cube of before; one of another shape is not used.
+    callback
+        As `lightcube.solve` takes it.
+    """
     solving.check_targets(targets, grid)
-    hold_deg = recipe.hold_deg
     held(targets.rig, recipe, grid)
-    small, small_grid = reduced(targets, grid, _width(targets, grid, recipe))
-    width = max(small_grid.shape[1:])
+    small, small_grid = reduced(targets, grid, width or _width(targets, grid, recipe))
+    across = max(small_grid.shape[1:])
     bound = recipe.bounded_by.of_any_size(grid)
-    light = recipe.beams if recipe.beams.is_thin else replace(POINTS, grain=recipe.beams.grain)
-    rehearsed = replace(recipe.by_display(rehearsal_of(recipe).passes), material=bound, light=light)
-    rehearsed = replace(rehearsed, hold_deg=_small_hold(targets, grid, hold_deg, width))
-    cube = solving.solve(small, small_grid, rehearsed).cube
-    shown = encode(np.stack(list(cast(cube, light="thin" if light.is_thin else "area"))), small.transfer)
+    light = recipe.beams if recipe.beams.is_thin else replace(points or POINTS, grain=recipe.beams.grain)
+    asked = replace(recipe.by_display(passes or rehearsal_of(recipe).passes), material=bound, light=light)
+    asked = replace(asked, hold_deg=_small_hold(targets, grid, recipe.hold_deg, across))
+    begun = start if start is not None and start.grid.shape == small_grid.shape else None
+    return small, solving.solve(small, small_grid, asked, start=begun, callback=callback).cube
+
+
+def reached(small: Targets, cube: Cube) -> Reals:
+    """PSNR of each picture of a rehearsal, dB."""
+    light: Beams = "thin" if recipe_of(cube).beams.is_thin else "area"
+    shown = encode(np.stack(list(cast(cube, light=light))), small.transfer)
     wanted = encode(small.pictures, small.transfer)
-    reached = [psnr(*each) for each in zip(shown, wanted, small.weight, strict=True)]
-    return np.array(reached), width
+    return np.array([psnr(*each) for each in zip(shown, wanted, small.weight, strict=True)])
 
 
 def reduced(targets: Targets, grid: Grid, width: int) -> tuple[Targets, Grid]:

@@ -22,6 +22,7 @@ from lightcube.optics.attenuator import Films, attenuator
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.stack import Stack
+from lightcube.pictures.pictures import Pictures
 from lightcube.planning.plan import Plan, plan, plan_stage
 from lightcube.planning.prediction import as_json
 from lightcube.planning.rehearsals import Rehearsals
@@ -112,14 +113,22 @@ def refuse_beside_stage(source: str, options: Options) -> None:
 
 
 def _read_pictures(source: str, options: Options) -> Callable[..., Plan]:
-    """Read pictures, which become as wide and are held as long as is good for them where nothing else is said."""
+    """Read pictures for a turntable."""
+    return of_pictures(partial(io.read_pictures, source, transfer=options.transfer, **part(source, options)), options)
+
+
+def of_pictures(read_pictures: Callable[[], Pictures], options: Options) -> Callable[..., Plan]:
+    """Plan pictures, which become as wide and are held as long as is good for them where nothing else is said.
+
+    They are read when options were found not to contradict each other.
+    """
     options = options.as_in_the_paper() if options.paper else options
     shape, turntable, recipe = options.voxels, options.turntable, options.recipe
     if options.mat is None and recipe.solver.chooses_lamps and not recipe.beams.is_thin:
         recipe = replace(recipe, mat=Mat())
     check_memory(memory_needed(recipe.solver, Grid(shape), (1, 1), 1, units=3))
     focus = options.middle
-    pictures = io.read_pictures(source, transfer=options.transfer, **part(source, options))
+    pictures = read_pictures()
     return partial(
         plan,
         replace(pictures, focus=focus),

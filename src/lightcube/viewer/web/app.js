@@ -30,12 +30,13 @@ const COPY_EVERY = 80;
  * @param {HTMLElement} root is emptied; keeps what is returned as `root.lightcube` too
  * @param {Object} scene
  * @param {Object} cube
- * @param {{compact: boolean}} options compact: the room, the controls and the film strip alone, for notebooks
+ * @param {{compact: boolean, inside: boolean}} options compact: the room, the controls and the film strip alone, for
+ *   notebooks; inside: among other things, so that keys, wheel and theme are not its own
  * @returns {{angle: number, resting: boolean, turnTo: function(number): void,
  *   onTurn: function(function(number): void): void, dispose: function(): void}} degrees; whether nothing moves and all
  *   is drawn; `turnTo` turns there at once, `onTurn` calls with every new angle
  */
-export function mount(root, scene, cube, { compact = false } = {}) {
+export function mount(root, scene, cube, { compact = false, inside = compact } = {}) {
   const turning = new Turning(stops(scene), matchMedia("(prefers-reduced-motion: reduce)").matches);
   const view = new RoomView(scene, cube);
   const app = { root, scene, turning, view, chosen: nothingChosen() };
@@ -48,9 +49,9 @@ export function mount(root, scene, cube, { compact = false } = {}) {
   app.beckoning = compact ? null : createBeckoning(root, turning, app.loop.ask);
   const ends = [
     () => app.beckoning?.end(),
-    listenToTheme(app, compact),
-    listenToKeys(compact ? root : document, app.does),
-    listenToRoom(app, compact),
+    listenToTheme(app, inside),
+    listenToKeys(inside ? root : document, app.does),
+    listenToRoom(app, inside),
     listenToClicks(app),
   ];
 
@@ -190,8 +191,8 @@ function setTheme(app, dark) {
 }
 
 /** Follow the theme of what is around until another one is chosen. */
-function listenToTheme(app, compact) {
-  return followTheme(app.root, compact, (dark) => {
+function listenToTheme(app, inside) {
+  return followTheme(app.root, inside, (dark) => {
     if (app.ownTheme || app.chosen.dark === dark) return;
     setTheme(app, dark);
     app.loop.ask();
@@ -208,7 +209,7 @@ function listenToClicks({ root, view }) {
   return () => root.removeEventListener("click", clicked);
 }
 
-function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
+function listenToRoom({ scene, does, view, chosen, loop, parts }, inside) {
   listenToGestures(view.canvas, {
     ...does,
     begin: () => parts.hint.done(),
@@ -223,7 +224,7 @@ function listenToRoom({ scene, does, view, chosen, loop, parts }, compact) {
       loop.ask();
     },
     leave: () => does.point(chosen.row, null),
-  }, compact);
+  }, inside);
   const resized = new ResizeObserver(loop.ask);
   resized.observe(view.canvas);
   return () => resized.disconnect();

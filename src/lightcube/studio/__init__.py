@@ -1,0 +1,1 @@
+"""The browser: the same verbs as the terminal's, their events as a stream."""

@@ -1,0 +1,143 @@
+"""The forecast in the studio: asked after every change, told to every tab, by a process of its own."""
+
+from __future__ import annotations
+
+import multiprocessing
+import threading
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+from typing import Any
+
+from fastapi import APIRouter
+
+from lightcube.studio import forecaster
+from lightcube.studio.desk import Desk
+from lightcube.studio.kept import dropped
+from lightcube.studio.making import options_of
+
+
+def router(desk: Desk) -> APIRouter:
+    """What is asked of the forecast."""
+    routes = APIRouter(prefix="/api")
+    forecast = Forecast(desk)
+    desk.parts["forecast"] = forecast.described
+    desk.starting += [forecast.begin, forecast.ask]
+    desk.minding.append(forecast.ask)
+    desk.closing.append(forecast.close)
+    desk.first_cube = forecast.part
+
+    @routes.get("/forecast")
+    def told() -> dict[str, Any]:
+        """What the forecast tells now."""
+        return forecast.described()
+
+    return routes
+
+
+class Forecast:
+    """The forecast of a desk's project."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk, self._lock = desk, threading.RLock()
+        self._process: SpawnProcess | None = None
+        self._pipe: Connection | None = None
+        self._number, self._asked = 0, ""
+        self._parts: dict[str, bytes] = {}
+        self._facts: dict[str, Any] = {"status": "none", "pictures": []}
+
+    def described(self) -> dict[str, Any]:
+        """What is told, as plain JSON."""
+        with self._lock:
+            return dict(self._facts)
+
+    def begin(self) -> None:
+        """Start the process that looks."""
+        with self._lock:
+            context = multiprocessing.get_context("spawn")
+            self._pipe, theirs = context.Pipe()
+            process = context.Process(target=forecaster.run, args=(theirs,), daemon=True, name="lightcube-forecaster")
+            process.start()
+            theirs.close()
+            self._process = process
+            threading.Thread(target=self._hear, args=(process, self._pipe), daemon=True).start()
+
+    def ask(self) -> None:
+        """Ask for a forecast of how the project stands, unless it is that one already."""
+        with self._lock:
+            if not self._desk.is_started:
+                return
+            project = self._desk.project
+            settings = project.settings
+            used = settings.used
+            files = tuple(dropped(project, picture.key) for picture in used)
+            if len(used) < 2 or not all(file.is_file() for file in files):
+                self._asked = ""
+                self._number += 1
+                self._parts = {}
+                self._set(status="none", pictures=[])
+                return
+            question = forecaster.Asked(
+                self._number + 1,
+                tuple(picture.key for picture in used),
+                tuple(picture.name for picture in used),
+                files,
+                tuple(picture.crop for picture in used),
+                options_of(settings.making),
+                settings.title,
+            )
+            if repr((question.keys, question.names, question.crops, question.options)) == self._asked:
+                return
+            self._asked = repr((question.keys, question.names, question.crops, question.options))
+            self._number = question.number
+            self._set(status="compiling" if self._facts["status"] == "compiling" else "looking")
+            if self._process is None:
+                self.begin()
+            with suppress(OSError):
+                assert self._pipe is not None  # noqa: S101 - it has begun
+                self._pipe.send(question)
+
+    def part(self, name: str) -> bytes | None:
+        """Scene or voxels of the small cube, to be turned while there is none other."""
+        with self._lock:
+            return self._parts.get(name)
+
+    def close(self) -> None:
+        """End the process; nothing of it is needed."""
+        with self._lock:
+            process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.join()
+
+    def _hear(self, process: SpawnProcess, pipe: Connection) -> None:
+        with suppress(EOFError, OSError):
+            while True:
+                what, facts = pipe.recv()
+                with self._lock:
+                    self._heard(what, facts)
+        with self._lock:
+            pipe.close()
+            if process is self._process:  # it was killed: the next question starts it again
+                self._process, self._asked = None, ""
+                said = "the forecast was ended from outside: change anything to see it again"
+                self._set(status="failed", sentence=said)
+
+    def _heard(self, what: str, facts: dict[str, Any]) -> None:
+        """Take up what was told; answers to what is not asked any more are left out."""
+        if what == "compiling" and self._facts["status"] in ("looking", "none"):
+            self._set(status="compiling")
+        elif what == "ready" and self._facts["status"] == "compiling":
+            self._set(status="looking" if self._asked else "none")
+        elif what == "cube":
+            self._parts = facts
+            self._desk.hub.tell("forecast", {"cube": True})
+        elif what == "forecast" and facts["number"] == self._number:
+            stage = facts.pop("stage")
+            self._set(status=stage, sentence=facts.pop("sentence", ""), **facts)
+
+    def _set(self, **facts: Any) -> None:
+        self._facts |= facts
+        if "pictures" in facts and "costs" not in facts:
+            self._facts.pop("costs", None)
+        self._desk.hub.tell("forecast", self._facts)

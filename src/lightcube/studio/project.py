@@ -1,0 +1,297 @@
+"""A project: a folder with pictures and settings, of which every change is kept and can be undone."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from lightcube.errors import InputError
+from lightcube.io._bounds import check_text
+from lightcube.io._files import system_errors
+from lightcube.io._toml import read_tables
+from lightcube.scene.description import sentence
+
+if sys.platform != "win32":
+    import fcntl
+else:
+    import msvcrt
+
+#: Of the file of settings; another one is not read.
+FORMAT = 1
+#: Pictures that a project holds at most: a cube shows so many only where they are small.
+MOST_PICTURES = 64
+#: Changes that can be undone.
+_MOST_STEPS = 200
+_FILE, _HISTORY, _LOCK = "project.toml", "history.json", ".studio.lock"
+#: Folders: what was dropped, what is solved for, and what was made.
+DROPPED, PICTURES, MADE = "dropped", "pictures", "made"
+
+_Part = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+_Key = Annotated[str, Field(pattern="^[0-9a-f]{16}$")]
+_Name = Annotated[str, Field(min_length=1, max_length=80)]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Crop(_Strict):
+    """What is taken of a picture, as parts of its width and height from its upper left."""
+
+    left: _Part = 0.0
+    top: _Part = 0.0
+    width: Annotated[float, Field(ge=0.05, le=1, allow_inf_nan=False)] = 1.0
+    height: Annotated[float, Field(ge=0.05, le=1, allow_inf_nan=False)] = 1.0
+
+    @model_validator(mode="after")
+    def _within(self) -> Crop:
+        if self.left + self.width > 1.0001 or self.top + self.height > 1.0001:
+            raise ValueError("the crop is not within its picture")
+        return self
+
+
+class Picture(_Strict):
+    """A picture of the strip: the key of its file, its name, and what is taken of it."""
+
+    key: _Key
+    name: _Name
+    crop: Crop = Crop()
+
+
+class Making(_Strict):
+    """How the cube is made: what the page's sliders say."""
+
+    voxels: Annotated[int, Field(ge=16, le=160)] = 64
+    width: Annotated[float, Field(ge=0.2, le=1, allow_inf_nan=False)] = 0.5
+    lamp: Annotated[float, Field(ge=1, le=64, allow_inf_nan=False)] = 16.0
+    hold_deg: Annotated[float, Field(ge=0, le=6, allow_inf_nan=False)] = 0.25
+    #: The most that the glass takes away, 1/mm: clear glass is bright, rich glass has deep colours; 0 = any.
+    richness: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
+    #: How many pictures of the strip are used, from its beginning; 0 = all.
+    count: Annotated[int, Field(ge=0, le=MOST_PICTURES)] = 0
+    fit: Literal["crop", "pad"] = "crop"
+    mat: Literal["dark", "grey", "light", "none"] = "dark"
+    order: Literal["given", "best"] = "given"
+    quality: Literal["draft", "normal", "best"] = "normal"
+
+
+class Settings(_Strict):
+    """All that is said of a project."""
+
+    title: Annotated[str, Field(max_length=120)] = ""
+    pictures: Annotated[tuple[Picture, ...], Field(max_length=MOST_PICTURES)] = ()
+    making: Making = Making()
+    #: What other parts of the studio keep, by their names.
+    parts: dict[Annotated[str, Field(pattern="^[a-z]{1,20}$")], Any] = {}
+
+    @model_validator(mode="after")
+    def _each_once(self) -> Settings:
+        if len({picture.key for picture in self.pictures}) < len(self.pictures):
+            raise ValueError("a picture stands in the strip twice")
+        if len(json.dumps(self.parts)) > 100_000:
+            raise ValueError("more is said of the other parts than is kept")
+        return self
+
+    @property
+    def used(self) -> tuple[Picture, ...]:
+        """The pictures that the cube is made of."""
+        return self.pictures[: self.making.count or None]
+
+
+class Project:
+    """A folder that one studio has to itself.
+
+    Parameters
+    ----------
+    folder
+        Is made where there is none.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be written, another studio has it, or its settings are damaged or of a newer version.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = Path(folder).absolute()
+        self._lock = threading.RLock()
+        with system_errors(self.folder, "writing"):
+            self.folder.mkdir(parents=True, exist_ok=True)
+        self._owner = _locked(self.folder)
+        try:
+            for name in (DROPPED, PICTURES, MADE):
+                with system_errors(self.folder / name, "writing"):
+                    (self.folder / name).mkdir(exist_ok=True)
+            self._steps, self._at = self._read()
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        """Let others have the folder."""
+        if self._owner >= 0:
+            os.close(self._owner)
+        self._owner = -1
+
+    @property
+    def settings(self) -> Settings:
+        """How it stands now."""
+        return self._steps[self._at]
+
+    def change(self, change: Callable[[Settings], Settings]) -> Settings:
+        """Change the settings and keep them; `InputError` where they cannot be, or not be written."""
+        with self._lock:
+            before = self.settings
+            after = _checked(change(before))
+            if after == before:
+                return before
+            steps = [*self._steps[: self._at + 1], after][-_MOST_STEPS:]
+            self._keep(steps, len(steps) - 1)
+            return after
+
+    def step(self, way: Literal[-1, 1]) -> Settings:
+        """Undo a change, or do it again; `InputError` where there is none."""
+        with self._lock:
+            if not 0 <= self._at + way < len(self._steps):
+                raise InputError("there is nothing to undo" if way < 0 else "there is nothing to do again")
+            self._keep(self._steps, self._at + way)
+            return self.settings
+
+    def described(self) -> dict[str, Any]:
+        """Settings and what can be done, as plain JSON."""
+        with self._lock:
+            return {
+                "folder": str(self.folder),
+                "settings": self.settings.model_dump(mode="json"),
+                "can_undo": self._at > 0,
+                "can_redo": self._at + 1 < len(self._steps),
+            }
+
+    def path(self, *parts: str) -> Path:
+        """A path in the folder; `InputError` where it would lead out of it."""
+        found = self.folder.joinpath(*parts)
+        if any(part in ("", ".", "..") or "/" in part or "\\" in part or "\0" in part for part in parts):
+            raise InputError("this is no file of the project: give the name of one that is in it")
+        if not found.resolve().is_relative_to(self.folder.resolve()):
+            raise InputError("this leads out of the project's folder: only what is in it is read and written")
+        return found
+
+    def write(self, data: bytes, *parts: str) -> Path:
+        """Write a file of the folder, whole or not at all."""
+        target = self.path(*parts)
+        begun = target.with_name(f".{target.name}.{threading.get_ident()}")
+        with system_errors(target, "writing"):
+            try:
+                with begun.open("wb") as opened:
+                    opened.write(data)
+                    opened.flush()
+                    os.fsync(opened.fileno())
+                begun.replace(target)
+            finally:
+                begun.unlink(missing_ok=True)
+        return target
+
+    def _keep(self, steps: list[Settings], at: int) -> None:
+        """Write settings and history, and only then believe them."""
+        self.write(toml_text(steps[at]).encode(), _FILE)
+        history = {"format": FORMAT, "at": at, "steps": [step.model_dump(mode="json") for step in steps]}
+        self.write(json.dumps(history).encode(), _HISTORY)
+        self._steps, self._at = steps, at
+
+    def _read(self) -> tuple[list[Settings], int]:
+        """What was kept; the settings count, and a history that ends elsewhere is none."""
+        file = self.path(_FILE)
+        if not file.exists():
+            self.write(toml_text(Settings()).encode(), _FILE)
+            return [Settings()], 0
+        settings = _of_tables(read_tables(file, str(file)), str(file))
+        try:
+            history = json.loads(self.path(_HISTORY).read_bytes())
+            steps, at = [Settings.model_validate(step) for step in history["steps"]], int(history["at"])
+            if 0 <= at < len(steps) and steps[at] == settings:
+                return steps, at
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            pass  # it was not written yet, or is damaged: what was changed can then not be undone
+        return [settings], 0
+
+
+def _checked(settings: Settings) -> Settings:
+    """The same settings, every field looked at again; `InputError` says which cannot be."""
+    try:
+        return Settings.model_validate(settings.model_dump())
+    except ValidationError as error:
+        raise InputError(said(error)) from error
+
+
+def said(error: ValidationError) -> str:
+    """The first of what pydantic found wrong, as a sentence."""
+    return sentence(error.errors(include_url=False)[0])
+
+
+def _of_tables(tables: dict[str, Any], called: str) -> Settings:
+    """Settings of the tables of a file; `InputError` names the file."""
+    version = tables.pop("format", None)
+    if version != FORMAT:
+        newer = isinstance(version, int) and version > FORMAT
+        helps = "update lightcube" if newer else "move the file away to begin anew"
+        raise InputError(f"{called} has format {version}, and this studio reads {FORMAT}: {helps}")
+    try:
+        tables["parts"] = json.loads(tables.get("parts", "{}"))
+        return Settings.model_validate(tables)
+    except ValidationError as error:
+        raise InputError(f"{called} is damaged: {said(error)}; mend it, or move it away to begin anew") from error
+    except (ValueError, TypeError, RecursionError) as error:
+        raise InputError(f"{called} is damaged in its parts: mend it, or move it away to begin anew") from error
+
+
+def toml_text(settings: Settings) -> str:
+    """The file of settings."""
+    plain = settings.model_dump(mode="json")
+    lines = [f"format = {FORMAT}", f"title = {_text(plain['title'])}", f"parts = {_text(json.dumps(plain['parts']))}"]
+    lines += ["", "[making]", *(f"{name} = {_text(value)}" for name, value in plain["making"].items())]
+    for picture in plain["pictures"]:
+        crop = ", ".join(f"{name} = {value!r}" for name, value in picture["crop"].items())
+        lines += ["", "[[pictures]]", f"key = {_text(picture['key'])}", f"name = {_text(picture['name'])}"]
+        lines.append(f"crop = {{ {crop} }}")
+    text = "\n".join(lines) + "\n"
+    check_text(len(text))
+    return text
+
+
+def _text(value: str | float) -> str:
+    """A value as TOML has it: JSON's escapes, and DEL, which only TOML wants escaped."""
+    if not isinstance(value, str):
+        return repr(value)
+    safe = value.encode("utf-8", "replace").decode()
+    return json.dumps(safe, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _locked(folder: Path) -> int:
+    """Take the folder for this studio alone; the system gives it back however the studio ends."""
+    file = folder / _LOCK
+    with system_errors(file, "writing"):
+        owner = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
+    try:
+        if sys.platform != "win32":
+            fcntl.flock(owner, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        else:
+            msvcrt.locking(owner, msvcrt.LK_NBLCK, 1)
+    except OSError as error:
+        os.close(owner)
+        raise InputError(
+            f"{folder} is open in another studio already: go on there, or close it, or name another folder"
+        ) from error
+    return owner
+
+
+def free_bytes(folder: Path) -> int:
+    """Bytes that are free on the disk of a folder."""
+    return shutil.disk_usage(folder).free

@@ -1,0 +1,201 @@
+"""The solve, in a process of its own: it tells what happens through a pipe, and stops when it is told to."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+import warnings
+from base64 import b64encode
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, Literal
+
+from lightcube.errors import InputError
+from lightcube.events import Progress, Said
+
+#: Seconds between two looks at the wall at least, and so many times as long as one takes.
+_LOOK_S, _PATIENCE = 0.7, 6.0
+#: The same of cubes to be turned.
+_TURN_S, _TURN_PATIENCE = 2.0, 12.0
+
+Deed = Literal["start", "resume", "keep"]
+
+
+def run(pipe: Connection, deed: Deed, pictures: str, out: str, options: Any, title: str) -> None:
+    """Do what is asked for; the last that is told says how it ended.
+
+    Parameters
+    ----------
+    deed
+        Start anew, go on with what is in the unfinished cube of `out`, or make a cube of what is there.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever began this says when it ends
+    warnings.simplefilter("ignore")
+    told = _Told(pipe, title)
+    try:
+        if deed == "keep":
+            _keep(told, out)
+        else:
+            _solve(told, deed, pictures, out, options)
+    except InputError as error:
+        told("failed", sentence=f"{error}")
+    except MemoryError:
+        told("failed", sentence="the machine has not enough memory for this: make the cube smaller")
+    except OSError as error:
+        told("failed", sentence=f"the system refused it ({error.strerror or error}): make room, and go on")
+
+
+class _Told:
+    """What is told through the pipe; nobody at its other end is as good as being told to stop."""
+
+    def __init__(self, pipe: Connection, title: str) -> None:
+        self._pipe, self.title, self._lock = pipe, title, threading.Lock()
+        self.stopping = threading.Event()
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def __call__(self, what: str, **facts: Any) -> None:
+        try:
+            with self._lock:
+                self._pipe.send((what, facts))
+        except OSError:
+            self.stopping.set()
+
+    def _listen(self) -> None:
+        with suppress(EOFError, OSError):
+            self._pipe.recv()
+        self.stopping.set()
+
+
+def _solve(told: _Told, deed: Deed, pictures: str, out: str, options: Any) -> None:
+    """Solve from the beginning, or from where it was."""
+    told("said", sentence="getting ready", compiling=False)
+    with _compiling(told):
+        from lightcube.backward.needs import job_memory
+        from lightcube.jobs import publishing, running
+        from lightcube.jobs.partial import DiskStore, load_job, open_partial, partial_path
+        from lightcube.verbs import solving
+
+        if deed == "resume":
+            job, store = load_job(partial_path(out)), DiskStore(partial_path(out))
+        else:
+            planned = solving.read(pictures, options, told=False)(solving.rehearsals())
+            job = solving.job(planned)
+            solving.check_memory(job_memory(job))
+            store = open_partial(out, job, overwrite=True)
+        show = _Show(told)
+
+        def tell(event: Progress | Said) -> bool:
+            if isinstance(event, Progress):
+                figures = dict(event.figures)
+                told("progress", done=event.done, of=event.of, psnr=figures.get("PSNR"), left_s=event.left_s)
+            else:
+                told("said", sentence=event.sentence, compiling=False)
+            return told.stopping.is_set()
+
+        if not running.run(job, job.pieces, store, tell, show):
+            told("stopped")
+            return
+        told("said", sentence="looking at what it shows", compiling=False)
+        cube = publishing.finish(job, store, out, overwrite=True).solution.cube
+    show.wall(cube)
+    show.turn(cube)
+    told("done", **_facts(cube))
+
+
+def _keep(told: _Told, out: str) -> None:
+    """Make a cube of what is there."""
+    from lightcube.jobs import publishing
+    from lightcube.jobs.partial import partial_path
+    from lightcube.scoring import metrics
+
+    cube = publishing.publish(partial_path(out), overwrite=True).solution.cube
+    show = _Show(told)
+    show.wall(cube)
+    show.turn(cube)
+    told("kept", **_facts(cube, metrics.score(cube) if cube.targets is not None else None))
+
+
+def _facts(cube: Any, scores: Any = None) -> dict[str, Any]:
+    """How good a cube is, picture by picture."""
+    found = scores or cube.scores
+    pictures = [
+        {"name": name, "psnr": None if view["psnr"] is None else float(view["psnr"])}
+        for name, view in zip(cube.names, found.get("pictures", []), strict=False)
+    ]
+    return {"pictures": pictures, "psnr": float(found["psnr_mean"]) if "psnr_mean" in found else None}
+
+
+class _Show:
+    """Watches a solve: what the wall shows now, and the cube to be turned, as often as it costs little."""
+
+    def __init__(self, told: _Told) -> None:
+        self._told, self._next_wall, self._next_turn, self._done = told, 0.0, 0.0, 0.0
+
+    def __call__(self, step: Any) -> None:
+        """Look, where it is time."""
+        now = time.monotonic()
+        if step.cube is None or now < min(self._next_wall, self._next_turn):
+            return
+        cube = step.cube()
+        if now >= self._next_wall:
+            self.wall(cube)
+            self._next_wall = time.monotonic() + max(_LOOK_S, _PATIENCE * (time.monotonic() - now))
+        if now >= self._next_turn:
+            began = time.monotonic()
+            self.turn(cube)
+            self._next_turn = time.monotonic() + max(_TURN_S, _TURN_PATIENCE * (time.monotonic() - began))
+
+    def wall(self, cube: Any) -> None:
+        """Tell what the wall shows at each stop."""
+        from lightcube.forward.casting import cast
+        from lightcube.optics.transfer import to_uint8
+        from lightcube.studio.kept import png
+
+        shown = [b64encode(png(to_uint8(picture, cube.transfer))).decode() for picture in cast(cube)]
+        told = [{"name": name, "image": image} for name, image in zip(cube.names, shown, strict=True)]
+        self._told("wall", pictures=told, voxels=int(max(cube.grid.shape)))
+
+    def turn(self, cube: Any) -> None:
+        """Tell the cube as the viewer takes it."""
+        from lightcube.viewer.description import zipped
+        from lightcube.viewer.page import contents
+
+        description, voxels = contents(cube, self._told.title or "Light cube")
+        self._told("cube", scene=zipped(description), voxels=voxels)
+
+
+class _compiling:  # noqa: N801 - used as a function
+    """Tell once that kernels are compiled, where one is not on the disk yet."""
+
+    def __init__(self, told: _Told) -> None:
+        self._told, self._said = told, False
+
+    def __enter__(self) -> None:
+        from numba.core import event
+
+        told, this = self._told, self
+
+        class Listener(event.Listener):
+            def on_start(self, _: object) -> None:
+                if not this._said:
+                    this._said = True
+                    told("said", sentence="compiling, once: about half a minute", compiling=True)
+
+            def on_end(self, _: object) -> None:
+                pass
+
+        self._listening = event.install_listener("numba:compile", Listener())
+        self._listening.__enter__()
+
+    def __exit__(self, *_: object) -> None:
+        self._listening.__exit__(None, None, None)
+
+
+def places(folder: Path) -> tuple[str, str]:
+    """Where a project's pictures are, and its cube."""
+    from lightcube.studio.making import CUBE
+    from lightcube.studio.project import MADE, PICTURES
+
+    return str(folder / PICTURES), str(folder / MADE / CUBE)

@@ -1,0 +1,272 @@
+"""Solving in the studio: a process of its own, paused, kept and gone on with, also after a kill."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import threading
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+from typing import Any, Literal
+
+from fastapi import APIRouter
+from fastapi.responses import Response
+from starlette.exceptions import HTTPException
+
+from lightcube.errors import InputError
+from lightcube.jobs.partial import discard_partial, is_partial, partial_path
+from lightcube.studio import solver
+from lightcube.studio.desk import Desk
+from lightcube.studio.making import command_of, options_of
+from lightcube.studio.pictures import check_there
+from lightcube.studio.project import MADE
+
+Status = Literal["idle", "running", "stopping", "paused", "done", "kept", "failed"]
+#: What can be done in which state.
+_MAY: dict[str, frozenset[Status]] = {
+    "start": frozenset({"idle", "paused", "done", "kept", "failed"}),
+    "pause": frozenset({"running"}),
+    "resume": frozenset({"paused", "kept", "failed"}),
+    "keep": frozenset({"running", "paused", "failed"}),
+    "discard": frozenset({"paused", "kept", "failed"}),
+}
+#: Seconds that a solve is given to keep what it has, when the studio ends.
+_GRACE_S = 8.0
+#: Points of the curve that are told.
+_CURVE = 240
+_FILE, _SCENE, _VOXELS = "solving.json", "scene.gz", "voxels.gz"
+
+
+def router(desk: Desk) -> APIRouter:
+    """What is asked of the solve, and the cube for the viewer."""
+    routes = APIRouter(prefix="/api")
+    solving = Solving(desk)
+    desk.parts["solving"] = solving.described
+    desk.starting.append(solving.go_on)
+    desk.closing.append(solving.close)
+
+    @routes.post("/solving/{deed}")
+    def do(deed: Literal["start", "pause", "resume", "keep", "discard"]) -> dict[str, Any]:
+        """Start, pause, go on, stop and keep what is there, or throw the unfinished cube away."""
+        return solving.do(deed)
+
+    @routes.get("/solving")
+    def stands() -> dict[str, Any]:
+        """How the solve stands, with what the wall shows now and the curve of how it went."""
+        return solving.described() | {"wall": solving.wall, "curve": solving.curve}
+
+    @routes.get("/cube/{part}", response_class=Response)
+    def cube(part: Literal["scene", "voxels"]) -> Response:
+        """The newest cube that there is, as the viewer reads it: its scene or its voxels, gzipped."""
+        data = solving.part(part)
+        if data is None:
+            raise HTTPException(404)
+        return Response(data, media_type="application/octet-stream")
+
+    return routes
+
+
+class Solving:
+    """The solve of a desk's project."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk, self._lock = desk, threading.RLock()
+        self._process: SpawnProcess | None = None
+        self._pipe: Connection | None = None
+        self._after = ""
+        self._parts: dict[str, bytes] = {}
+        self.wall: dict[str, Any] = {"pictures": [], "voxels": 0}
+        self.curve: list[list[float]] = []
+        self._pictures, self._out = solver.places(desk.project.folder)
+        self._facts: dict[str, Any] = {"status": "idle", "version": 0, "pictures": [], "made_of": "", **_nothing()}
+        self._facts |= self._remembered()
+
+    def described(self) -> dict[str, Any]:
+        """How it stands, as plain JSON."""
+        with self._lock:
+            project = self._desk.project
+            settings = project.settings
+            return {
+                **{name: value for name, value in self._facts.items() if name != "made_of"},
+                "can": sorted(deed for deed, states in _MAY.items() if self._facts["status"] in states),
+                "changed": self._has_changed(),
+                "command": command_of(project.folder, settings.making) if len(settings.used) > 1 else "",
+            }
+
+    def do(self, deed: str) -> dict[str, Any]:
+        """Do what is asked; `InputError` where it cannot be done now."""
+        with self._lock:
+            if self._facts["status"] not in _MAY[deed]:
+                raise InputError(f"the cube is {_SAID[self._facts['status']]}: {deed} is for another moment")
+            if deed == "start":
+                check_there(self._desk.project)
+                self._begin("start")
+            elif deed == "resume":
+                self._begin("resume" if self._is_begun() else "start")
+            elif deed == "discard":
+                discard_partial(self._out)
+                self._set(status="idle", **_nothing())
+            elif self._process is None:
+                self._begin("keep")
+            else:
+                self._after = "keep" if deed == "keep" else ""
+                self._set(status="stopping")
+                self._stop()
+            return self.described()
+
+    def go_on(self) -> None:
+        """Go on with what ran when the studio was ended or killed."""
+        with self._lock:
+            if self._facts["status"] in ("running", "stopping"):
+                self._facts["status"] = "paused"
+                if self._is_begun():
+                    self._begin("resume")
+
+    def part(self, name: str) -> bytes | None:
+        """Scene or voxels of the newest cube; None where there is none."""
+        with self._lock:
+            if name in self._parts:
+                return self._parts[name]
+        file = self._desk.project.path(MADE, f"{name}.gz")
+        is_newest = self._facts["status"] != "running" and not self._has_changed()
+        return file.read_bytes() if file.is_file() and is_newest else self._desk.first_cube(name)
+
+    def close(self) -> None:
+        """End the process; what it has reached is kept, and gone on with when the studio starts again."""
+        with self._lock:
+            process, self._process = self._process, None
+            self._stop()
+        if process is not None:
+            process.join(_GRACE_S)
+            if process.is_alive():
+                process.kill()
+                process.join()
+
+    def _begin(self, deed: solver.Deed) -> None:
+        """Start a process that does it."""
+        project = self._desk.project
+        context = multiprocessing.get_context("spawn")
+        ours, theirs = context.Pipe()
+        options, title = options_of(project.settings.making), project.settings.title
+        asked = (theirs, deed, self._pictures, self._out, options, title)
+        process = context.Process(target=solver.run, args=asked, daemon=True, name="lightcube-solver")
+        process.start()
+        theirs.close()
+        self._process, self._pipe = process, ours
+        if deed == "start":
+            self.curve, self.wall, self._parts = [], {"pictures": [], "voxels": 0}, {}
+            self._facts |= _nothing() | {"made_of": self._of(), "pictures": []}
+        self._set(status="stopping" if deed == "keep" else "running", sentence="")
+        threading.Thread(target=self._hear, args=(process, ours), daemon=True).start()
+
+    def _hear(self, process: SpawnProcess, pipe: Connection) -> None:
+        """Hear what a process tells until it ends."""
+        last = ""
+        try:
+            while True:
+                last, facts = pipe.recv()
+                with self._lock:
+                    if process is self._process:
+                        self._heard(last, facts)
+        except (EOFError, OSError):
+            process.join()
+        with self._lock:
+            pipe.close()
+            if process is self._process:
+                self._process = self._pipe = None
+                self._ended(last)
+
+    def _heard(self, what: str, facts: dict[str, Any]) -> None:
+        """Take up one thing that was told."""
+        if what == "wall":
+            self.wall = facts
+            self._desk.hub.tell("solving", {"wall": facts})
+        elif what == "cube":
+            self._parts = facts
+            self._set(version=self._facts["version"] + 1)
+        elif what == "progress":
+            if facts["psnr"] is not None:
+                self.curve.append([facts["done"] / max(facts["of"], 1), round(facts["psnr"], 2)])
+                self.curve = self.curve if len(self.curve) <= _CURVE else self.curve[::2]
+            psnr = self._facts["psnr"] if facts["psnr"] is None else facts["psnr"]
+            self._set(**facts | {"psnr": psnr, "sentence": ""})
+        elif what == "said":
+            self._set(sentence=facts["sentence"])
+        elif what in ("done", "kept"):
+            for name, data in self._parts.items():
+                self._desk.project.write(data, MADE, f"{name}.gz")
+            self._set(status=what, left_s=None, sentence="", **facts)
+        elif what == "failed":
+            self._set(status="failed", left_s=None, sentence=facts["sentence"])
+
+    def _ended(self, last: str) -> None:
+        """The process is gone: as it was told to, or not."""
+        if last == "stopped" and self._after == "keep":
+            self._after = ""
+            self._begin("keep")
+        elif last == "stopped":
+            self._set(status="paused", left_s=None, sentence="")
+        elif last not in ("done", "kept", "failed"):
+            self._set(status="paused", left_s=None, sentence="solving was ended from outside: go on, nothing is lost")
+
+    def _set(self, **facts: Any) -> None:
+        """Change how it stands, keep that where it is another state, and tell everybody."""
+        before = self._facts["status"]
+        self._facts |= facts
+        if self._facts["status"] != before or "pictures" in facts:
+            kept = {name: value for name, value in self._facts.items() if name not in ("sentence", "left_s")}
+            try:
+                self._desk.project.write(
+                    json.dumps(kept | {"curve": self.curve, "wall": self.wall}).encode(), MADE, _FILE
+                )
+            except InputError as error:
+                self._facts["sentence"] = f"{error}"
+        self._desk.hub.tell("solving", self.described())
+
+    def _stop(self) -> None:
+        """Tell the process to stop."""
+        if self._pipe is not None:
+            with suppress(OSError):  # it is gone already
+                self._pipe.send("stop")
+
+    def _is_begun(self) -> bool:
+        """Whether there is something of an unfinished cube."""
+        partial = partial_path(self._out)
+        return is_partial(partial) and any(each.name.endswith(".npz") for each in partial.iterdir())  # type: ignore[union-attr]
+
+    def _has_changed(self) -> bool:
+        """Whether the cube was made of something else than what stands there now."""
+        return self._facts["made_of"] not in ("", self._of())
+
+    def _of(self) -> str:
+        """What the cube is made of, to see whether it has changed."""
+        settings = self._desk.project.settings
+        return json.dumps([settings.making.model_dump(), [each.model_dump() for each in settings.used]], sort_keys=True)
+
+    def _remembered(self) -> dict[str, Any]:
+        """How it stood when the studio was last open; nothing where that is not known."""
+        try:
+            kept = json.loads(self._desk.project.path(MADE, _FILE).read_bytes())
+            self.curve, self.wall = kept.pop("curve"), kept.pop("wall")
+            if kept["status"] in _SAID:
+                return {name: kept[name] for name in self._facts if name in kept}
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            pass  # it was never solved, or that is damaged
+        return {"status": "paused"} if self._is_begun() else {}
+
+
+def _nothing() -> dict[str, Any]:
+    """Nothing is reached yet."""
+    return {"done": 0, "of": 0, "psnr": None, "left_s": None, "sentence": ""}
+
+
+_SAID: dict[str, str] = {
+    "idle": "not begun",
+    "running": "being solved",
+    "stopping": "about to stop",
+    "paused": "paused",
+    "done": "finished",
+    "kept": "kept as it was reached",
+    "failed": "not finished",
+}

@@ -1,0 +1,87 @@
+"""Who gets into the studio: the token, the names of this machine, the page's own origin, and how much at once."""
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("fastapi", reason="the studio's extra is not installed")
+pytest.importorskip("httpx2", reason="httpx2 is not installed")
+
+from fastapi.testclient import TestClient
+
+from lightcube.studio import guard
+from tests.helpers.studios import TOKEN, opened
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> TestClient:
+    return opened(tmp_path / "project")
+
+
+def test_without_the_token_nothing_is_told(client: TestClient) -> None:
+    del client.headers[guard.HEADER]
+    for path in ("/", "/api/state", "/api/events", "/web/studio.js", "/viewer/style.css", "/nothing"):
+        answer = client.get(path)
+        assert answer.status_code == 403
+        assert "address that the terminal shows" in answer.json()["sentence"]
+    assert client.get("/?token=guessed").status_code == 403
+
+
+def test_the_address_gives_a_cookie_that_scripts_cannot_read_and_loses_the_token(client: TestClient) -> None:
+    del client.headers[guard.HEADER]
+    answer = client.get(f"/?token={TOKEN}", follow_redirects=False)
+    assert (answer.status_code, answer.headers["location"]) == (303, "/")
+    assert "HttpOnly" in answer.headers["set-cookie"]
+    assert "SameSite=Strict" in answer.headers["set-cookie"]
+    assert client.get("/").status_code == 200
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "[::1", "", "127.0.0.1@evil.example"])
+def test_names_of_other_machines_are_refused(client: TestClient, host: str) -> None:
+    assert client.get("/api/state", headers={"host": host}).status_code == 403
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"origin": "http://evil.example"},
+        {"origin": "null"},
+        {"origin": "http://127.0.0.1:1"},
+        {"sec-fetch-site": "cross-site"},
+        {"sec-fetch-site": "same-site"},
+    ],
+    ids=str,
+)
+def test_other_pages_are_refused(client: TestClient, headers: dict[str, str]) -> None:
+    assert client.get("/api/state").status_code == 200
+    assert client.get("/api/state", headers=headers).status_code == 403
+    assert client.post("/api/undo", headers=headers).status_code == 403
+
+
+def test_the_page_runs_its_own_scripts_only(client: TestClient) -> None:
+    for path in ("/", "/api/state", "/nothing"):
+        policy = client.get(path).headers["content-security-policy"]
+        assert "default-src 'none'; script-src 'self'; style-src 'self'" in policy
+        assert "unsafe" not in policy
+    text = client.get("/").text
+    assert "style=" not in text
+    assert "<script>" not in text
+
+
+def test_more_than_is_taken_is_refused_whether_it_says_so_or_not(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(guard, "MOST_TEXT", 1000)
+    said = client.patch("/api/settings", content=b" " * 1001)
+    flowing = client.patch("/api/settings", content=(b" " * 100 for _ in range(11)))
+    for answer in (said, flowing):
+        assert answer.status_code == 413
+        assert "larger than 0.001 MB" in answer.json()["sentence"]
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/web/../studio.html", "/web/%2e%2e/app.py", "/web/..%2fapp.py", "/web/parts%5c..", "/viewer/.x.js"],
+)
+def test_no_path_leads_out_of_the_pages_folder(client: TestClient, path: str) -> None:
+    assert client.get(path).status_code == 404

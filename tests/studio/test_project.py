@@ -1,0 +1,176 @@
+"""A project keeps what is said, can undo it, has its folder to itself, and says what is wrong with it."""
+
+import errno
+import os
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+
+pytest.importorskip("fastapi", reason="the studio's extra is not installed")
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lightcube.cli import main
+from lightcube.errors import InputError
+from lightcube.studio.making import command_of, options_of, words_of
+from lightcube.studio.project import Crop, Making, Picture, Project, Settings, toml_text
+from lightcube.verbs.options import Options
+
+NAMES = (
+    "\x1b[31mred",
+    "\u202egnp.exe",
+    "<script>alert(1)</script>",
+    'a"b\\c',
+    "a\nb = 1",
+    "\x7f\x00",
+    "💡" * 20,
+    "' OR 1=1",
+)
+
+
+def titled(title: str) -> Any:
+    return lambda before: before.model_copy(update={"title": title})
+
+
+def test_what_is_said_is_there_when_it_is_opened_again(tmp_path: Path) -> None:
+    first = Project(tmp_path / "a")
+    for title in ("one", "two", "three"):
+        first.change(titled(title))
+    first.step(-1)
+    first.close()
+    again = Project(tmp_path / "a")
+    assert again.settings.title == "two"
+    assert again.step(1).title == "three"
+    assert [again.step(-1).title for _ in range(3)] == ["two", "one", ""]
+    with pytest.raises(InputError, match="nothing to undo"):
+        again.step(-1)
+    again.change(titled("other"))
+    with pytest.raises(InputError, match="nothing to do again"):
+        again.step(1)
+
+
+def test_what_changes_nothing_is_no_step(tmp_path: Path) -> None:
+    project = Project(tmp_path)
+    project.change(titled("one"))
+    project.change(titled("one"))
+    assert project.step(-1).title == ""
+    assert not project.described()["can_undo"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_hostile_names_come_back_as_they_are(name: str) -> None:
+    picture = Picture(key="0123456789abcdef", name=name, crop=Crop(left=0.125, width=0.5))
+    settings = Settings(title=name, pictures=(picture,), parts={"rooms": {"name": name}})
+    tables = tomllib.loads(toml_text(settings))
+    assert (tables["title"], tables["pictures"][0]["name"]) == (name, name)
+    assert tables["pictures"][0]["crop"]["left"] == 0.125
+
+
+def test_a_second_studio_says_so(tmp_path: Path) -> None:
+    first = Project(tmp_path)
+    with pytest.raises(InputError, match="open in another studio already"):
+        Project(tmp_path)
+    first.close()
+    Project(tmp_path).close()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("format = 2\n", "has format 2, and this studio reads 1: update lightcube"),
+        ("title = 'x'\n", "has format None, and this studio reads 1: move the file away"),
+        ("format = 1\n[making]\nvoxels = 1e9\n", "is damaged: making.voxels"),
+        ("format = 1\nmagic = 1\n", "is damaged: magic: no such key here"),
+        ("format = 1\nparts = '{'\n", "is damaged in its parts"),
+        ("format = 1\n[[pictures]]\nkey = '../../etc'\nname = 'a'\n", r"is damaged: pictures"),
+        ("format = ", "is not a TOML file"),
+        ("\0", "holds bytes of 0"),
+    ],
+)
+def test_settings_that_cannot_be_are_one_sentence(text: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "project.toml").write_text(text)
+    with pytest.raises(InputError, match=said):
+        Project(tmp_path)
+    (tmp_path / "project.toml").unlink()
+    Project(tmp_path).close()  # nobody holds the folder
+
+
+def test_a_damaged_history_costs_only_itself(tmp_path: Path) -> None:
+    project = Project(tmp_path)
+    project.change(titled("one"))
+    project.close()
+    (tmp_path / "history.json").write_text('{"at": 7, "steps": [')
+    again = Project(tmp_path)
+    assert (again.settings.title, again.described()["can_undo"]) == ("one", False)
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="whoever may write everywhere is not refused")
+def test_a_folder_that_cannot_be_written_is_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "shut").mkdir(mode=0o500)
+    with pytest.raises(InputError, match=r"writing .* failed"):
+        Project(tmp_path / "shut")
+
+
+def test_a_file_in_the_place_of_the_folder_is_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    for place in ("file", "file/below"):
+        with pytest.raises(InputError, match=r"writing .* failed"):
+            Project(tmp_path / place)
+
+
+def test_a_full_disk_is_a_sentence_and_the_settings_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    project = Project(tmp_path)
+    project.change(titled("one"))
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("lightcube.studio.project.os.fsync", full)
+    with pytest.raises(InputError, match="no space is left on the disk"):
+        project.change(titled("two"))
+    assert project.settings.title == "one"
+    assert tomllib.loads((tmp_path / "project.toml").read_text())["title"] == "one"
+    assert not [each.name for each in tmp_path.iterdir() if each.name.startswith(".project")]
+
+
+@pytest.mark.parametrize("parts", [("..", "a"), ("a/b",), ("",), (".",), ("a\0",), ("..\\a",), ("way", "out")])
+def test_no_path_leads_out_of_the_folder(parts: tuple[str, ...], tmp_path: Path) -> None:
+    project = Project(tmp_path / "project")
+    (project.folder / "way").symlink_to(tmp_path)
+    with pytest.raises(InputError, match=r"no file of the project|out of the project's folder"):
+        project.path(*parts)
+
+
+@cache
+def solve_command() -> Any:
+    """The command as the terminal has it."""
+    return typer.main.get_command(main.application(["solve"])).commands["solve"]  # type: ignore[attr-defined]
+
+
+@settings(max_examples=30)
+@given(
+    making=st.builds(
+        Making,
+        voxels=st.integers(16, 160),
+        width=st.floats(0.2, 1),
+        lamp=st.floats(1, 64),
+        hold_deg=st.floats(0, 6),
+        richness=st.one_of(st.just(0.0), st.floats(0.01, 1)),
+        fit=st.sampled_from(["crop", "pad"]),
+        mat=st.sampled_from(["dark", "grey", "light", "none"]),
+        order=st.sampled_from(["given", "best"]),
+        quality=st.sampled_from(["draft", "normal", "best"]),
+    )
+)
+def test_the_command_says_what_the_sliders_say(making: Making) -> None:
+    """Read again as the command line reads it, the words are the very options."""
+    typed = command_of(Path("/a folder"), making).split(" ", 2)[2]
+    assert typed.startswith("'/a folder/pictures' -o '/a folder/made/cube.zarr'")
+    given = solve_command().make_context("solve", ["pictures", "-o", "cube.zarr", *words_of(making)]).params
+    said = Options(**{name: value for name, value in given.items() if name in Options.__dataclass_fields__})
+    assert said == options_of(making)
