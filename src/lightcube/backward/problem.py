@@ -1,6 +1,6 @@
 """Targets and a grid as a solver sees them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture
 from lightcube.optics.light import judged
+from lightcube.optics.refraction import bent
 from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import Views
@@ -203,15 +204,16 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
 
     light = np.maximum(wanted[:, rows, :, part.colours], darkest[all_that.stop, None, None, None])
     own = np.repeat(heavy[:, rows, :, None], part.colours.stop - part.colours.start, axis=-1)
-    mixture = None if rig.is_thin else Mixture.of(rig, channels, part.colours, rows)
+    loss, seen = _loss(rig, own[..., 0])
+    mixture = None if rig.is_thin or loss is not None else Mixture.of(rig, channels, part.colours, rows)
     if mixture is not None:
         mixture = mixture.in_parts(matrix.parts, matrix.areas)
     lamp = lamp_numbers(targets.rig, rig, all_that.stop, recipe.powers).repeat(matrix.parts)
     return Problem(
         matrix=matrix,
         light=block(light),
-        weights=block(own),
-        lighting=Lighting(lamp, mixture),
+        weights=block(own * seen[..., None]),
+        lighting=Lighting(lamp, mixture, loss),
         part=part,
         rows=rows,
         targets=targets,
@@ -219,6 +221,22 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
         judge=_judge(targets.rig, recipe, grid),
         dyes=None if recipe.dyes is None else recipe.dyes.in_block(grid),
     )
+
+
+def _loss(rig: Rig, weights: Images) -> tuple[Floats | None, Flags]:
+    """What glass takes of the light of single beams, as absorbance ``(equations, 1)``, and which pixels have a beam.
+
+    None where pictures are sums, or light passes the glass where it counts: then it is no plain factor.
+    """
+    all_of_them = np.ones(weights.shape, np.bool_)
+    if rig.glass is None or not replace(rig, glass=None).is_thin:
+        return None, all_of_them
+    found = bent(rig)
+    if np.any(found.beside[weights > 0]):
+        return None, all_of_them
+    lit = found.through > 0
+    taken = -np.log(np.where(lit, found.through, 1.0))
+    return np.ascontiguousarray(taken[:, ::-1].swapaxes(1, 2)).reshape(-1, 1), lit
 
 
 def _wanted(targets: Targets, grid: Grid, recipe: Recipe, all_that: Asked) -> tuple[Images, Images]:

@@ -161,8 +161,9 @@ def falling_light(rig: Rig, chosen: Sequence[int] | None = None) -> tuple[NDArra
     shadow = np.ones_like(light)
     if rig.glass is not None:
         found = bent(rig, numbers)
-        light[:] = found.beside + found.through
-        shadow[:] = np.divide(found.through, light, where=light > 0, out=np.ones_like(light))
+        whole = found.beside + found.through
+        light[:] = whole
+        shadow[:] = np.divide(found.through, whole, where=whole > 0, out=np.ones_like(whole))
     for k, v in enumerate(numbers):
         asked = fading.cosine[v], np.isfinite(fading.full_at_mm[v]), np.isfinite(fading.reach_mm[v])
         if not np.any(np.hstack(asked)):

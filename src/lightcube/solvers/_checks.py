@@ -110,7 +110,7 @@ def linear_problem(method: str, A: Operator, wanted: Wanted, x0: Floats | None, 
 
     The parameters are those of `lightcube.solvers.contract.Solver`.
     """
-    if wanted.lighting.mixture is not None:
+    if wanted.lighting.mixture is not None or wanted.lighting.loss is not None:
         raise InputError(f"method {method} takes logarithms, and light that adds up has none: use method display")
     check_fits(A, wanted)
     if not wanted.has_fixed_lamps:

@@ -32,6 +32,8 @@ class ConvexObjective:
     bounds: tuple[NDArray[np.float64], NDArray[np.float64]]
     #: How display values follow from ln light.
     curve: display.Curve
+    #: Absorbance beside the cube's, ``(equations, 1)``.
+    loss: Floats | None
 
     @classmethod
     def of(cls, wanted: Wanted) -> "ConvexObjective":
@@ -50,6 +52,7 @@ class ConvexObjective:
             np.log(high),
             (low, high),
             display.curve(wanted.transfer == "srgb", wanted.light.dtype.type),
+            None if wanted.lighting.loss is None else wanted.lighting.loss.astype(wanted.light.dtype),
         )
 
     def powers(self, lamp: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -57,8 +60,8 @@ class ConvexObjective:
         return np.clip(np.exp(lamp), *self.bounds)
 
     def joint(self, ax: Floats) -> Floats:
-        """Return the absorbance of each picture's light: that of its one view."""
-        return ax
+        """Return the absorbance of each picture's light: that of its one view, and what is lost beside the cube."""
+        return ax if self.loss is None else ax + self.loss
 
     def best_lamp(self, joint: Floats, start: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the best ln P for absorbance `joint`, found from `start`."""
@@ -73,21 +76,22 @@ class ConvexObjective:
         self, last: Floats, ax: Floats, joint: Floats, lamp: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the objective per column at absorbance `ax`, and the least if it changed from `last` once more."""
-        return convex.arrive(last, ax, lamp.astype(ax.dtype), self.lamps, self.wanted, self.weights, self.curve)
+        before, lamps = self.joint(last), lamp.astype(ax.dtype)
+        return convex.arrive(before, joint, lamps, self.lamps, self.wanted, self.weights, self.curve)
 
     def descend(self, ax: Floats, joint: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Write over `ax`, and return, the objective's derivative by the absorbance."""
-        self.slopes(ax, lamp, ax)
+        self.slopes(joint, lamp, ax)
         return ax
 
-    def slopes(self, ax: Floats, lamp: NDArray[np.float64], slopes: Floats) -> None:
-        """Write the objective's derivative by the absorbance to `slopes`, which may be `ax` itself."""
-        convex.descend(ax, lamp.astype(ax.dtype), self.lamps, self.wanted, self.weights, self.curve, slopes)
+    def slopes(self, joint: Floats, lamp: NDArray[np.float64], slopes: Floats) -> None:
+        """Write the objective's derivative by the absorbance to `slopes`, which may be `joint` itself."""
+        convex.descend(joint, lamp.astype(joint.dtype), self.lamps, self.wanted, self.weights, self.curve, slopes)
 
     def curved(self, values: Floats, ax: Floats, joint: Floats, lamp: NDArray[np.float64]) -> Floats:
         """Multiply `values`, and return them, by bounds on the curvature of each entry's term."""
         data = (self.lamps, self.wanted, self.weights, self.curve)
-        convex.curvatures(ax, lamp.astype(ax.dtype), *data, ax.dtype.type(ROOM), values)
+        convex.curvatures(joint, lamp.astype(ax.dtype), *data, ax.dtype.type(ROOM), values)
         return values
 
     def lower_bound(self, A: Operator, ax: Floats, lamp: NDArray[np.float64], bounds: Bounds) -> float:
@@ -99,7 +103,7 @@ class ConvexObjective:
         lower, upper = bounds
         if np.any(lower == -np.inf):
             return 0.0
-        pull = self.descend(ax, ax, lamp)
+        pull = self.descend(ax, self.joint(ax), lamp)
         np.negative(pull, out=pull)
         if upper == np.inf:
             self._make_feasible(A, pull)
@@ -107,6 +111,8 @@ class ConvexObjective:
         least = -float(np.sum(lower * np.sum(np.minimum(back, 0), axis=0, dtype=np.float64)))
         if upper < np.inf:
             least -= upper * float(np.sum(np.maximum(back, 0), dtype=np.float64))
+        if self.loss is not None:
+            least -= float(np.sum(pull * self.loss, dtype=np.float64))
         rows_of_lamp = (self.rows[first:last] for first, last in pairwise(self.starts))
         per_column = np.stack([np.sum(pull[rows], axis=0, dtype=np.float64) for rows in rows_of_lamp])
         per_lamp = per_column.reshape(len(self.low), -1, self.low.shape[1]).sum(axis=1)

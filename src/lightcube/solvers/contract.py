@@ -58,7 +58,10 @@ class Lighting:
     lamp
         ``(views,)`` whole numbers from 0: which of the lamps each view has.
     mixture
-        How views add up; None where each one is a picture, under all of its lamp's light.
+        How views add up; None where each one is a picture, under all of its lamp's light, or a known part of it.
+    loss
+        ``(equations, 1)``: absorbance that each pixel's light has beside the cube's, where views do not add up: minus
+        the logarithm of that part. None = none. Only method display minds it.
 
     Raises
     ------
@@ -68,8 +71,11 @@ class Lighting:
 
     lamp: NDArray[np.integer[Any]]
     mixture: Mixture | None = None
+    loss: Floats | None = None
 
     def __post_init__(self) -> None:
+        if self.loss is not None and (self.mixture is not None or not np.all(np.isfinite(self.loss))):
+            raise InputError("a loss is finite, and of light that does not add up: leave one of the two out")
         if self.lamp.ndim != 1 or self.lamp.size == 0 or not np.issubdtype(self.lamp.dtype, np.integer):
             raise InputError(
                 f"lamps must be whole numbers, one per view, not {self.lamp.dtype} of shape {self.lamp.shape}"
