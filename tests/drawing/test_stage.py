@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from lightcube.drawing.bending import _PARTS
 from lightcube.drawing.stage import drawing
 from lightcube.drawing.svg import Labels, hull
+from lightcube.optics.glass import Form, Glass
 from lightcube.optics.grid import Grid
+from lightcube.optics.refraction import bent
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 
 Reals = NDArray[np.float64]
@@ -173,3 +176,31 @@ def test_the_hull_holds_all_points_and_is_made_of_some(count: int) -> None:
     for turn in np.arange(0, 2 * math.pi, 0.1):
         ahead = (math.cos(turn), math.sin(turn))
         assert np.max(corners @ ahead) == pytest.approx(np.max(points @ ahead))
+
+
+@pytest.mark.parametrize(("form", "elevation_deg"), [("block", 35.0), ("cylinder", 20.0), ("sphere", 20.0)])
+def test_bent_beams_are_drawn_where_the_rig_has_them(form: Form, elevation_deg: float) -> None:
+    """Of each beam the way from the lamp, into the glass, out of it and to the wall, in both panels; the body too."""
+    turn = np.radians(elevation_deg)
+    way = (float(np.cos(turn)), 0.0, -float(np.sin(turn)))
+    grid = Grid((10, 10, 10), 4.0)
+    place = (70.0, 0.0, 70.0 * way[2] / way[0] + float(Glass(1.5, form).around(grid).rise_mm(np.array([way]))[0]))
+    glass = Glass(1.5, form, "blocked" if form == "block" else "open")
+    lamp, wall = Lamp("lamp", way), Screen("wall", place, (20.0, 20.0), 2.0)
+    stage = Stage(grid, (lamp,), (wall,), (Shot("one", "wall", ("lamp",)),), glass=glass)
+    text = drawing(stage)
+    found = bent(stage.rig())
+    lit = sum(found.through[0, int(down * 10), int(across * 10)] > 0 for down in _PARTS for across in _PARTS)
+    parts = list(ElementTree.fromstring(text).iter())  # noqa: S314 - the project's own drawing
+    named = {name: [each for each in parts if each.get("class") == name] for name in ("bent", "glass", "blocked")}
+    beams, edges, bottoms = named.values()
+    assert len(beams) == 2 * lit > 8
+    assert (len(edges) > 0) == (form != "block")
+    assert len(bottoms) == (form == "block")
+    for beam in beams[lit:]:  # from the side
+        ends = np.array([[float(part) for part in place.split(",")] for place in beam.attrib["points"].split()])
+        into, inside, on = np.diff(ends, axis=0)
+        slopes = [float(step[1] / step[0]) for step in (into, inside, on)]
+        assert abs(slopes[1] - slopes[0]) > 0.03
+        if form == "block":
+            assert slopes[2] == pytest.approx(slopes[0], rel=0.03)

@@ -22,7 +22,15 @@ Array = NDArray[Any]
 
 GRID = Grid((3, 5, 7), 1.3)
 RANDOM = np.random.default_rng(7)
-ALL = ("model/data.js", "model/stage.js", "model/area.js", "model/cast.js", "model/sheet.js")
+ALL = (
+    "model/data.js",
+    "model/stage.js",
+    "model/area.js",
+    "model/cast.js",
+    "model/sheet.js",
+    "model/glass.js",
+    "model/beam.js",
+)
 #: The scene and the voxels of an argument, for an expression to go on with.
 GIVEN = """(async () => {
   const scene = await readScene(fromBase64(argument.scene));

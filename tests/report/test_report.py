@@ -188,6 +188,11 @@ SOLVES = {
     "--lamp-deg 2.25 --screen-mm 12.1 --shift 1 --iterations 2",
     "clear": "--n 6 --picture-width 0.5 --hold-deg 0 --clear 0.01,0.02,0.015 --max-extinction 0.4 --iterations 2",
     "dyes": "--n 6 --picture-width 0.5 --hold-deg 0 --material polyjet --iterations 2",
+    "glass": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.48,1.5,1.53 --bottom blocked --iterations 2",
+    "glass cylinder": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.5 --form cylinder --lamp-deg 0.3 --iterations 2",
+    "glass sphere": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.4 --form sphere --screen-mm 60 --iterations 2",
+    "glass bath": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.33 --form bath --bath-mm 199 --iterations 2",
+    "glass, round bath": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.45,1.5,1.6 --form round-bath --iterations 2",
     "units": "--n 6 --picture-width 0.5 --hold-deg 0 --iterations 3 --unit 1/3",
 }
 
@@ -227,6 +232,7 @@ def _makes_it_again(run: Run, cube: str, targets: str) -> None:
     np.testing.assert_array_equal(new.rig.sums.disc_deg, old.rig.sums.disc_deg)
     for name in ("lamps", "origins_mm", "column_steps_mm", "row_steps_mm"):
         np.testing.assert_array_equal(getattr(new.rig.views, name), getattr(old.rig.views, name))
+    assert new.rig.glass == old.rig.glass
     assert (new.names, new.hold_deg, new.transfer) == (old.names, old.hold_deg, old.transfer)
     made = [{name: said for name, said in each.provenance.items() if name != "predicted"} for each in (new, old)]
     assert made[0] == made[1]  # where nothing is left to choose nothing is predicted

@@ -12,8 +12,10 @@ from lightcube import io
 from lightcube.backward import solving
 from lightcube.backward.recipe import Recipe
 from lightcube.errors import InputError
-from lightcube.io import read_dyes
+from lightcube.io import read_dyes, save
+from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
+from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
 from lightcube.optics.rig import turntable
@@ -156,3 +158,23 @@ def test_the_command_says_that_it_holds_less(
     assert done.code == 0, done.err
     assert "8 x 8 x 7 voxels, solved anew for the pictures of 12 x 12 x 10" in done.err
     assert json.loads(run("view", "cube.npz", "-o", "b.html", "--full", "--json").out)["shape"] == [10, 12, 12]
+
+
+@pytest.mark.parametrize("glass", [Glass(1.5, bottom="blocked"), Glass((1.4, 1.5, 1.6), "cylinder")])
+def test_all_that_is_kept_has_the_glass(glass: Glass, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Files, and a page's smaller cube, which is solved for it."""
+    monkeypatch.setattr(page_cube, "MOST_SIDE", 8)
+    grid = Grid((10, 12, 12), 2.0)
+    rig = turntable(grid, [20.0, 130.0], elevation_deg=20, picture_shape=(4, 6), glass=glass)
+    pictures = np.random.default_rng(1).uniform(0.3, 0.7, (2, 4, 6, 3)).astype(np.float32)
+    cube = solving.solve(Targets(pictures, rig), grid, Recipe(passes=20)).cube
+    for name in ("a.npz", "a.zarr"):
+        save(cube, tmp_path / name)
+        again = load(tmp_path / name)
+        assert again.rig.glass == cube.rig.glass is not None
+        np.testing.assert_array_equal(play(again), play(cube))
+    small = smaller(cube)
+    assert small.grid.shape == (7, 8, 8)
+    assert small.rig.glass == cube.rig.glass
+    assert small.scores["psnr_mean"] > 25
+    assert describe(cube, pack(small), "two")["glass"]["form"] == glass.form

@@ -10,6 +10,7 @@ from lightcube.cli.console import json_document, out
 from lightcube.cli.options import JSON
 from lightcube.errors import InputError
 from lightcube.jobs.reading import load
+from lightcube.report import bending
 from lightcube.scoring import relief_facts
 from lightcube.scoring.facts import facts, shape_facts
 from lightcube.verbs import materials
@@ -35,7 +36,7 @@ def info(
         known = relief_facts.facts(io.read_relief(thing))
     else:
         cube = load(thing)
-        known = facts(cube) | materials.amounts(cube)
+        known = facts(cube) | bending.facts(cube.rig) | materials.amounts(cube)
         if dyes is not None:
             made_of = materials.reach(cube, dyes)
             known, reach = known | made_of, materials.reach_in_words(made_of, dyes.names)

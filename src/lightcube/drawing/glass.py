@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lightcube.drawing import tones
+from lightcube.drawing.bending import is_cut
 from lightcube.drawing.camera import FINE, Canvas, Floats, Reals, Region
 from lightcube.drawing.standing import Standing
 from lightcube.kernels.layout import columns_from_volume
@@ -64,7 +65,7 @@ class Glass:
     """A cube's glass, laid out for eyes."""
 
     def __init__(self, cube: Cube) -> None:
-        self._grid = cube.grid
+        self._grid, self._is_cut = cube.grid, is_cut(cube.rig.glass)
         self._columns = columns_from_volume(cube.extinction).reshape(-1, cube.extinction.shape[0])
 
     def seen(self, canvas: Canvas, now: Standing, ember: Reals, bare: float) -> Seen | None:
@@ -94,7 +95,7 @@ class Glass:
         tasks.run(glimpse.look, len(rays), work, *given)
         through = (1 - bare) * clearer(absorbed) + bare * np.exp(-absorbed)
         more = (1 - bare) * np.asarray(ember) * shining
-        mirrored = (1 - bare) * (0.03 + 0.5 * (1 - slant) ** 4)
+        mirrored = (1 - bare) * (not self._is_cut) * (0.03 + 0.5 * (1 - slant) ** 4)
         found = np.column_stack([through, more, mirrored, 0.06 * level, np.ones(len(rays))])
         found *= hit[:, None] | (every == 1)
         seen = _enlarged(found.reshape(*ways.shape[:2], -1).astype(np.float32), shape, every)

@@ -12,6 +12,7 @@ import numpy as np
 
 from lightcube.drawing import tones
 from lightcube.drawing.beam import Air, off_pictures
+from lightcube.drawing.bending import draw_bent, draw_body, is_cut
 from lightcube.drawing.camera import Camera, Canvas, Floats, Reals
 from lightcube.drawing.eyes import AROUND
 from lightcube.drawing.film_glass import FilmGlass
@@ -28,7 +29,7 @@ from lightcube.drawing.furniture import (
 )
 from lightcube.drawing.glass import Glass
 from lightcube.drawing.stacks import sheets
-from lightcube.drawing.standing import PlacedLamp, PlacedScreen, Standing, extent, size_of, standing
+from lightcube.drawing.standing import PlacedLamp, PlacedScreen, Standing, drawn, extent, size_of, standing
 from lightcube.forward.casting import screens
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
@@ -82,9 +83,10 @@ class Room:
         glass = self._glass.seen(canvas, now, ember, bare)
         table = None if isinstance(grid, Stack) else table_layers(canvas, grid, now, floor)
         off = off_pictures(canvas, now.screens)
+        clear = self.cube.rig.glass
         air = Air(canvas, grid)
         for screen, picture, own in zip(now.screens, pictures, lamps, strict=True):
-            for lamp in own[:1]:
+            for lamp in own[: clear is None]:  # what is bent is drawn in lines
                 air.take(lamp, screen, picture)
         for front in (False, True):
             self._overlay(canvas, now, table, lamps, 1 - bare, front=front)
@@ -94,8 +96,13 @@ class Room:
                 glass.lay(canvas)
         if isinstance(grid, Stack):
             draw_sheets(canvas, sheets(grid, now.films), 1 - bare)
-        else:
+        elif not is_cut(clear):
             draw_edges(canvas, grid, now.turn, 1 - bare)
+        if clear is not None:
+            rig = moment(drawn(self.cube), [angle_deg])[0]
+            draw_body(canvas, grid, rig, now, 1 - bare)
+            if lit:
+                draw_bent(canvas, rig, now, 1 - bare)
         return canvas.picture()
 
     def shown(self, angle_deg: float, *, lit: bool = True) -> list[Floats]:
@@ -213,7 +220,8 @@ class Room:
             region, near, layers = table
             for light, strength in layers:
                 canvas.blend(region, near, light, part * strength, front)
-        draw_hints(canvas, now, lamps, part, front)
+        if self.cube.rig.glass is None:
+            draw_hints(canvas, now, lamps, part, front)
         for lamp in now.lamps:
             draw_lamp(canvas, self.cube.grid, lamp, part, front)
 

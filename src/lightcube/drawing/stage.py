@@ -10,10 +10,13 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lightcube.drawing.bending import bent_ways, body_edges
 from lightcube.drawing.signs import CARD, FONT, INK, LINE, PAPER, QUIET, bulb, scale_bar, sun, tints
 from lightcube.drawing.svg import Box, Labels, around, disc, element, hull, moved, path, polygon, text
+from lightcube.optics.glass import Glass
+from lightcube.optics.rig import Rig
 from lightcube.optics.stage import Lamp, Screen, Stage
-from lightcube.optics.views import rotations
+from lightcube.optics.views import rotations, unit
 from lightcube.wording import counted
 
 Reals = NDArray[np.float64]
@@ -75,6 +78,17 @@ class _Room:
         if not turns:
             return array
         return np.asarray(array @ rotations(self.stage.axis, np.array([self.stage.stops_deg[0]]))[0].T)
+
+    @cached_property
+    def rig(self) -> Rig:
+        """The pictures of this stop, in the cube's axes."""
+        rig = self.stage.rig()
+        return rig.take(np.flatnonzero((rig.stops.angle_deg - self.stage.stops_deg[0]) % 360 == 0))
+
+    @property
+    def glass(self) -> Glass | None:
+        """What bends the light."""
+        return None if self.stage.glass is None else self.rig.glass
 
     @property
     def has_table(self) -> bool:
@@ -218,7 +232,7 @@ def _panel(room: _Room, panel: _Panel, key: str) -> Iterator[str]:
         yield _table(room, panel)
     beams = list(room.beams())
     faint = max(0.05, 0.17 / math.sqrt(max(len(beams), 1)))
-    for lamp, screen, points in beams:
+    for lamp, screen, points in [] if room.glass else beams:
         fill, edge = tints(lamp.colour)
         lines = f'stroke="{edge}" stroke-opacity="0.35" stroke-width="0.8"'
         style = f'class="beam" fill="{fill}" fill-opacity="{faint:.3f}" {lines}'
@@ -226,6 +240,7 @@ def _panel(room: _Room, panel: _Panel, key: str) -> Iterator[str]:
     solids = [(float(np.max(room.cube @ panel.view)), _cube(room, panel))]
     solids += [(float(room.screen(each)[1] @ panel.view), _screen(room, panel, each)) for each in room.stage.screens]
     yield from (solid for _, solid in sorted(solids, key=lambda pair: pair[0]))
+    yield from _bent(room, panel)
     if room.has_table and abs(room.axis @ panel.view) > 0.5:
         yield from _stops(room, panel)
     yield from (_lamp(room, panel, each) for each in room.stage.lamps)
@@ -251,6 +266,27 @@ def _cube(room: _Room, panel: _Panel) -> str:
         f'class="cube" fill="{_INSIDE}" fill-opacity="0.8" stroke="{_CUBE}" stroke-width="1.5" stroke-linejoin="round"'
     )
     return polygon(hull(corners), style, f"cube, {shape} mm") + "".join(edges)
+
+
+def _bent(room: _Room, panel: _Panel) -> Iterator[str]:
+    """The outline of what bends the light, its bottom where that is blocked, and beams that it bends."""
+    if room.glass is None:
+        return
+    grid, turns = room.stage.grid, room.stage.cube_turns
+    for ends in body_edges(room.glass, grid, room.rig.views.lamps[0, :3]):
+        style = f'class="glass" stroke="{_CUBE}" stroke-width="1.2" stroke-opacity="0.8"'
+        yield path(list(panel.at(room.placed(ends, turns))), style)
+    if room.glass.bottom == "blocked" and abs(room.axis @ panel.view) < 0.5:
+        low = room.cube[np.argsort(room.cube @ room.axis)[:4]]
+        style = f'class="blocked" fill="{INK}" fill-opacity="0.25" stroke="{INK}" stroke-width="3"'
+        yield polygon(hull(panel.at(low)), style, "no light leaves through the bottom")
+    for picture, (enters, leaves, pixel) in bent_ways(room.rig):
+        lamp = room.stage.lamps[int(room.rig.sums.lamp[room.rig.starts[picture]])]
+        way = np.asarray(unit(room.rig.views.lamps[room.rig.starts[picture], :3]))
+        back = float(np.linalg.norm(room.lamps[lamp.name])) + float(enters @ way)
+        points = room.placed([enters - max(back, 0.0) * way, enters, leaves, pixel], turns)
+        style = f'class="bent" stroke="{tints(lamp.colour)[1]}" stroke-width="1" stroke-opacity="0.75"'
+        yield path(list(panel.at(points)), style)
 
 
 def _table(room: _Room, panel: _Panel) -> str:

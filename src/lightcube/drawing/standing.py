@@ -71,8 +71,8 @@ def drawn(cube: Cube) -> Cube:
     """The cube with every picture that its rig shows, and endless screens where they can be seen: behind the cube.
 
     Where level light shows every picture again half a turn on, mirrored, there are as many pictures more. Parallel
-    light without a disc casts the same shadow on every parallel screen. It keeps no targets. A stack's pictures lie on
-    a sheet below it (`lightcube.drawing.stacks`).
+    light without a disc casts the same shadow on every parallel screen; those of glass stand far behind it anyway. It
+    keeps no targets. A stack's pictures lie on a sheet below it (`lightcube.drawing.stacks`).
     """
     if isinstance(cube.grid, Stack):
         return replace(cube, rig=lowered(cube.grid, cube.rig), targets=None)
@@ -80,7 +80,7 @@ def drawn(cube: Cube) -> Cube:
     times = len(rig) // len(cube.rig)
     light = rig.views.lamps[:, :3]
     level = np.hypot(light[:, 0], light[:, 1])
-    anywhere = rig.screens.endless[rig.stops.screen][rig.sums.picture] & (rig.sums.disc_deg == 0)
+    anywhere = rig.screens.endless[rig.stops.screen][rig.sums.picture] & (rig.sums.disc_deg == 0) & (rig.glass is None)
     away = np.where(anywhere, _BEHIND * cube.grid.size_mm[1] / np.maximum(level, 1e-9), 0.0)
     views = replace(rig.views, origins_mm=rig.views.origins_mm + away[:, None] * light)
     powers, names = np.tile(cube.powers, (times, 1)), times * cube.names

@@ -7,7 +7,7 @@ import numpy as np
 from lightcube.optics.cube import Cube
 from lightcube.optics.naming import moves_of, told_apart
 from lightcube.optics.stack import Stack
-from lightcube.report import verdict
+from lightcube.report import bending, verdict
 from lightcube.report.html import element, figure, image, sentences, text
 from lightcube.report.measuring import Findings
 from lightcube.report.words import span
@@ -86,7 +86,8 @@ def _what(found: Findings) -> str:
         f"Light falls through a block of coloured glass; {shows}. It is {size} mm large, of {nx} × {ny} × {nz} "
         f"voxels; its pictures have {span(columns)} × {span(rows)} pixels."
     )
-    return said.replace(" × ", "\u00a0×\u00a0").replace(" mm ", "\u00a0mm ")
+    bent = "".join(f" {sentence}" for sentence in bending.sentences(cube.rig))
+    return (said + bent).replace(" × ", "\u00a0×\u00a0").replace(" mm ", "\u00a0mm ")
 
 
 def _what_films(cube: Cube, pixels: str) -> str:

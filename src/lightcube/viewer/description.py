@@ -14,6 +14,7 @@ from lightcube.drawing.eyes import camera_for
 from lightcube.drawing.standing import carries_cube, drawn
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import discs_sampled
+from lightcube.optics.refraction import iors
 from lightcube.optics.rig import Rig
 from lightcube.scoring import metrics
 from lightcube.scoring.overlap import overlaps
@@ -64,6 +65,7 @@ def describe(cube: Cube, packed: Packed, label: str | Label) -> dict[str, Any]:
             "rates": packed.rates,
         },
         "solid": is_opaque(cube),
+        "glass": _glass(rig),
         "kept": {"full": cube.grid.shape, "worst_levels": worst, "rms_levels": mean},
         "transfer": cube.transfer,
         "hold_deg": cube.hold_deg,
@@ -141,8 +143,17 @@ def _views(rig: Rig, channels: int) -> list[dict[str, Any]]:
         "cosine": rig.fading.cosine,
         "turning": rig.turning.turns,
         "way": rig.turning.way,
+        "ior": np.ones(len(views)) if rig.glass is None else iors(rig),
     }
     return [{name: _plain(column[view].tolist()) for name, column in columns.items()} for view in range(len(views))]
+
+
+def _glass(rig: Rig) -> dict[str, Any] | None:
+    """What bends the light on its way to the voxels; how much is said of each view."""
+    if rig.glass is None:
+        return None
+    half_mm = [side / 2 for side in rig.glass.size_mm or ()]
+    return {"form": rig.glass.form, "half": _plain(half_mm), "blocked": rig.glass.bottom == "blocked"}
 
 
 def _plain(value: Any) -> Any:

@@ -154,6 +154,7 @@ function actionsOf(app) {
   };
   const useless = scene.turns ? [] : ["turn", "release", "neighbour", "nearest", "first", "play", "snap"];
   if (scene.solid) useless.push("tour", "thin", "point");
+  if (scene.glass) useless.push("tour");
   for (const name of useless) all[name] = () => false;
   return Object.fromEntries(Object.entries(all).map(([name, does]) => [name, (...given) => {
     const done = does(...given);
@@ -241,7 +242,7 @@ function createParts({ scene, turning, view, does }, cube, compact) {
     filmstrip: createFilmstrip(scene, does.picture),
     tour: compact ? null : createTour(does),
     compare: compact ? null : createCompare(scene, does),
-    scanline: compact || scene.solid ? null : createScanline(scene, cube, does.point),
+    scanline: compact || scene.solid || scene.glass ? null : createScanline(scene, cube, does.point),
     room: view.canvas,
     said: element("p", { class: "unseen", "aria-live": "polite" }),
   };

@@ -1,8 +1,8 @@
 // What a screen shows: the sum of the lamps' light behind the cube, averaged over areas, in linear light.
 
 import { middleOf } from "./area.js";
-import { beamOf, mostPieces, walkInto } from "./beam.js";
-import { fallingLight } from "./light.js";
+import { mostPieces, walkInto } from "./beam.js";
+import { litBeam } from "./light.js";
 
 /**
  * A screen's whole picture.
@@ -82,11 +82,11 @@ function meanOn(cube, exposure, row, column, points, scratch) {
   return total.map((sum) => sum / points.length);
 }
 
-/** Add the light of one beam for each view. */
+/** Add the light of one beam for each view: what comes through the glass, and past it. */
 function castInto(total, cube, exposure, row, column, { voxels, lengths }) {
   for (const view of exposure.views) {
-    const { start, way, first, last, pixel } = beamOf(view, row, column, exposure.raster);
-    const { light, shadow } = fallingLight(view, pixel);
+    const { start, way, first, last, light, shadow } = litBeam(view, row, column, exposure.raster);
+    if (light === 0) continue;
     const count = walkInto(voxels, lengths, cube.shape, cube.voxel_mm, start, way, first, last);
     const left = transmittance(cube, voxels, lengths, count);
     for (let channel = 0; channel < 3; channel++) {

@@ -1,6 +1,8 @@
 // How display values follow from linear light, and how much light and shadow of a lamp reaches a pixel.
 
 import { cross, dot, norm, scaled, sub } from "../tools/vectors.js";
+import { beamOf } from "./beam.js";
+import { bentBeam } from "./glass.js";
 
 /** Shortest way from a lamp to a pixel that it stands on, mm. */
 const SHORTEST = 1e-12;
@@ -42,7 +44,7 @@ export function fading(distance, reach, falloff) {
  * @param {number[]} pixel mm, in the cube's axes
  * @returns {{light: number, shadow: number}}
  */
-export function fallingLight(view, pixel) {
+function fallingLight(view, pixel) {
   const point = view.light[3] !== 0;
   const way = point ? sub(pixel, view.light) : view.light.slice(0, 3);
   const length = Math.max(norm(way), SHORTEST);
@@ -57,4 +59,25 @@ export function fallingLight(view, pixel) {
   const [lamp, screen] = [0, 1].map((end) => fading(travelled, view.reach_mm[end], view.falloff_mm[end]));
   const shadow = lamp * screen;
   return { light, shadow };
+}
+
+/**
+ * The beam that lights a place of the raster, as `beamOf` has it, inside the glass where there is some; and its light.
+ * @param {object} view of an exposure
+ * @param {number} row whole in the middle of a pixel
+ * @param {number} column
+ * @param {number[]} raster [rows, columns] of the exposure
+ * @returns {{start: number[], way: number[], first: number, last: number, light: number, shadow: number}}
+ */
+export function litBeam(view, row, column, raster) {
+  const beam = beamOf(view, row, column, raster);
+  const { light, shadow } = fallingLight(view, beam.pixel);
+  if (!view.glass) return { ...beam, light, shadow };
+  const { beside, through, enters, leaves } = bentBeam(view, beam.pixel);
+  const inside = sub(leaves, enters);
+  const long = norm(inside);
+  const whole = beside + through;
+  if (long === 0) return { ...beam, first: 0, last: 0, light: light * whole, shadow: 0 };
+  const part = shadow * through / whole;
+  return { start: enters, way: scaled(inside, 1 / long), first: 0, last: long, light: light * whole, shadow: part };
 }

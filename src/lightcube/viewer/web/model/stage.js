@@ -1,6 +1,7 @@
 // What stands where at a turntable angle, in the cube's axes (exposures) and in the room's (standing); lengths are mm.
 
 import { add, apply, cross, dot, modulo, norm, rotation, scaled, sub, unit } from "../tools/vectors.js";
+import { riseOf } from "./glass.js";
 
 /** Stops nearer to each other than this, in degrees, are one. */
 const SAME = 1e-6;
@@ -86,7 +87,13 @@ function exposedView(scene, view, degrees, power) {
     full_at_mm: orInfinite(view.full_at_mm),
     cosine: view.cosine,
     lamp: view.lamp,
+    glass: glassOf(scene, view.ior),
   };
+}
+
+/** The clear body that a view's light meets, or null. */
+function glassOf({ glass }, ior) {
+  return glass ? { ...glass, half: glass.half.map(orInfinite), ior } : null;
 }
 
 /** How the lamp, and the screen, have gone round the cube when the table has turned on by so many degrees. */
@@ -94,13 +101,14 @@ function turnsOf(scene, view, degrees) {
   return [0, 1].map((i) => rotation(scene.axis, view.turning[i] ? view.way[i] * degrees : 0));
 }
 
-/** Where the parallel beam from the middle of a lamp's disc through the cube's middle meets the plane of its views. */
+/** Where the light from the middle of a parallel lamp's disc through the cube's middle meets the plane of its views. */
 export function middleOfShadow(views, lamp) {
   const own = views.filter((view) => view.lamp === lamp); // the samples of its disc
   const light = meanOf(own.map((view) => view.light));
-  const { origin, right, down } = own[0];
+  const { origin, right, down, glass } = own[0];
   const normal = cross(right, down);
-  return scaled(light, dot(origin, normal) / dot(light, normal));
+  const start = [0, 0, glass ? riseOf(glass, unit(light)) : 0]; // of straight light that lands there
+  return add(start, scaled(light, dot(sub(origin, start), normal) / dot(light, normal)));
 }
 
 function ofChannel(values, channel) {

@@ -11,6 +11,8 @@ const GLASS = {
   lit: "Light falls through a block of coloured glass",
   drawn: "So that one sees into it the glass is drawn clearer than it is, and shining; what the wall shows, and what the lamp's eye sees, is exact.",
 };
+const BENT = "What the wall shows is light bent by the glass, exactly, but for what is thrown back inside and comes out elsewhere; " +
+  "the glass itself is drawn, for the lamp's eye too, as if sight went straight through it.";
 const SHAPE = {
   name: "shape",
   title: "Looking at a shape and its shadows",
@@ -18,9 +20,19 @@ const SHAPE = {
   drawn: "Its edges are drawn a little smoother than its voxels are; what the walls show is what these cast, exactly.",
 };
 
-/** Words for a cube of glass, or for an opaque shape. */
+/** What bends the light. */
+const BODIES = {
+  block: "a block of coloured glass, which bends it",
+  cylinder: "a cylinder of coloured glass, which bends it",
+  sphere: "a sphere of coloured glass, which bends it",
+  bath: "a block of coloured glass in a bath, which bends it",
+  "round-bath": "a block of coloured glass in a round bath, which bends it",
+};
+
+/** Words for a cube of glass, which bends light or does not, or for an opaque shape. */
 export function wordsOf(scene) {
-  return scene.solid ? SHAPE : GLASS;
+  if (!scene.glass) return scene.solid ? SHAPE : GLASS;
+  return { ...GLASS, lit: `Light falls through ${BODIES[scene.glass.form]}`, drawn: BENT };
 }
 
 /**

@@ -14,6 +14,7 @@ const GESTURES = [
   ["double click", "put the eye back"],
 ];
 const POINTING = [["point at a screen", "choose the scan-line"]];
+const POINTING_BENT = [["point at a screen", "see the way of the light that falls there"]];
 const TURNING_KEYS = [
   ["← →", "turn by 1°, with Shift by 0.1°"],
   ["Page Up, Page Down · , .", "previous, next picture"],
@@ -21,11 +22,11 @@ const TURNING_KEYS = [
   ["N", "snap to the nearest picture"],
   ["Home", "first picture"],
 ];
-const GLASS_KEYS = [
+const STRAIGHT_KEYS = [
   ["arrows on “shown”", "choose the scan-line's row and pixel"],
   ["G", "tour, step by step: arrows, Escape"],
-  ["B", "thin beams, as in the paper"],
 ];
+const GLASS_KEYS = [["B", "thin beams, as in the paper"]];
 const KEYS = [
   ["A", "larger type, for a projector"],
   ["F", "full screen"],
@@ -43,11 +44,11 @@ const KEYS = [
  */
 export function headerAround(scene, does, compact) {
   const tour = wordButton("tour", "Tour", "What light does here, step by step, for a class (G)", does.tour);
-  const inside = scene.solid ? "What was wanted and what is shown (D)" : "Scores, lamps and the way of the light (D)";
+  const inside = scene.solid || scene.glass ? "What was wanted and what is shown (D)" : "Scores, lamps and the way of the light (D)";
   const details = wordButton("details", "Details", inside, does.details);
   const { lit } = wordsOf(scene);
   const what = scene.turns ? `${lit}; at each stop its shadow is another picture.` : `${lit}; its shadows are pictures.`;
-  const tools = compact ? [] : scene.solid ? [details] : [tour, details];
+  const tools = compact ? [] : scene.solid || scene.glass ? [details] : [tour, details];
   return {
     element: createHeader(scene, compact ? null : what, tools, does),
     update(now) {
@@ -93,13 +94,14 @@ export function helpAround(scene) {
   const { title, lit, drawn } = wordsOf(scene);
   const pictures = scene.turns ? "At each stop of the turntable its shadow is another picture." : "Its shadows are pictures.";
   const first = scene.turns ? [["drag", whatDragDoes(scene)], ...GESTURES] : [["drag", "move the eye"], ...GESTURES.slice(1)];
-  const gestures = scene.solid ? first : [...first, ...POINTING];
+  const gestures = scene.solid ? first : [...first, ...(scene.glass ? POINTING_BENT : POINTING)];
   const all = [
     ...(scene.turns ? TURNING_KEYS : []),
     ["+ −", "nearer, farther"],
     ["L", "look from where the lamp is"],
-    ["D", scene.solid ? "details: wanted and shown" : "details: scores, lamps, scan-line"],
+    ["D", scene.solid || scene.glass ? "details: wanted and shown" : "details: scores, lamps, scan-line"],
     ...(scene.whole_shadow === null ? [] : [["W", "whole shadow"]]),
+    ...(scene.solid || scene.glass ? [] : STRAIGHT_KEYS),
     ...(scene.solid ? [] : GLASS_KEYS),
     ...KEYS,
   ];

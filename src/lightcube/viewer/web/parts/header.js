@@ -1,5 +1,6 @@
 // The title, the quiet line that says what the page holds, and the buttons of the page itself.
 
+import { wordsOf } from "../model/words.js";
 import { element, iconButton, oneDecimal } from "../tools/elements.js";
 
 /**
@@ -43,7 +44,7 @@ function named(name, label, key, pressed, word) {
 export function createQuietLine(scene, note, brief) {
   const whole = countText(scene.kept.full) === countText(scene.voxels.shape);
   if (brief && whole && note === null) return null;
-  return element("p", { class: "quiet", text: [keptText(scene), note].filter(Boolean).join(" ") });
+  return element("p", { class: "quiet", text: [keptText(scene), scene.glass && wordsOf(scene).drawn, note].filter(Boolean).join(" ") });
 }
 
 function keptText({ voxels, kept, solid }) {

@@ -2,6 +2,7 @@
 
 import { standing } from "../model/stage.js";
 import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
+import { bentWay, bodyEdges, isCutRound } from "./clearbody.js";
 
 /** Linear light of the room and of what stands in it. */
 export const TONES = {
@@ -61,6 +62,8 @@ const LAMP_RADIUS = 0.036;
 const [FRAME, WALL] = [0.014, 0.85];
 /** With more lamps than this, lines to the corners of all pictures would hide the room. */
 const MOST_HINTED = 6;
+/** Beams that glass bends are drawn at these parts of a picture's sides, on so many screens at most, a marked one's in so many colours. */
+const [BENT_AT, MOST_BENT, MOST_COLOURS] = [[0.12, 0.37, 0.63, 0.88], 3, 3];
 
 /** Half the cube's sides along x, y, z. */
 export function halfSides({ voxels }) {
@@ -175,8 +178,8 @@ export function floorOf(scene) {
 export function linesOf(scene, exposures, room, eye, mark, tones) {
   return [
     ...(mark && room.screens[mark.screen] ? markLines(scene, exposures, room, mark, tones) : []),
-    ...(scene.solid ? [] : edgeLines(scene, room, eye, tones)),
-    ...hintLines(scene, exposures, room, tones),
+    ...(scene.solid || isCutRound(scene) ? [] : edgeLines(scene, room, eye, tones)),
+    ...(scene.glass ? glassLines(scene, exposures, room, tones) : hintLines(scene, exposures, room, tones)),
   ];
 }
 
@@ -230,6 +233,38 @@ function hintLines(scene, exposures, room, tones) {
   return lines;
 }
 
+/** The outline of what bends the light, and some beams that it bends. */
+function glassLines(scene, exposures, room, tones) {
+  const edges = bodyEdges(scene, exposures[0]).map((ends) => (
+    { ends: ends.map((end) => apply(room.turn, end)), colour: tones.edge, parts: [0.5, 0.5], width: 1.1, over: true }
+  ));
+  const beams = exposures.slice(0, MOST_BENT).flatMap((exposure) => {
+    const [rows, columns] = exposure.window;
+    const view = exposure.views[Math.floor(exposure.views.length / 2)];
+    const places = BENT_AT.flatMap((down) => BENT_AT.map((across) => [down * rows - 0.5, across * columns - 0.5]));
+    return places.flatMap(([row, column]) => bentPieces(scene, exposure, room, [view], [row, column], tones.hint, 0.3));
+  });
+  return [...edges, ...beams];
+}
+
+/** The way of the light to a pixel: from the lamp, through the glass, and on, in each view's colour where there are several. */
+function bentPieces(scene, exposure, room, views, [row, column], tone, part) {
+  const [lamp] = lampsLighting(scene, exposure);
+  if (lamp === undefined) return [];
+  return views.flatMap((view) => {
+    const way = bentWay(view, row, column, exposure.raster);
+    if (way === null) return [];
+    const [enters, leaves, pixel] = way.map((place) => apply(room.turn, place));
+    const colour = views.length > 1 ? pureColour(view.power) ?? tone : tone;
+    const piece = (ends, parts) => ({ ends, colour, parts, width: part > 0.5 ? 1.8 : 1, over: true });
+    return [
+      piece([beamStart(room.lamps[lamp], enters), enters], [0, part]),
+      piece([enters, leaves], [part, part]),
+      piece([leaves, pixel], [part, part]),
+    ];
+  });
+}
+
 /** Where the light that falls on a point comes from: the lamp, or as far back as parallel light is drawn. */
 function beamStart({ place, parallel }, point) {
   if (!parallel) return place;
@@ -245,6 +280,11 @@ function rowEnds({ corner, right, down, pixels }, row) {
 
 /** The marked row with its pixel, or that pixel alone with the beam to it; and the frame around some of the glass. */
 function markLines(scene, exposures, room, { screen, row, column, beam, frame }, tones) {
+  if (scene.glass && column !== null) {
+    const { views } = exposures[screen];
+    const drawn = views.length > MOST_COLOURS ? views.slice(0, 1) : views; // of the points of a disc one
+    return bentPieces(scene, exposures[screen], room, drawn, [row, column], tones.mark, 0.95);
+  }
   const { right, down } = room.screens[screen];
   const line = (ends, over, width = 1.6) => ({ ends, colour: tones.mark, parts: [0.95, 0.95], width, over });
   const lines = frame ? frameEdges(scene, room, frame).map((ends) => line(ends, true)) : [];
@@ -283,7 +323,7 @@ function edgesOf(corners) {
  *   second side; 2: a triangle with the lamp in its corner
  */
 export function markedSheet(scene, exposures, room, mark) {
-  const screen = mark && mark.row !== null && !mark.beam && room.screens[mark.screen];
+  const screen = mark && mark.row !== null && !mark.beam && !scene.glass && room.screens[mark.screen];
   const [lamp] = screen && exposures[mark.screen] ? lampsLighting(scene, exposures[mark.screen]) : [];
   if (lamp === undefined) return null;
   const [start, end] = rowEnds(screen, mark.row);

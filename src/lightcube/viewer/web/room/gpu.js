@@ -4,9 +4,10 @@ import { pointsOf } from "../model/area.js";
 import { bodyOf } from "../model/body.js";
 import { add, apply, applyInverse, cross, dot, norm, scaled, sub, unit } from "../tools/vectors.js";
 import { beforeEye, seenAt } from "./camera.js";
+import { isCutRound } from "./clearbody.js";
 import { TONES, floorOf, fromFar, halfSides, lampOfEye, lampRadius, lampsLighting } from "./furniture.js";
 import { linesOf, longestSide, markedSheet, pureColour, tableOf, wallWidth } from "./furniture.js";
-import { CAST, EVERYWHERE, MOST_BEAMS, roomProgram } from "./shaders.js";
+import { EVERYWHERE, MOST_BEAMS, castProgram, roomProgram } from "./shaders.js";
 
 /** What is infinite, in single precision. */
 const NEVER = 1e30;
@@ -83,8 +84,8 @@ export function createRenderer(canvas, scene, cube) {
 function makeKit(gl, scene, cube) {
   const kit = {
     gl,
-    caster: makeProgram(gl, CAST),
-    painter: makeProgram(gl, roomProgram(scene.solid)),
+    caster: makeProgram(gl, castProgram(scene.glass)),
+    painter: makeProgram(gl, roomProgram(scene.solid, isCutRound(scene))),
     voxels: makeTexture(gl, gl.TEXTURE_3D, VOXEL_UNIT, gl.NEAREST),
     shadows: null,
     layers: "",
@@ -105,6 +106,7 @@ function makeKit(gl, scene, cube) {
   gl.useProgram(kit.caster.made);
   gl.uniform1i(kit.caster.at("views"), VIEW_UNIT);
   gl.uniform1i(kit.caster.at("linear"), scene.transfer === "linear" ? 1 : 0);
+  if (scene.glass) setGlass(gl, kit.caster, scene);
   gl.useProgram(kit.painter.made);
   gl.uniform1i(kit.painter.at("shadows"), SHADOW_UNIT);
   if (scene.solid) uploadBody(kit, bodyOf(cube));
@@ -112,6 +114,12 @@ function makeKit(gl, scene, cube) {
   gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, kit.things);
   gl.bufferData(gl.UNIFORM_BUFFER, 64 * MOST_THINGS, gl.DYNAMIC_DRAW);
   return kit;
+}
+
+/** The clear body, in voxel sides; what is endless is higher than anything. */
+function setGlass(gl, caster, { glass, voxels }) {
+  gl.uniform3fv(caster.at("body"), glass.half.map((side) => (side === null ? NEVER : side / voxels.voxel_mm)));
+  gl.uniform1i(caster.at("blocked"), glass.blocked ? 1 : 0);
 }
 
 /** Codes of 10 bits take four bytes a voxel; longer ones take six, in the browser, and often eight on the card. */
@@ -270,7 +278,7 @@ function putBeams(put, scene, view, rows, columns) {
   put(4, 2, [...view.power, view.cosine ? 1 : 0]);
   put(4, 3, [view.reach[0], view.falloff[0], view.reach[1], view.falloff[1]]);
   put(4, 4, [...normal, view.fullAt]);
-  put(4, 5, [dot(way, origin), dot(way, right), dot(way, down), 0]);
+  put(4, 5, [dot(way, origin), dot(way, right), dot(way, down), view.glass?.ior ?? 1]);
   put(4, 6, [...moved(right), 0, ...moved(down), 0]);
 }
 
@@ -382,7 +390,7 @@ function setBeams(gl, painter, scene, exposures, room, eye) {
   const [ways, tones] = [new Float32Array(4 * MOST_BEAMS), new Float32Array(3 * MOST_BEAMS)];
   fromFar(room, eye).slice(0, MOST_BEAMS).forEach(({ number }, i) => {
     const [brightest] = lampsLighting(scene, exposures[number]).map((lamp) => room.lamps[lamp]);
-    if (brightest === undefined) return;
+    if (brightest === undefined || scene.glass) return; // its light is drawn in lines
     const { place, parallel, light } = brightest;
     ways.set(parallel ? [...scaled(unit(place), -longestSide(scene)), 0] : [...sub(place, eye), 1], 4 * i);
     tones.set(pureColour(light), 3 * i);

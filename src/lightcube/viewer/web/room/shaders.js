@@ -1,6 +1,7 @@
 // The renderer's programs in GLSL ES 3.00: light through the cube, what the screens show, and the room.
 
 import { JUDGED } from "../model/area.js";
+import { bendingOf } from "./bending.js";
 import { BODY } from "./solid.js";
 
 const HEAD = `#version 300 es
@@ -99,10 +100,14 @@ vec3 absorbed(ivec3 base, vec3 off, vec3 way, float from, float to) {
 `;
 
 /**
- * What one screen shows, each texel a pixel or a part of one: row 0 of the target is the picture's top. The table's
- * layout is gpu.js's `putBeams`.
+ * What one screen shows, behind the scene's glass or none, each texel a pixel or a part of one: row 0 of the target is
+ * the picture's top. The table's layout is gpu.js's `putBeams`.
  */
-export const CAST = `${HEAD}${TRANSFER}${GLASS}
+export function castProgram(glass) {
+  return `${HEAD}${glass ? "#define BENT\n" : ""}${TRANSFER}${GLASS}${bendingOf(glass)}${CAST}`;
+}
+
+const CAST = `
 uniform sampler2D views;
 uniform ivec2 range;   // the first of the screen's views, and after the last
 uniform ivec2 window;  // columns and rows that lie on the screen
@@ -148,6 +153,12 @@ vec3 lightOf(int view, ivec2 pixel, vec2 aside) {
   }
   if (power.w != 0.0) strength *= abs(dot(way, normal.xyz));
   float shadow = fading(travelled, fades.x, fades.y) * fading(travelled, fades.z, fades.w);
+#ifdef BENT
+  vec2 falls = bend(texelFetch(views, ivec2(5, row + 4), 0).w, whole, normal.xyz, travelled, off, way, to);
+  from = 0.0;
+  strength *= falls.x + falls.y;
+  shadow *= falls.y / max(falls.x + falls.y, 1e-20);
+#endif
   vec3 passed = exp(-absorbed(ivec3(whole), off, way, from, to));
   return power.rgb * strength * (1.0 - shadow * (1.0 - passed));
 }
@@ -184,11 +195,11 @@ void shine(vec3 dense, float piece) {
 `;
 
 /**
- * The room, around glass or around a body. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
+ * The room, around glass or around a body; of glass that is cut `round` the block's faces are not seen. All places are mm from the eye; a ray is t way, and t the depth along the camera's axis. Layers lie on the
  * light behind the cube's glass, or on a veil before it. The things' layout is gpu.js's `thingTable`.
  */
-export function roomProgram(solid) {
-  return `${HEAD}precision highp sampler3D;\n${solid ? "#define SOLID\n" : ""}${ROOM}`;
+export function roomProgram(solid, round) {
+  return `${HEAD}precision highp sampler3D;\n${solid ? "#define SOLID\n" : ""}${round ? "#define CUT\n" : ""}${ROOM}`;
 }
 
 const ROOM = `${TRANSFER}${EMBERS}${GLASS}
@@ -506,7 +517,9 @@ void main() {
   lay(markTone, sheetMet.x, sheetMet.y);
 #else
   drawGlass(sheetMet);
+#ifndef CUT
   drawSheen();
+#endif
 #endif
   vec3 seen = toDisplay(clamp(veil.rgb + veil.a * light, 0.0, 1.0));
   // gradients without steps: noise of half a level (J. Jimenez, Next generation post processing, 2014)
