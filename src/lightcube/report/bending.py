@@ -29,10 +29,11 @@ def facts(rig: Rig) -> dict[str, Any]:
     known: dict[str, Any] = {
         "glass": glass.form,
         "ior": list(glass.iors),
-        "elevation_inside_deg": [float(np.min(inside)), float(np.max(inside))],
         "screen_behind_mm": [float(np.min(rig.behind_mm)), float(np.max(rig.behind_mm))],
         "lit_part": float(np.mean(lit)),
     }
+    if glass.form != "sphere":  # of light that enters an upright side
+        known["elevation_inside_deg"] = [float(np.min(inside)), float(np.max(inside))]
     if glass.form == "block":
         known["bottom"] = glass.bottom
     if glass.is_round and glass.bends:
@@ -64,7 +65,7 @@ def sentences(rig: Rig) -> list[str]:
         said.append(f"It is a lens, which brings light together {focus} behind the axis, before them.")
     part = known["lit_part"]
     said.append(
-        "All of the pictures is lit through the glass."
+        "Every pixel of the pictures is lit through the glass."
         if part == 1
         else f"{part:.0%} of the pictures' pixels are lit through the glass; no voxel reaches the others."
     )
