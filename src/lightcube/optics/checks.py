@@ -109,7 +109,7 @@ def check_fields(thing: Any, where: str = "") -> None:
         value = getattr(thing, name)
         if not kind.fits(value):
             raise _refused(where or type(thing).__name__, kind, name, value)
-        if kind.is_tuple and not isinstance(value, str | tuple | None):
+        if kind.is_tuple and not isinstance(value, str | tuple | Real | None):
             object.__setattr__(thing, name, tuple(value.tolist() if isinstance(value, np.ndarray) else value))
 
 

@@ -71,9 +71,8 @@ class Glass:
     size_mm: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
-        if np.ndim(self.ior) == 0:
-            object.__setattr__(self, "ior", (self.ior,))
         check_fields(self)
+        object.__setattr__(self, "ior", tuple(float(ior) for ior in np.atleast_1d(self.ior)))
         if len(self.iors) not in (1, 3):
             raise InputError(f"ior is one index of refraction, or three for red, green and blue, not {len(self.iors)}")
         for ior in self.iors:
