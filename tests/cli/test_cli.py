@@ -490,8 +490,8 @@ def test_help_names_every_command() -> None:
     text = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
     listed = re.findall(r"^\s+([a-z]+)\s\s+[A-Z]", text, re.MULTILINE)
     assert " ".join(listed) == (
-        "trace check solve hull carve relief play score view report draw info export materials calibrate publish bench "
-        "demo"
+        "studio trace check solve hull carve relief play score view report draw info export materials calibrate "
+        "publish bench demo"
     )
 
 

@@ -2,7 +2,8 @@
 
 import asyncio
 import json
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -11,6 +12,12 @@ pytest.importorskip("fastapi", reason="the studio's extra is not installed")
 
 from lightcube.studio import stream
 from lightcube.studio.stream import Event, Hub
+
+
+def to_the_end(story: Coroutine[Any, Any, None]) -> None:
+    """Run a story in a thread of its own: a browser of other tests keeps this one's loop."""
+    with ThreadPoolExecutor(1) as alone:
+        alone.submit(asyncio.run, story).result()
 
 
 async def heard(following: AsyncIterator[Event], count: int) -> list[tuple[str, Any]]:
@@ -29,7 +36,7 @@ def test_two_tabs_hear_the_same_after_how_all_stands() -> None:
         for tab in tabs:
             assert await heard(tab, 3) == [("count", 0), ("count", 1), ("count", 2)]
 
-    asyncio.run(run())
+    to_the_end(run())
 
 
 def test_who_comes_back_hears_what_was_missed_and_nothing_twice() -> None:
@@ -44,7 +51,7 @@ def test_who_comes_back_hears_what_was_missed_and_nothing_twice() -> None:
         hub.tell("count", 5)
         assert await heard(hub.follow(hub.id_of(last)), 4) == [("count", number) for number in range(2, 6)]
 
-    asyncio.run(run())
+    to_the_end(run())
 
 
 @pytest.mark.parametrize("last", ["", "another-3", "-", "x", "{run}-", "{run}-x", "{run}--1", "{run}-999", "{run}-²"])
@@ -56,7 +63,7 @@ def test_whoever_is_not_known_hears_how_all_stands(last: str) -> None:
         following = hub.follow(last.format(run=run_of))
         assert await heard(following, 1) == [("state", "all")]
 
-    asyncio.run(run())
+    to_the_end(run())
 
 
 def test_who_missed_too_much_hears_how_all_stands(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -69,7 +76,7 @@ def test_who_missed_too_much_hears_how_all_stands(monkeypatch: pytest.MonkeyPatc
         assert (await heard(hub.follow(hub.id_of(Event(1, "", ""))), 1))[0] == ("state", "all")
         assert await heard(hub.follow(hub.id_of(Event(2, "", ""))), 3) == [("count", 2), ("count", 3), ("count", 4)]
 
-    asyncio.run(run())
+    to_the_end(run())
 
 
 def test_when_the_studio_ends_followers_are_let_go() -> None:
@@ -81,4 +88,4 @@ def test_when_the_studio_ends_followers_are_let_go() -> None:
         assert [event async for event in following] == []
         assert [event async for event in hub.follow()] == []
 
-    asyncio.run(run())
+    to_the_end(run())
