@@ -11,6 +11,7 @@ from lightcube.optics.refraction import bent
 from lightcube.pictures.samples import photographs
 from lightcube.solvers._convex import ConvexObjective
 from lightcube.solvers._objective import Objective
+from tests.conftest import INTERPRETED
 
 GRID = lc.Grid((9, 10, 10), 10.0)
 THIN = lc.Recipe(passes=60, light=lc.Light.thin(), material=lc.Material(), dtype="float64")
@@ -69,6 +70,7 @@ def test_light_beside_the_glass_is_a_sum() -> None:
     assert lighting.mixture is not None
 
 
+@pytest.mark.skipif(INTERPRETED, reason="interpreted cubes are solved and judged by a few points, which are unlike")
 @pytest.mark.parametrize("form", ["block", "cylinder", "sphere", "bath", "round-bath"])
 def test_the_shadows_of_a_known_cube_in_glass_come_back(form: Form) -> None:
     """By areas."""
