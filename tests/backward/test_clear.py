@@ -15,6 +15,7 @@ from lightcube.optics.transfer import encode
 from lightcube.pictures.targets import Targets
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Bounds, Lighting, Wanted
+from tests.conftest import INTERPRETED
 from tests.helpers.recipes import asked
 from tests.helpers.solver_problems import DenseOperator, random_system
 from tests.helpers.wall import play
@@ -141,6 +142,7 @@ def test_what_does_not_fit_the_cube_is_refused_before_it_is_solved(material: lc.
         make_job(**asked(targets(0.0), GRID, material=material))
 
 
+@pytest.mark.skipif(INTERPRETED, reason="interpreted cubes are solved and judged by a few points, which are unlike")
 def test_who_knows_what_haze_takes_is_nearer_to_the_pictures_than_who_turns_up_the_lamp() -> None:
     """Measured: 39.8 and 28.7 dB; of photographs at n = 40, under a veil, 38.1 and 31.7 (docs/haze.md)."""
     grid = lc.Grid((12, 12, 12), 40 / 12)
