@@ -15,6 +15,7 @@ from lightcube.optics.law import falling_light
 from lightcube.optics.refraction import bent
 from lightcube.optics.rig import Rig, turntable
 from lightcube.optics.views import Views
+from lightcube.planning.feasibility import impossible
 from tests.helpers import plain_glass as plain
 
 Reals = NDArray[np.float64]
@@ -219,3 +220,20 @@ def test_rooms_that_cannot_be_are_refused() -> None:
     views = Views(near, np.array([[90.0, 0, 0]]), np.array([[0, -1.0, 0]]), np.array([[0, 0, -1.0]]), (4, 4))
     with pytest.raises(InputError, match="parallel light only"):
         replace(Rig.of(views, np.zeros(1)), glass=Glass(1.5).around(GRID))
+
+
+def test_colours_that_were_parted_come_together_again() -> None:
+    """Of pictures under several coloured lamps too; in a room nothing is impossible because colours part."""
+    lamps = tuple(lc.Lamp(name, direction=(1, y, -0.4), colour=(1.0, 0.5, 0.2)) for name, y in (("a", 0.0), ("b", 0.3)))
+    screen = lc.Screen("wall", (90.0, 0.0, -30.0), (10.0, 8.0), 2.0, normal=(-1, 0, 0))
+    shots = tuple(lc.Shot(f"{stop}", "wall", ("a", "b") if stop else ("a",), stop) for stop in range(2))
+    room = lc.Stage(GRID, lamps, (screen,), shots, (10.0, 100.0), glass=Glass((1.4, 1.5, 1.6), "round-bath"))
+    one = replace(room, glass=Glass(1.5, "round-bath")).rig()
+    parted, again = room.rig(), room.rig().as_one_colour()
+    assert len(parted.views) == 9
+    np.testing.assert_allclose(again.sums.share, one.sums.share)
+    np.testing.assert_array_equal(again.sums.picture, one.sums.picture)
+    np.testing.assert_array_equal(again.views.lamps, one.views.lamps)
+    assert again.glass is not None
+    assert again.glass.iors == pytest.approx((1.5,))
+    assert impossible(room) == impossible(replace(room, glass=None))

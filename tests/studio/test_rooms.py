@@ -1,7 +1,5 @@
 """The room's editor: what cannot be is said of the things that it is about, and what is kept is the same stage."""
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,15 +7,15 @@ import pytest
 from PIL import Image
 
 pytest.importorskip("fastapi", reason="the studio's extra is not installed")
-from fastapi import FastAPI, Request
-from fastapi.responses import JSONResponse
 from fastapi.testclient import TestClient
 
 from lightcube import io
-from lightcube.errors import InputError
 from lightcube.studio import rooms
 from lightcube.studio.desk import Desk
-from lightcube.studio.project import PICTURES, Project
+from lightcube.studio.project import PICTURES
+
+#: What the `client` asks.
+PART = rooms
 
 
 def a_room(**change: Any) -> dict[str, Any]:
@@ -33,25 +31,6 @@ def a_room(**change: Any) -> dict[str, Any]:
         ],
         **change,
     }
-
-
-@pytest.fixture
-def desk(tmp_path: Path) -> Iterator[Desk]:
-    opened = Desk(Project(tmp_path))
-    yield opened
-    opened.close()
-
-
-@pytest.fixture
-def client(desk: Desk) -> TestClient:
-    app = FastAPI()
-    app.include_router(rooms.router(desk))
-
-    @app.exception_handler(InputError)
-    async def refused(_: Request, error: Exception) -> JSONResponse:
-        return JSONResponse({"sentence": f"{error}"}, status_code=400)
-
-    return TestClient(app)
 
 
 def test_a_room_that_can_be_has_nothing_impossible(client: TestClient) -> None:

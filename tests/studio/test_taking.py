@@ -1,42 +1,21 @@
 """Take away: what is made of a cube is whole, says what it is worth, and is told of; what cannot be is a sentence."""
 
 import time
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 pytest.importorskip("fastapi", reason="the studio's extra is not installed")
-from fastapi import FastAPI, Request
-from fastapi.responses import JSONResponse
 from fastapi.testclient import TestClient
 
 import lightcube as lc
-from lightcube.errors import InputError
 from lightcube.studio import away, taking
 from lightcube.studio.desk import Desk
-from lightcube.studio.project import MADE, Project
+from lightcube.studio.project import MADE
 from tests.helpers.made import a_cube
 
-
-@pytest.fixture
-def desk(tmp_path: Path) -> Iterator[Desk]:
-    opened = Desk(Project(tmp_path))
-    yield opened
-    opened.close()
-
-
-@pytest.fixture
-def client(desk: Desk) -> TestClient:
-    app = FastAPI()
-    app.include_router(taking.router(desk))
-
-    @app.exception_handler(InputError)
-    async def refused(_: Request, error: Exception) -> JSONResponse:
-        return JSONResponse({"sentence": f"{error}"}, status_code=400)
-
-    return TestClient(app)
+#: What the `client` asks.
+PART = taking
 
 
 def with_cube(desk: Desk) -> None:

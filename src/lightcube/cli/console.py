@@ -95,16 +95,9 @@ def plain_warnings() -> Iterator[None]:
 @contextmanager
 def compiling(*, as_json: bool) -> Iterator[None]:
     """Say once, unless machines listen, that kernels are compiled: numba tells where one is not on the disk yet."""
-    from numba.core import event  # here: only what computes pays for it
+    from lightcube.kernels.compiled import when_compiling  # here: only what computes pays for it
 
-    class Listener(event.Listener):
-        def on_start(self, _: object) -> None:
-            _say_compiling()
-
-        def on_end(self, _: object) -> None:
-            pass
-
-    with nullcontext() if as_json else event.install_listener("numba:compile", Listener()):
+    with nullcontext() if as_json else when_compiling(_say_compiling):
         yield
 
 

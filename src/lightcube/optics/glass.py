@@ -72,7 +72,8 @@ class Glass:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        object.__setattr__(self, "ior", tuple(float(ior) for ior in np.atleast_1d(self.ior)))
+        given = tuple(float(ior) for ior in np.atleast_1d(self.ior))
+        object.__setattr__(self, "ior", given[:1] if len(given) == 3 and len(set(given)) == 1 else given)
         if len(self.iors) not in (1, 3):
             raise InputError(f"ior is one index of refraction, or three for red, green and blue, not {len(self.iors)}")
         for ior in self.iors:
@@ -83,7 +84,7 @@ class Glass:
                     f"an index of {ior:g} is too low for a block in air: below 1.4143 neighbouring faces let light "
                     "through: use a bath, or at least 1.415"
                 )
-        if self.form == "bath" and len(set(self.iors)) > 1:
+        if self.form == "bath" and len(self.iors) > 1:
             raise InputError("a bath has one index of refraction, that of the block in it: give one number")
         if self.bottom == "blocked" and self.form != "block":
             raise InputError(f"whether light leaves through the bottom is asked of a block, not of a {self.form}")

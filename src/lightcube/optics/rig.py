@@ -318,8 +318,10 @@ class Rig:
         """The inverse of `by_colour`, where each colour has an index of refraction: all have the mean of them."""
         if self.glass is None or len(self.glass.iors) == 1:
             return self
-        one = self._with_views(self.starts[:-1])
-        sums = replace(one.sums, share=np.ones((len(self), 1)))
+        colours = len(self.glass.iors)
+        one = self._with_views(np.arange(0, len(self.views), colours))
+        share = self.sums.share.reshape(-1, colours, self.sums.share.shape[1]).sum(axis=1)
+        sums = replace(one.sums, share=share, picture=self.sums.picture[::colours])
         glass = replace(self.glass, ior=float(np.mean(self.glass.iors)))
         return replace(one, sums=sums, stops=self.stops, glass=glass)
 
@@ -586,7 +588,7 @@ def in_glass(rig: Rig, grid: Grid, glass: Glass, screen_mm: float | None = None)
     origins_mm = views.origins_mm + further[:, None] * light
     origins_mm[:, 2] += body.rise_mm(light)
     moved = replace(rig, views=replace(views, origins_mm=origins_mm))
-    if len(set(body.iors)) > 1:
+    if len(body.iors) > 1:
         moved = moved.by_colour(len(body.iors))
     return replace(moved, glass=body)
 

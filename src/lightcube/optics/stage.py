@@ -282,7 +282,7 @@ class Stage:
         )
         if self.glass is not None and (self.glass.bends or self.glass.is_bath):
             body = self.glass.around(self.grid)
-            standing = replace(standing.by_colour(3) if len(set(body.iors)) > 1 else standing, glass=body)
+            standing = replace(standing.by_colour(3) if len(body.iors) > 1 else standing, glass=body)
         if isinstance(self.grid, Stack):
             standing = moved(standing, self.grid, [shot.move for shot in self.shots])
         return standing.turned([self.stops_deg[shot.stop] for shot in self.shots])

@@ -165,8 +165,8 @@ def _thin(half: Reals) -> float:
 
 
 def _beams(stage: Stage) -> list[_Beams]:
-    """One for every lamp of every picture, in this order."""
-    rig = stage.rig()
+    """One for every lamp of every picture, in this order, as they run without glass."""
+    rig = replace(stage, glass=None).rig()
     views = rig.views
     made = []
     for v, (p, name) in enumerate((p, name) for p, shot in enumerate(stage.shots) for name in shot.lamps):

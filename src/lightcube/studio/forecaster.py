@@ -63,7 +63,9 @@ def run(pipe: Connection) -> None:
     with suppress(AttributeError, OSError):
         os.nice(5)  # a solve goes first
     looking = _Looking(pipe)
-    with suppress(EOFError, OSError), _compiling(pipe):
+    from lightcube.kernels.compiled import when_compiling  # here: the compiler comes with it
+
+    with suppress(EOFError, OSError), when_compiling(lambda: pipe.send(("compiling", {}))):
         with suppress(_Newer):
             looking.warm()
         pipe.send(("ready", {}))
@@ -244,30 +246,3 @@ def _reason(word: str, wanted: NDArray[np.float32]) -> str:
     if float(np.mean(wanted.max(axis=2) - wanted.min(axis=2))) > 0.45:
         return "strong colours: the glass for them stands in the way of others"
     return "too much is asked of the glass: fewer or narrower pictures help"
-
-
-class _compiling:  # noqa: N801 - used as a function
-    """Tell once that kernels are compiled, where one is not on the disk yet."""
-
-    def __init__(self, pipe: Connection) -> None:
-        self._pipe, self._said = pipe, False
-
-    def __enter__(self) -> None:
-        from numba.core import event
-
-        this = self
-
-        class Listener(event.Listener):
-            def on_start(self, _: object) -> None:
-                if not this._said:
-                    this._said = True
-                    this._pipe.send(("compiling", {}))
-
-            def on_end(self, _: object) -> None:
-                pass
-
-        self._listening = event.install_listener("numba:compile", Listener())
-        self._listening.__enter__()
-
-    def __exit__(self, *_: object) -> None:
-        self._listening.__exit__(None, None, None)

@@ -71,7 +71,12 @@ class _Told:
 def _solve(told: _Told, deed: Deed, pictures: str, out: str, options: Any) -> None:
     """Solve from the beginning, or from where it was."""
     told("said", sentence="getting ready", compiling=False)
-    with _compiling(told):
+    from lightcube.kernels.compiled import when_compiling  # here: the compiler comes with it
+
+    def compiling() -> None:
+        told("said", sentence="compiling, once: about half a minute", compiling=True)
+
+    with when_compiling(compiling):
         from lightcube.backward.needs import job_memory
         from lightcube.jobs import publishing, running
         from lightcube.jobs.partial import DiskStore, load_job, open_partial, partial_path
@@ -164,33 +169,6 @@ class _Show:
 
         description, voxels = contents(cube, self._told.title or "Light cube")
         self._told("cube", scene=zipped(description), voxels=voxels)
-
-
-class _compiling:  # noqa: N801 - used as a function
-    """Tell once that kernels are compiled, where one is not on the disk yet."""
-
-    def __init__(self, told: _Told) -> None:
-        self._told, self._said = told, False
-
-    def __enter__(self) -> None:
-        from numba.core import event
-
-        told, this = self._told, self
-
-        class Listener(event.Listener):
-            def on_start(self, _: object) -> None:
-                if not this._said:
-                    this._said = True
-                    told("said", sentence="compiling, once: about half a minute", compiling=True)
-
-            def on_end(self, _: object) -> None:
-                pass
-
-        self._listening = event.install_listener("numba:compile", Listener())
-        self._listening.__enter__()
-
-    def __exit__(self, *_: object) -> None:
-        self._listening.__exit__(None, None, None)
 
 
 def places(folder: Path) -> tuple[str, str]:
