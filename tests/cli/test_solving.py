@@ -115,6 +115,8 @@ def test_paper_with_what_contradicts_it_is_refused(  # type: ignore[no-untyped-d
         ("--shift", "-1"),
         ("--black", "1"),
         ("--black", "-0.5"),
+        ("--veil", "1"),
+        ("--veil", "-0.01"),
         ("--picture-width", "0"),
         ("--picture-width", "1.9"),
         ("--pixel", "0"),

@@ -7,6 +7,7 @@ import pytest
 
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
+from lightcube.optics.rig import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures.targets import Targets
 from lightcube.planning.reachable import least_light, out_of_reach, sentences, too_bright
@@ -59,6 +60,18 @@ def test_black_beside_white_is_out_of_reach() -> None:
     assert parts[0] == pytest.approx(4 * 2 / (6 * 8 * 3), abs=1e-6)  # the lamp has no blue
     assert parts[1] == 0
     assert any("picture '1' is darker" in said for said in sentences(replace(targets, pictures=wanted)))
+
+
+def test_a_veil_has_no_shadow() -> None:
+    """Behind the darkest cube it is left, and under the brightest pixel it lies too."""
+    grid = Grid((3, 5, 7), 2.0)
+    rig = turntable(grid, [10.0, 130.0], picture_shape=(3, 5), veil=0.25)
+    wanted = np.full((2, 3, 5, 3), 0.5, np.float32)
+    wanted[1, :, 2] = 0.09  # a lamp that makes 0.5 leaves 0.25 / 1.25 of it
+    targets = Targets(wanted, rig)
+    np.testing.assert_allclose(least_light(targets), 0.1, rtol=1e-6)
+    np.testing.assert_allclose(out_of_reach(targets), [0, 1 / 5])
+    assert any("no cube" in said or "darker than" in said for said in sentences(targets))
 
 
 def test_without_fading_everything_is_within_reach() -> None:

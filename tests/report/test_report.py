@@ -174,7 +174,7 @@ SOLVES = {
     "planned": "--n 6 --iterations 3",
     "draft": "--n 6 --picture-width 0.5 --hold-deg 0 --quality draft",
     "angles": "--shape 5,7,6 --picture-width 0.7 --elevation-deg 20 --angles-deg 3,100.52,181,-85 "
-    "--iterations 3 --lamp-max 4.5 --black 0.02 --hold-deg 1.25",
+    "--iterations 3 --lamp-max 4.5 --black 0.02 --veil 0.03 --hold-deg 1.25",
     "span": "--n 7 --span-deg 200 --size-mm 33.3 --picture-width 0.6 --hold-deg 0 --fit pad --powers shared "
     "--transfer linear --max-extinction 0.5 --iterations 2",
     "order": "--n 6 --picture-width 0.5 --hold-deg 0 --order best --shift 1 --powers coarse --iterations 2",

@@ -166,6 +166,7 @@ ROOMS: dict[str, tuple[tuple[Lamp, ...], tuple[Screen, ...], int]] = {
     "a bulb far away": ((replace(BULB, position_mm=(-4000.0, 0.0, 0.0)),), (WALL,), 1),
     "a bulb level with a face": ((replace(BULB, position_mm=(-9.0, 0.7, 0.7)),), (WALL,), 1),
     "two screens of different sizes": ((RED, SUN, BULB), (WALL, FLOOR), 1),
+    "a veil": ((RED, replace(BULB, reach_mm=5.4, falloff_mm=4.0)), (replace(WALL, cosine=True),), 1),
 }
 
 
@@ -176,7 +177,7 @@ def on_stage(name: str) -> Cube:
     for screen in screens:
         its = tuple(lamp.name for lamp in lamps if (lamp.name == "sun") == (screen.name == "floor"))
         shots += [Shot(f"{screen.name} {stop}", screen.name, its, stop) for stop in range(3)]
-    stage = Stage(GRID, lamps, screens, tuple(shots), (0.0, 110.0, 230.0))
+    stage = Stage(GRID, lamps, screens, tuple(shots), (0.0, 110.0, 230.0), veil=0.2 if name == "a veil" else 0.0)
     rig = divided(stage.rig(), lamp=samples)
     powers = np.random.default_rng(2).uniform(0.4, 1.5, (len(rig.pairs), 3))
     return Cube(glass(GRID.shape), GRID, rig, powers)

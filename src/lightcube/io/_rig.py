@@ -48,6 +48,7 @@ class _FadingJson(BaseModel):
     falloff_mm: list[_Pair]
     full_at_mm: list[_Number | None]
     cosine: list[bool]
+    veil: list[_Number] = []
 
 
 class _TurningJson(BaseModel):
@@ -115,7 +116,7 @@ class RigJson(BaseModel):
         return Rig(
             made,
             Sums(**said["sums"]),
-            Fading(**said["fading"]),
+            Fading(**{**said["fading"], "veil": np.array(said["fading"]["veil"], np.float64)}),
             Turning(**said["turning"]),
             Stops(**{**said["stops"], "films": np.array(said["stops"]["films"], np.float64)}),
             Lamps(**said["lamps"]),
@@ -152,8 +153,8 @@ def _plain(part: Any) -> dict[str, Any]:
 
 
 def _is_usual(name: str, array: NDArray[Any]) -> bool:
-    """Whether an array says nothing: squares are never kept, and films only where they do not lie as usual."""
-    return name == "square" or (name == "films" and array.size == 0)
+    """Whether an array says nothing: squares are never kept, films where they lie as usual, and veils of nothing."""
+    return name == "square" or (name == "films" and array.size == 0) or (name == "veil" and not array.any())
 
 
 def _finite(value: Any) -> Any:

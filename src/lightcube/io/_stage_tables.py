@@ -42,7 +42,8 @@ class Table(BaseModel):
 class CubeTable(Table):
     """The cube: `shape` in voxels ``(z, y, x)``, `size_mm` along its longest side, how tall its slices are.
 
-    `clear` is what its clearest voxel takes of the light, 1/mm, one number or one of each colour.
+    `clear` is what its clearest voxel takes of the light, 1/mm, one number or one of each colour; `veil` what part of a
+    lamp's light it lays evenly over the screens.
     """
 
     shape: tuple[Count, Count, Count]
@@ -50,6 +51,7 @@ class CubeTable(Table):
     slices_tall: Count = 1
     turns: Flag = True
     clear: AtLeastZero | tuple[AtLeastZero, AtLeastZero, AtLeastZero] = 0.0
+    veil: Number = 0.0
 
 
 class TurntableTable(Table):

@@ -182,6 +182,7 @@ def _stage(said: StageFile) -> Stage:
         said.cube.turns,
         Material(clear=said.cube.clear) if said.cube.clear else None,
         None if said.glass is None else Glass(**said.glass.said()),
+        said.cube.veil,
     )
     for number, table in enumerate(said.picture, start=1):
         if table.lamps is None and len(names) > 1:

@@ -150,7 +150,7 @@ def falling_light(rig: Rig, chosen: Sequence[int] | None = None) -> tuple[NDArra
     ``a = exp(-max(0, u.q - reach) / falloff)``, a factor for the lamp and one for the screen. ``u.q`` is how far
     the light travels from where it is nearest to the cube's centre to the screen. Glass lets some light pass beside it,
     which has no shadow, and some through it (`lightcube.optics.refraction`): then g is their sum, times that above, and
-    a the latter's part of it.
+    a the latter's part of it. A veil v has no shadow either: with it g becomes ``g + v``, and a ``a g / (g + v)``.
     """
     views, fading = rig.views, rig.fading
     rows, columns = views.picture_shape
@@ -184,6 +184,11 @@ def falling_light(rig: Rig, chosen: Sequence[int] | None = None) -> tuple[NDArra
         travelled = np.sum(units * pixels, axis=-1)
         for reach, falloff in zip(fading.reach_mm[v], fading.falloff_mm[v], strict=True):
             shadow[k] *= fade(travelled, reach, falloff)
+    veil = fading.veil[list(numbers), None, None].astype(np.float32)
+    if np.any(veil):
+        shaded = light * shadow
+        light += veil
+        shadow = np.divide(shaded, light, where=light > 0, out=shadow)
     return light, shadow
 
 

@@ -523,6 +523,7 @@ def turntable(
     lamp_deg: float = 0.0,
     screen_mm: float | None = None,
     glass: Glass | None = None,
+    veil: float = 0.0,
 ) -> Rig:
     """A cube on a turntable in parallel light, before a vertical screen with rows and columns whole voxels apart.
 
@@ -542,6 +543,8 @@ def turntable(
         Of a lamp with a disc and its screen, as `soft` takes them; 0 = the lamp has none.
     glass
         What bends the light: a body, or bath, around the grid; None = nothing.
+    veil
+        Even light over the screen, as a part of the lamp's, from 0 to below 1 (`lightcube.optics.tables.Fading`).
 
     Notes
     -----
@@ -570,6 +573,8 @@ def turntable(
     sharp = Rig.of(views, power=power, power_max=power_max, black=black)
     if glass is not None and bends:
         sharp = in_glass(sharp, grid, glass, screen_mm)
+    if veil:
+        sharp = replace(sharp, fading=replace(sharp.fading, veil=np.full(len(sharp.views), float(veil))))
     return soft(sharp, grid, lamp_deg, screen_mm) if lamp_deg else sharp
 
 

@@ -200,6 +200,8 @@ class Stage:
         What bounds the extinction of this block; None = as the recipe says. Of cubes only what is clear counts.
     glass
         What bends the light on its way to the voxels; None = nothing.
+    veil
+        Light that each lamp lays evenly over its screens, as a part of what it brings to a bare one, from 0 to below 1.
 
     Raises
     ------
@@ -216,6 +218,7 @@ class Stage:
     cube_turns: bool = True
     material: Material | None = None
     glass: Glass | None = None
+    veil: float = 0.0
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -270,6 +273,7 @@ class Stage:
                 falloff_mm=np.array([(lamp.falloff_mm, screen.falloff_mm) for _, screen, lamp in lit]),
                 full_at_mm=np.array([lamp.full_at_mm for _, _, lamp in lit]),
                 cosine=np.array([screen.cosine for _, screen, _ in lit]),
+                veil=np.full(len(lit), self.veil),
             ),
             Turning(np.array(carried), way, np.array(self.axis)),
             Stops(

@@ -93,7 +93,7 @@ class Sums(_Columns):
 
 @dataclass(frozen=True, eq=False)
 class Fading(_Columns):
-    """How light and shadows change with distance and slant.
+    """How light and shadows change with distance and slant, and what lies over them.
 
     Parameters
     ----------
@@ -105,21 +105,30 @@ class Fading(_Columns):
         infinity = the same everywhere.
     cosine
         ``(views,)`` bool: whether light that falls aslant on the screen is spread over more of it.
+    veil
+        ``(views,)`` from 0 to below 1: light that lies evenly over the screen whatever the cube, thrown aside by its
+        haze or by the room, as a part of what the lamp brings to a bare wall; 0, as where nothing is said = none.
     """
 
     reach_mm: Reals
     falloff_mm: Reals
     full_at_mm: Reals
     cosine: Flags
+    veil: Reals = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
+        if np.size(self.veil) == 0:
+            object.__setattr__(self, "veil", np.zeros(np.shape(self.full_at_mm)))
         self._keep(
             "full_at_mm",
             reach_mm=(np.float64, (None, 2)),
             falloff_mm=(np.float64, (None, 2)),
             full_at_mm=(np.float64, (None,)),
             cosine=(np.bool_, (None,)),
+            veil=(np.float64, (None,)),
         )
+        for veil in np.unique(self.veil):
+            check_veil(float(veil))
 
     @classmethod
     def none(cls, views: int) -> Fading:
@@ -128,8 +137,13 @@ class Fading(_Columns):
 
     @property
     def is_none(self) -> bool:
-        """Whether light and shadows are the same everywhere."""
-        return bool(np.all(np.isinf(self.reach_mm)) and np.all(np.isinf(self.full_at_mm)) and not np.any(self.cosine))
+        """Whether light and shadows are the same everywhere, and nothing lies over them."""
+        return bool(
+            np.all(np.isinf(self.reach_mm))
+            and np.all(np.isinf(self.full_at_mm))
+            and not np.any(self.cosine)
+            and not np.any(self.veil)
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,6 +238,12 @@ def check_black(black: float) -> None:
     """Raise `InputError` unless a screen can be as dark as this display value and no darker."""
     if not BLACK <= black < 1:
         raise InputError(f"black must be a display value from {BLACK:.4f}, half a level, to below 1, not {black:g}")
+
+
+def check_veil(veil: float) -> None:
+    """Raise `InputError` unless so much of a lamp's light can lie evenly over a wall."""
+    if not 0 <= veil < 1:
+        raise InputError(f"a veil is a part of the lamp's light, from 0 to below 1, not {veil:g}")
 
 
 def power_bounds(power: float | None, power_max: float | None = None) -> tuple[float, float]:

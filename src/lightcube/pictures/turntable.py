@@ -12,7 +12,7 @@ from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import Rig, turntable
-from lightcube.optics.tables import POWER_MAX, check_black, power_bounds
+from lightcube.optics.tables import POWER_MAX, check_black, check_veil, power_bounds
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import check_angles, check_lamp, check_span, distinct_angles, doubt_angles, spread_angles
 from lightcube.pictures.pictures import Pictures
@@ -53,6 +53,9 @@ class Turntable:
         Else it does not matter.
     glass
         What bends the light: the clear body of the cube, or its bath; None = nothing.
+    veil
+        Even light over the screen, whatever the cube, as a part of the lamp's, from 0 to below 1: what haze, or the
+        room, throws there.
 
     Examples
     --------
@@ -72,6 +75,7 @@ class Turntable:
     screen_mm: float | None = None
     pixel: int = 1
     glass: Glass | None = None
+    veil: float = 0.0
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -90,6 +94,7 @@ class Turntable:
             check_elevation(self.elevation_deg)
         power_bounds(self.power, self.power_max)
         check_black(self.black)
+        check_veil(self.veil)
         check_lamp(self.lamp_deg, self.screen_mm, matters=self.glass is not None)
 
     def elevation_of(self, pictures: Pictures) -> float:
@@ -132,6 +137,7 @@ class Turntable:
             lamp_deg=self.lamp_deg,
             screen_mm=self.screen_mm,
             glass=self.glass,
+            veil=self.veil,
         )
 
     def _angles(self, pictures: Pictures, elevation_deg: float) -> Reals:

@@ -18,7 +18,7 @@ from lightcube.optics.rig import Rig
 def is_measured(rig: Rig, grid: Grid) -> bool:
     """Whether one parallel lamp, raised alike for all pictures, shines on a screen behind, its pixels whole voxels."""
     one = rig.as_one_colour()
-    straight = one if one.glass is None else replace(one, glass=None)
+    straight = replace(one, glass=None, fading=replace(one.fading, veil=np.zeros(len(one.views))))
     return straight.is_thin and one.elevation_deg is not None and voxels_a_pixel(rig, grid) > 0
 
 
@@ -31,8 +31,12 @@ def voxels_a_pixel(rig: Rig, grid: Grid) -> int:
 
 
 def unmeasured(rig: Rig) -> list[str]:
-    """A sentence where a lamp has a size, or there is glass: rehearsals mind it, but their law was fitted without."""
-    found = {"a lamp's size": bool(np.any(rig.sums.disc_deg)), "glass": rig.glass is not None}
+    """A sentence for a lamp's size, glass and a veil: rehearsals mind them, but their law was fitted without."""
+    found = {
+        "a lamp's size": bool(np.any(rig.sums.disc_deg)),
+        "glass": rig.glass is not None,
+        "a veil": bool(np.any(rig.fading.veil)),
+    }
     return [
         f"how much {what} costs was not measured: pictures may become worse than expected"
         for what, is_there in found.items()

@@ -21,14 +21,14 @@ _WORTH_SAYING = 0.005
 def least_light(targets: Targets) -> NDArray[np.float64]:
     """What each pixel shows at least if the picture's brightest ones are as bright as wanted, linear light.
 
-    ``(picture, row, column, channel)``, 0 where shadows do not fade. A lamp that makes pixel j as bright as b shows on
-    pixel i, behind a cube however dark, no less than ``b D_i / G_j``, with ``G = sum_v share g`` and
-    ``D = sum_v share g (1 - a)`` over that lamp's views (`lightcube.optics.law`); several lamps show no less than the
-    one with the least such quotient.
+    ``(picture, row, column, channel)``, 0 where shadows do not fade and no veil lies over them. A lamp that makes pixel
+    j as bright as b shows on pixel i, behind a cube however dark, no less than ``b D_i / G_j``, with ``G = sum_v share
+    g`` and ``D = sum_v share g (1 - a)`` over that lamp's views (`lightcube.optics.law`); several lamps show no less
+    than the one with the least such quotient.
     """
     rig = targets.rig
     least = np.zeros(targets.pictures.shape)
-    if np.all(np.isinf(rig.fading.reach_mm)):
+    if np.all(np.isinf(rig.fading.reach_mm)) and not np.any(rig.fading.veil):
         return least
     light, shadow = falling_light(rig)
     share_of = rig.sums.of_colours(targets.pictures.shape[-1])

@@ -33,7 +33,7 @@ FILM_MOST = 32
 #: What is said of cubes, and not of films.
 _NOT_OF_FILMS = (
     *("shape", "slices_tall", "picture_width", "hold_deg", "order", "shift", "mat", "elevation_deg", "span_deg"),
-    *("angles_deg", "paper", "lamp_deg", "screen_mm", "grain", "ior", "form", "bottom", "bath_mm", "clear"),
+    *("angles_deg", "paper", "lamp_deg", "screen_mm", "grain", "ior", "form", "bottom", "bath_mm", "clear", "veil"),
 )
 
 #: What options are about, in the order in which people are told of them.
@@ -202,6 +202,14 @@ class Options:
             "after 100 mm.  One number, or one of red, green, blue as 0.01,0.01,0.02.  [default: 0]",
         ),
     ] = None
+    veil: Annotated[
+        float | None,
+        Option(
+            "Lamp",
+            "Light that lies evenly over the wall whatever the cube, thrown aside by haze or by the room, as a part of "
+            "what the lamp brings to the bare wall: 0.001 is a thousandth.  [default: 0]",
+        ),
+    ] = None
     material: Annotated[
         Dyes | None,
         Option(
@@ -361,6 +369,7 @@ class Options:
         }
         said |= {"span_deg": self.span_deg, "elevation_deg": self.elevation_deg}
         said |= {"lamp_deg": self.lamp_deg, "screen_mm": self.screen_mm, "pixel": self.pixel, "glass": self.glass}
+        said["veil"] = self.veil
         return Turntable(**{name: value for name, value in said.items() if value is not None})
 
     def as_in_the_paper(self) -> "Options":

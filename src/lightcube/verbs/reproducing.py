@@ -166,7 +166,7 @@ def _film(provenance: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _lamp(cube: Cube) -> Iterator[str]:
-    """Power of the lamp and black of the screen."""
+    """Power of the lamp, black of the screen, and what lies over it."""
     least, most, black = (
         float(part[0]) for part in (cube.rig.lamps.least, cube.rig.lamps.most, cube.rig.screens.black)
     )
@@ -176,6 +176,8 @@ def _lamp(cube: Cube) -> Iterator[str]:
         yield from ("--lamp-max", _number(most))
     if black != BLACK:
         yield from ("--black", _number(black))
+    if np.any(cube.rig.fading.veil):
+        yield from ("--veil", _number(float(cube.rig.fading.veil[0])))
 
 
 def _stage_options(cube: Cube) -> Iterator[str]:

@@ -39,7 +39,7 @@ _QUICK = 40
 _SAID_BY_STAGE = (
     *("n", "shape", "size_mm", "films", "gap_mm", "slices_tall", "picture_width", "pixel", "fit", "focus"),
     *("angles_deg", "span_deg", "elevation_deg", "paper", "order", "shift", "lamp_power", "lamp_max", "black"),
-    *("lamp_deg", "screen_mm", "ior", "form", "bottom", "bath_mm"),
+    *("lamp_deg", "screen_mm", "ior", "form", "bottom", "bath_mm", "veil"),
 )
 
 

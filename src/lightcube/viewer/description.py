@@ -141,6 +141,7 @@ def _views(rig: Rig, channels: int) -> list[dict[str, Any]]:
         "falloff_mm": rig.fading.falloff_mm,
         "full_at_mm": rig.fading.full_at_mm,
         "cosine": rig.fading.cosine,
+        "veil": rig.fading.veil,
         "turning": rig.turning.turns,
         "way": rig.turning.way,
         "ior": np.ones(len(views)) if rig.glass is None else iors(rig),

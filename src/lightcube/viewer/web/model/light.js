@@ -62,7 +62,8 @@ function fallingLight(view, pixel) {
 }
 
 /**
- * The beam that lights a place of the raster, as `beamOf` has it, inside the glass where there is some; and its light.
+ * The beam that lights a place of the raster, as `beamOf` has it, inside the glass where there is some; and its light,
+ * with the veil over it, which has no shadow.
  * @param {object} view of an exposure
  * @param {number} row whole in the middle of a pixel
  * @param {number} column
@@ -70,6 +71,12 @@ function fallingLight(view, pixel) {
  * @returns {{start: number[], way: number[], first: number, last: number, light: number, shadow: number}}
  */
 export function litBeam(view, row, column, raster) {
+  const lit = unveiledBeam(view, row, column, raster);
+  const light = lit.light + view.veil;
+  return { ...lit, light, shadow: light > 0 ? lit.light * lit.shadow / light : lit.shadow };
+}
+
+function unveiledBeam(view, row, column, raster) {
   const beam = beamOf(view, row, column, raster);
   const { light, shadow } = fallingLight(view, beam.pixel);
   if (!view.glass) return { ...beam, light, shadow };

@@ -86,6 +86,7 @@ function exposedView(scene, view, degrees, power) {
     falloff_mm: view.falloff_mm.map(orInfinite),
     full_at_mm: orInfinite(view.full_at_mm),
     cosine: view.cosine,
+    veil: view.veil,
     lamp: view.lamp,
     glass: glassOf(scene, view.ior),
   };

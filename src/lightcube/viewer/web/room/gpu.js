@@ -279,7 +279,7 @@ function putBeams(put, scene, view, rows, columns) {
   put(4, 3, [view.reach[0], view.falloff[0], view.reach[1], view.falloff[1]]);
   put(4, 4, [...normal, view.fullAt]);
   put(4, 5, [dot(way, origin), dot(way, right), dot(way, down), view.glass?.ior ?? 1]);
-  put(4, 6, [...moved(right), 0, ...moved(down), 0]);
+  put(4, 6, [...moved(right), view.veil, ...moved(down), 0]);
 }
 
 /** The part of the way from a lamp to the screen at which a plane parallel to that passes the cube's middle. */

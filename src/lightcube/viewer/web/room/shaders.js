@@ -134,7 +134,8 @@ vec3 lightOf(int view, ivec2 pixel, vec2 aside) {
   vec4 normal = texelFetch(views, ivec2(4, row + 4), 0);
   vec3 whole = texelFetch(views, ivec2(pixel.x, row), 0).xyz + texelFetch(views, ivec2(pixel.y, row + 2), 0).xyz;
   vec3 off = texelFetch(views, ivec2(pixel.x, row + 1), 0).xyz + texelFetch(views, ivec2(pixel.y, row + 3), 0).xyz;
-  off += aside.x * texelFetch(views, ivec2(6, row + 4), 0).xyz + aside.y * texelFetch(views, ivec2(7, row + 4), 0).xyz;
+  vec4 across = texelFetch(views, ivec2(6, row + 4), 0);
+  off += aside.x * across.xyz + aside.y * texelFetch(views, ivec2(7, row + 4), 0).xyz;
   vec3 way = light.xyz;
   float from = -NEVER, to = NEVER, travelled;
   float strength = 1.0;
@@ -160,7 +161,7 @@ vec3 lightOf(int view, ivec2 pixel, vec2 aside) {
   shadow *= falls.y / max(falls.x + falls.y, 1e-20);
 #endif
   vec3 passed = exp(-absorbed(ivec3(whole), off, way, from, to));
-  return power.rgb * strength * (1.0 - shadow * (1.0 - passed));
+  return power.rgb * (strength * (1.0 - shadow * (1.0 - passed)) + across.w);
 }
 
 void main() {
