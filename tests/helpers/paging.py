@@ -95,7 +95,7 @@ CUBES = {
     "one colour": on_table(table(10, 75, 140, elevation_deg=10), channels=1),
     "stage": on_stage(TURNING, hold_deg=5.0),
     "soft lamps": on_stage(TURNING, lamp_samples=3),
-    "far wall": on_stage(FAR),
+    "far wall under a veil": on_stage(replace(FAR, veil=0.2)),
     "lamps go round": on_stage(replace(TURNING, cube_turns=False, axis=(0.3, 1.0, -0.2))),
 }
 ANGLES = (0.0, 10.0, 43.7, 102.5, 130.0, 174.9, 200.0, -10.0, 271.25, 355.5)

@@ -275,6 +275,7 @@ def test_exposures_are_those_of_python(evaluate: Evaluate, name: str) -> None:
         ("falloff_mm", rig.fading.falloff_mm),
         ("full_at_mm", rig.fading.full_at_mm),
         ("cosine", rig.fading.cosine),
+        ("veil", rig.fading.veil),
         ("lamp", rig.sums.lamp),
     ):
         nearly([view[field] for view in each], wanted, 1e-9)

@@ -83,14 +83,17 @@ def sentences(targets: Targets) -> list[str]:
     """One sentence for each picture with colours out of reach."""
     dark, bright = out_of_reach(targets), too_bright(targets)
     named = list(zip(targets.names, dark, bright, strict=True))
+    if np.all(np.isinf(targets.rig.fading.reach_mm)):
+        why = "the veil over it allows: keep even light off the screen, or make the picture paler"
+    else:
+        why = "its shadow can be at this distance: bring the screen nearer, or give lamp or screen more reach_mm"
     return [
         f"{part:.0%} of picture {name!r} is brighter than its lamps can make it here: give them more power_max, or "
         "light of all colours"
         for name, _, part in named
         if part >= _WORTH_SAYING
     ] + [
-        f"{part:.0%} of picture {name!r} is darker than its shadow can be at this distance: bring the screen nearer, "
-        "or give lamp or screen more reach_mm"
+        f"{part:.0%} of picture {name!r} is darker than {why}"
         for name, part, _ in named
         if part >= _WORTH_SAYING
     ]
