@@ -33,7 +33,8 @@ JUDGED, JUDGED_LEVEL = over_square(55, 34), along_row(16)
 def judged(cube: Cube, angles_deg: Sequence[float], *, whole: bool = False) -> NDArray[Any]:
     """What a cube shows on pixels of a turntable, by the points that it is judged with."""
     one_slice = cube.rig.views.pixel_in(cube.grid)[0] < 1.5
-    points = JUDGED_LEVEL if cube.rig.elevation_deg == 0 and one_slice else JUDGED
+    level = cube.rig.elevation_deg == 0 and (cube.rig.glass is None or cube.rig.glass.form != "sphere")
+    points = JUDGED_LEVEL if level and one_slice else JUDGED
     return averaged(cube, angles_deg, points, whole=whole)
 
 

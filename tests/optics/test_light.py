@@ -13,6 +13,7 @@ from lightcube.backward.wishes import asked
 from lightcube.errors import InputError
 from lightcube.forward import casting
 from lightcube.optics.cube import Cube
+from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import (
     JUDGE,
@@ -89,6 +90,8 @@ def test_points_in_a_row_are_none_of_the_judges(count: int) -> None:
         (rig_of(0.01), False),
         (rig_of(0.0).shifted(np.array([[1, 0], [0, 1]])), True),
         (replace(rig_of(0.0), views=rig_of(0.0).views.with_pixels(2.0, (3, 5))), False),
+        (rig_of(0.0, glass=Glass(1.5, "cylinder")), True),
+        (rig_of(0.0, glass=Glass(1.5, "sphere")), False),
     ],
 )
 def test_points_lie_in_a_row_exactly_where_a_pixel_is_one_slice_high(rig: Rig, in_slices: bool) -> None:

@@ -26,6 +26,7 @@ BODIES: dict[str, tuple[Glass, float]] = {
     "weak cylinder": (Glass(1.3, "cylinder"), 0.0),
     "round bath": (Glass(1.5, "round-bath", bath_mm=15.1), -25.0),
     "sphere": (Glass(1.5, "sphere"), 20.0),
+    "level sphere": (Glass(1.5, "sphere"), 0.0),
     "weak sphere": (Glass(1.33, "sphere"), 31.0),
     "three indices": (Glass((1.45, 1.5, 1.6), "cylinder"), 20.0),
     "three of a block": (Glass((1.45, 1.5, 1.6)), 33.0),

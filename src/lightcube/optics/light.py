@@ -219,7 +219,12 @@ def is_exact(rig: Rig, grid: Grid) -> bool:
 
 
 def is_in_slices(rig: Rig, grid: Grid) -> bool:
-    """Whether all light is parallel, level, without a disc, and each pixel as high as the slice that it is before."""
+    """Whether all light is parallel, level, without a disc, and each pixel as high as the slice that it is before.
+
+    And stays in it: a sphere bends what is above and below its middle.
+    """
+    if rig.glass is not None and rig.glass.form == "sphere":
+        return False
     views, side = rig.views, grid.slice_mm
     rows, _ = views.picture_shape
     level = np.abs(views.lamps[:, 2]) < PARALLEL * np.linalg.norm(views.lamps[:, :3], axis=1)

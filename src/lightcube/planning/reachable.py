@@ -92,8 +92,4 @@ def sentences(targets: Targets) -> list[str]:
         "light of all colours"
         for name, _, part in named
         if part >= _WORTH_SAYING
-    ] + [
-        f"{part:.0%} of picture {name!r} is darker than {why}"
-        for name, part, _ in named
-        if part >= _WORTH_SAYING
-    ]
+    ] + [f"{part:.0%} of picture {name!r} is darker than {why}" for name, part, _ in named if part >= _WORTH_SAYING]

@@ -40,13 +40,13 @@ function overSquare(least) {
   return alongRow(count).map(([across], i) => [across, (((before * i) % count) + 0.5) / count - 0.5]);
 }
 
-/** Whether an exposure's light is level and every row of its pixels exactly a slice of the cube's voxels. */
+/** Whether an exposure's light is level, in glass too, and every row of its pixels exactly a slice of the cube's voxels. */
 export function inOneSlice({ shape, voxel_mm }, { views, raster }) {
-  return views.every(({ light, origin, right, down }) => {
+  return views.every(({ light, origin, right, down, glass }) => {
     const top = (origin[2] - (down[2] * raster[0]) / 2) / voxel_mm + shape[0] / 2;
     const steps = [right[2], down[0], down[1], Math.abs(down[2]) - voxel_mm].map((step) => step / voxel_mm);
     const off = [light[2] / norm(light), top - Math.round(top), ...steps];
-    return light[3] === 0 && off.every((part) => Math.abs(part) < NONE);
+    return light[3] === 0 && glass?.form !== "sphere" && off.every((part) => Math.abs(part) < NONE);
   });
 }
 
