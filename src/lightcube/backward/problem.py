@@ -1,6 +1,7 @@
 """Targets and a grid as a solver sees them."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
-from lightcube.projection.shadows import shadows
+from lightcube.projection.shadows import Shadows
 from lightcube.solvers.contract import Bounds, Lighting, Result, Wanted
 from lightcube.solvers.method import Method
 
@@ -125,11 +126,13 @@ class Problem:
 
         ``(stop, row, column, channel)`` of the part: `rows` and colours only.
         """
-        rig, lamp = self.judge
         columns = x.reshape(self._voxels, -1) if self.dyes is None else columns_from_volume(self.extinction(x))
-        of_views = np.asarray(powers[lamp], np.float64)
-        shown = shadows(columns, self.matrix.grid, rig, of_views, self.rows, self.part.colours)
+        shown = self._judge(columns, np.asarray(powers[self.judge[1]], np.float64))
         return np.stack(list(shown)).astype(np.float32, copy=False)
+
+    @cached_property
+    def _judge(self) -> Shadows:
+        return Shadows(self.matrix.grid, self.judge[0], self.rows, self.part.colours)
 
     def error(self, x: Floats, powers: Floats) -> float:
         """The mean squared difference, in display values, of what is `shown` from what is wanted."""
@@ -218,7 +221,7 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
         rows=rows,
         targets=targets,
         stop=all_that.stop,
-        judge=_judge(targets.rig, recipe, grid),
+        judge=_judging(targets.rig, recipe, grid),
         dyes=None if recipe.dyes is None else recipe.dyes.in_block(grid),
     )
 
@@ -259,7 +262,7 @@ def _wanted(targets: Targets, grid: Grid, recipe: Recipe, all_that: Asked) -> tu
     return light, heavy
 
 
-def _judge(rig: Rig, recipe: Recipe, grid: Grid) -> tuple[Rig, NDArray[np.intp]]:
+def _judging(rig: Rig, recipe: Recipe, grid: Grid) -> tuple[Rig, NDArray[np.intp]]:
     """The beams that what is cast is judged by, the thin ones where it is solved for them, and the power of each."""
     judge = rig if recipe.beams.is_thin else judged(rig, grid)
     return judge, lamp_numbers(rig, judge, np.arange(len(rig)), recipe.powers)

@@ -14,7 +14,7 @@ from lightcube.optics.checks import checked
 from lightcube.optics.cube import Cube
 from lightcube.optics.light import Beams, check_zoom, in_parts
 from lightcube.optics.rig import Rig
-from lightcube.projection.shadows import shadows
+from lightcube.projection.shadows import Shadows
 
 
 @checked
@@ -55,7 +55,7 @@ def _cast(
 ) -> Iterator[Images]:
     """Yield what `cast` does, of the cube's extinction as `columns_from_volume` lays it out."""
     parts = in_parts(rig, cube.grid, light, zoom, around=around)
-    lines = [[shadows(columns, cube.grid, part, powers[part.pair]) for part in line] for line in parts]
+    lines = [[Shadows(cube.grid, part)(columns, powers[part.pair]) for part in line] for line in parts]
     for _ in range(len(rig)):
         yield _joined([[next(part) for part in line] for line in lines], zoom)
 
