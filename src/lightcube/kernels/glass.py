@@ -143,7 +143,10 @@ def meeting(place: float, ior: float, away: float, guess: float) -> float:
 
 @compiled
 def _through_cylinder(q: Array, d: Array, half: Array, ior: float, normal: Array, last: Array) -> Beam:
-    """The beam of a pixel behind a cylinder about z of radius ``half[0]`` that stands on something."""
+    """The beam of a pixel behind a cylinder about z of radius ``half[0]`` that stands on something.
+
+    `last` has the root, its place and what `landing` says of it.
+    """
     level = math.hypot(d[0], d[1])
     ahead_x, ahead_y = d[0] / level, d[1] / level
     radius, high, slope = half[0], half[2], d[2] / level
@@ -155,10 +158,14 @@ def _through_cylinder(q: Array, d: Array, half: Array, ior: float, normal: Array
         one, two = q[2] - slope * radius * (away + chord), q[2] - slope * radius * (away - chord)
         beside = 1.0 if min(one, two) > high or max(one, two) < -high else 0.0
     index = math.sqrt(ior * ior - d[2] * d[2]) / level
-    beta = last[0] = meeting(abs(aside), index, away, last[0])
+    if aside != last[1] or away != last[2]:  # on upright screens a column's pixels all have the same
+        last[0] = meeting(abs(aside), index, away, last[0])
+        last[1], last[2] = aside, away
+        if last[0] >= 0:
+            _, last[3], last[4], last[5] = landing(last[0], index, away)
+    beta, growth, turn, leaves = last[0], last[3], last[4], last[5]
     if beta < 0:
         return beside, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    _, growth, turn, leaves = landing(beta, index, away)
     side = -1.0 if aside > 0 else 1.0  # of the axis, that the beam enters on
     leaves_z = q[2] - slope * radius * (away - math.cos(leaves)) / math.cos(turn)
     chord = 2 * math.sqrt(1 - (beta / index) ** 2)
@@ -209,7 +216,7 @@ def _through_sphere(q: Array, d: Array, half: Array, ior: float, normal: Array, 
 
 @compiled
 def _beam(form: int, q: Array, d: Array, half: Array, ior: float, blocked: bool, normal: Array, last: Array) -> Beam:
-    """The beam of a pixel at q, which sits on a screen of this unit normal; `last` remembers the root of the last."""
+    """The beam of a pixel at q, which sits on a screen of this unit normal; `last` what was found of the last."""
     if form == BLOCK:
         return _through_block(q, d, half, ior, blocked)
     if form == BATH:
@@ -262,10 +269,10 @@ def _beams(
         screen = screens[view]
         normal = np.cross(screen[1], screen[2])
         normal /= math.sqrt(np.sum(normal * normal))
-        beta = np.zeros(1)
+        remembered = np.zeros(6)
         for row in range(rows):
             q = screen[0] + column * screen[1] + row * screen[2]
-            found = _beam(form, q, lights[view], half, iors[view], blocked, normal, beta)
+            found = _beam(form, q, lights[view], half, iors[view], blocked, normal, remembered)
             light[view, row, column, 0], light[view, row, column, 1] = found[0], found[1]
             for k in range(6):
                 lines[view, row, column, k] = found[2 + k]
