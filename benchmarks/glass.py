@@ -107,17 +107,20 @@ def large() -> None:
 
 
 def speed() -> None:
-    """Seconds of one pass over all points of n = 64, sixteen pictures of 32 x 32, the best of five, beside straight."""
-    from lightcube.optics.light import judged
+    """Seconds of one pass over all points of a solve, n = 64, sixteen pictures of 32 x 32, and of 60 passes' solve.
 
-    grid, usual = lc.Grid((64,) * 3, 100 / 64), 0.0
+    The best of five, and of two, beside straight light.
+    """
+    from lightcube.backward.wishes import asked
+
+    grid, usual, usually = lc.Grid((64,) * 3, 100 / 64), 0.0, 0.0
     for name, form, elevation_deg in (
         ("straight", None, 35.0),
         ("block", "block", 35.0),
         ("cylinder", "cylinder", 20.0),
     ):
-        rig = judged(room(form, elevation_deg, 360.0, IOR, 64, 16, 32), grid)  # type: ignore[arg-type]
-        matrix = lc.Projector(grid, rig)
+        rig = room(form, elevation_deg, 360.0, IOR, 64, 16, 32)  # type: ignore[arg-type]
+        matrix = lc.Projector(grid, asked(rig, grid, lc.Recipe()).rig)
         x = np.random.default_rng(1).random((matrix.shape[1], 3), np.float32)
         b, took = matrix.forward(x), []
         matrix.adjoint(b)
@@ -127,7 +130,17 @@ def speed() -> None:
             matrix.adjoint(b)
             took.append(time.monotonic() - began)
         usual = usual or min(took)
-        print(f"{name}: {min(took):.2f} s a pass, {min(took) / usual:.2f} times straight light", flush=True)
+        solves, targets = [], lc.fit(photographs(16), rig)
+        for _ in range(2):
+            began = time.monotonic()
+            lc.solve(targets, grid, lc.Recipe(passes=60))
+            solves.append(time.monotonic() - began)
+        usually = usually or min(solves)
+        print(
+            f"{name}: {min(took):.3f} s a pass, {min(took) / usual:.2f} times straight light; "
+            f"{min(solves):.1f} s a solve, {min(solves) / usually:.2f} times",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

@@ -1,10 +1,15 @@
 """Cubes in glass: single beams stay a convex problem, with a known factor of each; areas are sums."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
 import lightcube as lc
+from lightcube.backward import needs
+from lightcube.backward.job import Job
 from lightcube.backward.problem import pose
+from lightcube.backward.solving import make_job, solve_job
 from lightcube.optics.glass import Form, Glass
 from lightcube.optics.law import Mixture
 from lightcube.optics.refraction import bent
@@ -80,3 +85,26 @@ def test_the_shadows_of_a_known_cube_in_glass_come_back(form: Form) -> None:
     targets = lc.Targets(np.stack(list(lc.cast(cube))), rig, np.ones((3, 5, 4), np.float32))
     solved = lc.solve(targets, GRID, lc.Recipe(passes=150)).cube
     assert lc.score(solved, targets)["psnr_min"] > 45
+
+
+@pytest.mark.skipif(INTERPRETED, reason="interpreted kernels hold arrays of their own, and take their time")
+@pytest.mark.parametrize("form", ["block", "cylinder", "sphere"])
+def test_memory_is_as_much_as_is_said(form: Form) -> None:
+    """Also of the lines of beams, and of the pieces of those that go one by one."""
+
+    def made(n: int, wide: int) -> Job:
+        grid = lc.Grid((n, n, n), 1.0)
+        rig = lc.turntable(
+            grid, lc.spread_angles(12), elevation_deg=35, picture_shape=(wide, wide), glass=Glass(1.5, form)
+        )
+        return make_job(lc.fit(photographs(12), rig), grid, lc.Recipe(passes=30))
+
+    solve_job(made(6, 2))  # numba compiles
+    job = made(40, 24)
+    tracemalloc.start()
+    try:
+        solve_job(job)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert needs.job_memory(job) - needs.PROGRAM == pytest.approx(peak, rel=0.25, abs=5e6)

@@ -3,6 +3,7 @@
 import math
 import time
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,10 +14,13 @@ from lightcube.backward.units import coarse_shape, coarser, split
 from lightcube.backward.wishes import asked
 from lightcube.kernels.layout import is_worth_lines
 from lightcube.optics.grid import Grid
+from lightcube.optics.light import judged
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
+from lightcube.projection.rays import MOST_PIECES, PIECE
+from lightcube.projection.shadows import FEW_PIXELS
 from lightcube.solvers.method import Method
 
 #: Bytes that a job may need unless it is said: a fixed number, so that cubes do not depend on machines.
@@ -31,6 +35,8 @@ _ENTRY = 40
 _ANY = 35.0
 #: Bytes for each pixel of a view where light or shadows fade: what falls on it, and its shadow's strength (measured).
 _MIXED = 16
+#: Bytes for each beam that glass bends: where it enters and leaves, twice, what falls on it, and the like (measured).
+_BENT = 130
 #: Where beams add up: more arrays as large as the unknowns, and all as large as the beams and as the sums (measured).
 _OF_SUMS = (1.2, 3.5, 6.0)
 #: The time of a pass is measured where it has about so many multiply-adds, over so many passes.
@@ -129,12 +135,13 @@ def job_memory(job: Job) -> int:
     steepest = float(np.max(np.abs(views.elevations_deg)))
     parts = _parts(job.grid, every)
     per_stop, beams = -(-len(every.views) // len(views)) * parts, len(every.views) * math.prod(every.picture_shape)
-    mixed = 0 if rig.fading.is_none and parts == 1 else _MIXED * beams * parts
+    mixed = 0 if rig.fading.is_none and rig.glass is None and parts == 1 else _MIXED * beams * parts
     kept = 0 if job.start is None else job.start.nbytes
     return (
         mixed
         + kept
         + _dyes_memory(job, beams * parts)
+        + _rays_memory(job, beams)
         + memory_needed(
             job.recipe.solver,
             job.grid,
@@ -150,6 +157,27 @@ def job_memory(job: Job) -> int:
             dtype=job.recipe.dtype,
         )
     )
+
+
+def _rays_memory(job: Job, beams: int) -> int:
+    """Bytes that are kept of so many beams that are no copies of each other: their pieces, and where glass bends them.
+
+    And where it bends those that the cube is judged by, which are kept where they are few.
+    """
+    rig = job.targets.rig
+    pieces = 0 if job.recipe.solver.holds_matrix or job.recipe.dtype != "float32" else _thin_pieces(job.grid, rig)
+    pieces *= beams // (len(rig.views) * math.prod(rig.picture_shape))
+    listed = PIECE * pieces if pieces <= MOST_PIECES else 0
+    if rig.glass is None:
+        return listed
+    judge = len(judged(rig, job.grid).views) * math.prod(rig.picture_shape)
+    return listed + _BENT * (beams + (judge if judge <= FEW_PIXELS else 0))
+
+
+@lru_cache(maxsize=8)
+def _thin_pieces(grid: Grid, rig: Rig) -> int:
+    """Pieces of the rays through the middles of pixels, where these go one by one."""
+    return Projector(grid, rig).pieces
 
 
 def _parts(grid: Grid, rig: Rig) -> int:

@@ -49,6 +49,11 @@ class BentBeams:
         self._rays = Rays(grid, views, alone, bent) if np.any(alone) else None
         self._counts = np.ascontiguousarray(together[:, ::-1].swapaxes(1, 2)).reshape(-1, 1)
 
+    @property
+    def pieces(self) -> int:
+        """Of the rays that go one by one."""
+        return 0 if self._rays is None else self._rays.pieces
+
     @cached_property
     def _all(self) -> Rays:
         """All beams, one by one."""

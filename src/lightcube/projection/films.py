@@ -41,6 +41,7 @@ class Middles:
     level = False
     shape: tuple[int, int]
     parts = 1
+    pieces = 0
     areas = None
 
     def __init__(self, stack: Stack, rig: Rig) -> None:
@@ -100,6 +101,7 @@ class Rectangles:
     """
 
     level = False
+    pieces = 0
     shape: tuple[int, int]
     parts: int
     areas: Floats

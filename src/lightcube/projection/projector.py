@@ -42,6 +42,10 @@ class Engine(Protocol):
     parts: int
 
     @property
+    def pieces(self) -> int:
+        """How many pieces of rays that go one by one there are; of beams that go together 0."""
+
+    @property
     def areas(self) -> Floats | None:
         """Of rectangles, the part of its pixel's area that each has."""
 
@@ -204,6 +208,11 @@ class Projector:
     def areas(self) -> Floats | None:
         """``(views * parts, columns * rows)``: the part of its pixel's area that each rectangle has; None of beams."""
         return self._engine.areas
+
+    @property
+    def pieces(self) -> int:
+        """Pieces of rays that go one by one; up to `lightcube.projection.rays.MOST_PIECES` are kept for a solver."""
+        return self._engine.pieces
 
     @property
     def view_of_row(self) -> Counts:

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightcube.errors import InputError
-from lightcube.kernels import rays
+from lightcube.kernels import listed, rays
 from lightcube.kernels.layout import empty
 from lightcube.kernels.ray import MOST_PARTS, most_pieces
 from lightcube.kernels.ray_matrix import trace_all
+from lightcube.optics.arrays import Counts
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import Bent
 from lightcube.optics.views import Views
@@ -22,6 +23,10 @@ Floats = NDArray[np.floating[Any]]
 
 #: The kernels number them by 32 bits.
 _MOST_VOXELS = 2**32
+#: Pieces of rays are kept up to so many, of `PIECE` bytes each; of more rays, and in numbers of 64 bits, they are found
+#: anew in every product.
+MOST_PIECES, PIECE = 1 << 24, 16
+_Lists = tuple[Counts, Floats, Floats]
 
 
 class Rays:
@@ -72,6 +77,7 @@ class Rays:
         if bent is not None:
             self._bend(bent)
         self.shape = (len(views) * columns * rows, int(np.prod(grid.shape)))
+        self._lists: tuple[_Lists, ...] | None = None
 
     def _bend(self, bent: Bent) -> None:
         """Let each pixel have the piece of its ray inside the glass; where there is none it is not heard."""
@@ -83,6 +89,11 @@ class Rays:
         self._boxes = rays.boxes(self._lines, self._heard, self._picture, self.grid.shape)
 
     @property
+    def pieces(self) -> int:
+        """Of all rays: voxels that each runs through."""
+        return int(listed.count(self._rays, self._picture, self._heard, self.grid.shape, self._sides)[-1])
+
+    @property
     def _rays(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """What the kernels find the pixels' rays by."""
         return self._lamps, self._screens, self._lines
@@ -90,17 +101,34 @@ class Rays:
     def forward(self, x: Floats) -> Floats:
         """``A @ x`` of a contiguous block of columns."""
         b = empty((self.shape[0], x.shape[1]), x.dtype)
+        if self._lists and x.dtype == np.float32:
+            listed.gather(*self._lists[0], x, b)
+            return b
         rays.forward(*self._rays, self._picture, self._heard, self.grid.shape, *self._sides, x, b)
         return b
 
     def adjoint(self, b: Floats) -> Floats:
         """``A.T @ b`` of a contiguous block of columns."""
         x = empty((self.shape[1], b.shape[1]), b.dtype)
+        if b.dtype == np.float32 and self._lists is None:  # who wants one such product wants many, by turns
+            self._lists = self._kept()
+        if b.dtype == np.float32 and self._lists:
+            listed.gather(*self._lists[1], b, x)
+            return x
         straight = not self._lines.shape[1]
         shadows = shadow_matrices(self._lamps, self._screens) if straight else np.zeros((len(self._lamps), 3, 4))
         data = *self._rays, shadows, self._boxes, self._picture, self._heard
         rays.adjoint(*data, self.grid.shape, *self._sides, b, x)
         return x
+
+    def _kept(self) -> tuple[_Lists, ...]:
+        """The pieces of all rays, for the matrix and for its transpose; nothing where they are too many."""
+        data = self._rays, self._picture, self._heard, self.grid.shape, self._sides
+        offsets = listed.count(*data)
+        if offsets[-1] > MOST_PIECES:
+            return ()
+        found = listed.trace(*data, offsets)
+        return found, listed.transposed(*found, self.shape[1])
 
     def row(self, index: int) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Return the unknowns that equation `index` touches, and its ray's length (mm) in each."""

@@ -16,7 +16,7 @@ from lightcube.projection.projector import Projector
 
 _Lit = tuple[Projector, Mixture]
 #: Views that are computed together at least: enough for all threads; and pixels at most, to bound memory.
-_BATCH, _PIXELS = 16, 1 << 20
+_BATCH, FEW_PIXELS = 16, 1 << 20
 
 
 class Shadows:
@@ -82,7 +82,7 @@ class Shadows:
 
 def _batches(rig: Rig) -> Iterator[slice]:
     """A few views at a time: whole pictures, as many as are small enough together, or parts of one that is not."""
-    most, first = max(_BATCH, _PIXELS // math.prod(rig.picture_shape)), 0
+    most, first = max(_BATCH, FEW_PIXELS // math.prod(rig.picture_shape)), 0
     if np.any(rig.sums.square):  # of which each is many
         most = 1
     for start, end in pairwise(rig.starts.tolist()):

@@ -49,6 +49,7 @@ class StackedBeams:
     rise: int
     level: bool
     parts = 1
+    pieces = 0
     areas = None
     shape: tuple[int, int]
 
