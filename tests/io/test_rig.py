@@ -20,6 +20,7 @@ from lightcube.jobs.partial import DiskStore, load_job, open_partial
 from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.glass import Glass
+from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig, turntable
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets
@@ -110,10 +111,11 @@ def test_a_damaged_rig_is_one_sentence(tmp_path: Path, suffix: str, edit: Any, m
     assert "\n" not in str(caught.value)
 
 
-def job(**options: Any) -> Job:
-    """On a room with fixed and with free lamps."""
+def job(glass: Glass | None = None, **options: Any) -> Job:
+    """On a room with fixed and with free lamps, or on a turntable in glass."""
     stage = replace(ROOM, lamps=(replace(ROOM.lamps[0], power=1.1), *ROOM.lamps[1:]))
-    rig = stage.rig()
+    in_glass = turntable(GRID, [1 / 3, 77.0, 130.0, 250.0], elevation_deg=20, picture_shape=(5, 5), glass=glass)
+    rig = stage.rig() if glass is None else in_glass
     pictures = np.random.default_rng(2).uniform(0.1, 1, (4, 5, 5, 3)).astype(np.float32)
     targets = Targets(pictures, rig, rig.inside.astype(np.float32))
     return make_job(**asked(targets, GRID, **{"passes": 4, **options}))
@@ -124,6 +126,8 @@ KINDS: list[dict[str, Any]] = [
     {"units": 2, "hold_deg": 2.0},
     {"powers": "shared", "units": 3},
     {"powers": "coarse"},
+    {"glass": Glass(1.5 + 1e-3 / 3, "cylinder"), "units": 3},
+    {"glass": Glass((1.49, 1.5, 1.52)), "hold_deg": 1.0, "light": Light(3)},
 ]
 
 
@@ -157,6 +161,7 @@ def test_a_folder_begun_under_other_lamps_is_refused(tmp_path: Path) -> None:
         replace(rig, fading=replace(rig.fading, reach_mm=rig.fading.reach_mm + 1)),
         replace(rig, lamps=replace(rig.lamps, least=rig.lamps.least / 2)),
         replace(rig, screens=replace(rig.screens, black=rig.screens.black * 2)),
+        replace(rig, fading=replace(rig.fading, veil=rig.fading.veil + 0.1)),
     ]
     for changed in others:
         other = replace(one, targets=replace(one.targets, rig=changed))
