@@ -30,6 +30,7 @@ ALL = (
     "model/sheet.js",
     "model/glass.js",
     "model/beam.js",
+    "room/clearbody.js",
 )
 #: The scene and the voxels of an argument, for an expression to go on with.
 GIVEN = """(async () => {

@@ -84,3 +84,18 @@ def test_the_wall_shows_what_python_casts(evaluate: Run, name: str) -> None:
     thin = shadows(evaluate, cube, ANGLES, beams="THIN")
     assert worst(thin, cube, ANGLES, points=THIN) <= OFF
     assert worst(shadows(evaluate, cube, ANGLES[:1]), cube, ANGLES[:1]) <= OFF
+
+
+def test_only_a_bottom_that_lets_no_light_out_is_barred(evaluate: Evaluate) -> None:
+    """The block's own edges are drawn anyway."""
+    edges = {}
+    for name in ("block", "blocked"):
+        _, _, data = paged(in_glass(name))
+        edges[name] = asked(evaluate, data, "bodyEdges(scene, exposures(scene, 0)[0])")
+    assert edges["block"] == []
+    bars = np.array(edges["blocked"])
+    half = np.array(in_glass("blocked").grid.size_mm)[::-1] / 2
+    assert len(bars) > 3
+    np.testing.assert_allclose(bars[..., 2], -half[2])
+    assert np.all(np.abs(bars[..., :2]) <= half[:2] + 1e-9)
+    np.testing.assert_allclose(np.ptp(bars[..., 1], axis=1), 2 * half[1])

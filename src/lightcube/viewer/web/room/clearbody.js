@@ -12,14 +12,14 @@ export function isCutRound({ glass }) {
 }
 
 /**
- * The edges of what the light enters, besides those of the block.
+ * The edges of what the light enters, besides those of the block; and bars across a bottom that lets none out.
  * @param {object} scene with glass
  * @param {object} exposure of a screen: a bath with flat sides stands square to its light
  * @returns {number[][][]} pairs of ends
  */
-export function bodyEdges({ glass: { form, half }, voxels }, { views: [{ light }] }) {
+export function bodyEdges({ glass: { form, half, blocked }, voxels }, { views: [{ light }] }) {
   const [radius, , height] = half;
-  if (form === "block") return [];
+  if (form === "block") return blocked ? bars(half) : [];
   if (form === "sphere") {
     return [0, 1, 2].flatMap((axis) => circle((a, b) => [[0, a, b], [a, 0, b], [a, b, 0]][axis].map((part) => radius * part)));
   }
@@ -34,6 +34,11 @@ export function bodyEdges({ glass: { form, half }, voxels }, { views: [{ light }
   }
   const sides = [-1, 1].map((left) => [at(0, left, -high), at(0, left, high)]);
   return [...[-high, high].flatMap((z) => circle((a, b) => [radius * a, radius * b, z])), ...sides];
+}
+
+/** Lines across the bottom of a block. */
+function bars([x, y, z]) {
+  return [-3, -2, -1, 0, 1, 2, 3].map((k) => [-1, 1].map((end) => [(k / 4) * x, end * y, -z]));
 }
 
 function circle(at) {
