@@ -13,7 +13,7 @@ import time
 import numpy as np
 
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.projection.projector import Projector
 

@@ -29,7 +29,7 @@ from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import solve
 from lightcube.forward.casting import cast
 from lightcube.optics.grid import Grid, dense_step_deg, raster_shape
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import fit

@@ -16,7 +16,7 @@ from lightcube.bench.products import columns_of, projector
 from lightcube.forward.casting import player
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import Views, spread_angles, turntable_views
 from lightcube.projection.projector import Projector
 

@@ -39,7 +39,7 @@ __getattr__, __dir__, __all__ = when_used(
         "Material": "optics.material",
         "Move": "optics.moves",
         "Rig": "optics.rig",
-        "turntable": "optics.rig",
+        "turntable": "optics.setups",
         "Stack": "optics.stack",
         "Lamp": "optics.stage",
         "Screen": "optics.stage",

@@ -31,7 +31,8 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
 from lightcube.optics.moves import Move
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.stack import Stack
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import Views, spread_angles

@@ -22,7 +22,8 @@ from lightcube.optics.grid import Grid
 from lightcube.optics.law import shown_light
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.pictures.targets import Targets
 from lightcube.projection.inked import Inked
 from lightcube.scoring.metrics import score

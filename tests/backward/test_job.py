@@ -28,7 +28,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets
 from lightcube.solvers import METHODS

@@ -12,7 +12,7 @@ from lightcube.backward.solving import make_job, solve, solve_job
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.light import Light
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector
 from lightcube.scoring.metrics import score

@@ -11,7 +11,7 @@ from lightcube.backward.reckoning import FIRST_LOOK, Reckoning, is_look, is_look
 from lightcube.backward.solving import make_job
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.pictures.targets import Targets
 from tests.helpers.recipes import asked
 

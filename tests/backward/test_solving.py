@@ -16,7 +16,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import BLACK, decode
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets

@@ -14,7 +14,8 @@ from lightcube.backward.solving import solve
 from lightcube.backward.wishes import asked
 from lightcube.errors import InputError
 from lightcube.optics.light import Light, bundle
-from lightcube.optics.rig import Rig, soft
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import soft
 from lightcube.scoring.metrics import score
 from tests.backward.test_mat import GRID, some_targets
 

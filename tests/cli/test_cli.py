@@ -19,7 +19,7 @@ from lightcube.io import save
 from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.verbs import wonders
 
 SCENE = """

@@ -10,7 +10,7 @@ from lightcube import load, save
 from lightcube.io import read_dyes
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from tests.cli.test_cli import pictures, run
 
 __all__ = ["pictures", "run"]

@@ -19,7 +19,7 @@ from lightcube import io
 from lightcube.cli import console, main
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 
 #: What takes long to load.
 HEAVY = {"numba", "scipy", "zarr", "av", "matplotlib", "distributed"}

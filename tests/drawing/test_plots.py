@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import to_uint8
 from lightcube.optics.views import spread_angles

@@ -18,7 +18,7 @@ from lightcube.errors import InputError
 from lightcube.forward import casting
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from tests.helpers.wall import play
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lightcube.drawing.sheet import MOST, contact_sheet, difference, pair
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import to_uint8
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets

@@ -8,7 +8,7 @@ import pytest
 from lightcube.drawing.crops import wanted_sheet
 from lightcube.drawing.sheet import BETWEEN
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.pictures.fitting import Fit, fit
 from lightcube.pictures.pictures import Pictures
 

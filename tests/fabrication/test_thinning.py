@@ -12,7 +12,7 @@ from lightcube.errors import InputError
 from lightcube.fabrication.thinning import as_films, sliced, stack_of
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stack import Stack
 from lightcube.pictures.fitting import fit
 from lightcube.pictures.samples import photographs

@@ -13,7 +13,8 @@ from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Beams
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from tests.conftest import INTERPRETED
 from tests.helpers.areas import divided
 

@@ -14,7 +14,8 @@ from lightcube.forward.turning import moment, turn
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import encode
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets

@@ -12,7 +12,8 @@ from lightcube.forward.casting import cast, play, player
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.light import AROUND, AROUND_ROW, Beams, lattice
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import Views
 from tests.helpers.areas import JUDGED, along_row, averaged

@@ -12,7 +12,7 @@ from lightcube.forward.casting import cast, play, player
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import MOST_ZOOM, Beams, lattice
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import encode
 from tests.helpers.areas import THIN, Points, along_row, averaged, over_square
 from tests.optics.test_rig import ROOM

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.viewer.description import describe, zipped
 from lightcube.viewer.packing import Packed, pack

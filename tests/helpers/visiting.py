@@ -9,7 +9,7 @@ import pytest
 
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import encode
 from lightcube.viewer.packing import pack

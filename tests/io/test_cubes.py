@@ -30,7 +30,8 @@ from lightcube.jobs.publishing import publish
 from lightcube.jobs.reading import UnfinishedCube, load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.pictures.targets import Targets
 from lightcube.scoring import metrics
 

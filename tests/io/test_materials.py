@@ -11,7 +11,7 @@ from lightcube.io import material_names, read_cube, read_dyes, save
 from lightcube.io.materials import as_toml, read_material
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 
 FILM = """calibration = "measured"
 kind = "ink"

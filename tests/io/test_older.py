@@ -17,7 +17,7 @@ from lightcube.errors import InputError
 from lightcube.io import _metadata, _older
 from lightcube.optics.light import Light
 from lightcube.optics.material import Material
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from tests.cli.test_cli import run
 from tests.helpers import thin, wall
 from tests.io.test_cubes import assert_same, change, put

@@ -26,7 +26,8 @@ from lightcube.io._places import place
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import from_levels, to_uint8
 
 fsspec = pytest.importorskip("fsspec", reason="URLs need the extra remote")

@@ -21,7 +21,8 @@ from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.glass import Glass
 from lightcube.optics.light import Light
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets
 from tests.backward.test_job import same

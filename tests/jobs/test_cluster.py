@@ -24,7 +24,7 @@ from lightcube.events import Progress, Said
 from lightcube.jobs import cluster
 from lightcube.jobs.partial import DiskStore, open_partial
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets
 from tests.backward.test_job import same

@@ -30,7 +30,7 @@ from lightcube.jobs.reading import UnfinishedCube
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from tests.backward.test_job import DYED, LEVEL, RAISED, job, same
 from tests.cli.test_cli import pressed, run
 from tests.conftest import INTERPRETED

@@ -26,7 +26,7 @@ from lightcube.kernels import tasks
 from lightcube.kernels.compiled import compiled
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture, shown_light
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles, turntable_views
 from lightcube.pictures.targets import Targets
 from lightcube.projection.projector import Projector

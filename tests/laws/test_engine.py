@@ -14,7 +14,7 @@ from lightcube.kernels.layout import (
     volume_from_columns,
 )
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import Views, turntable_views
 from lightcube.projection.projector import Projector, dot_test
 from lightcube.projection.rays import Rays

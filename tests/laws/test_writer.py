@@ -29,7 +29,7 @@ from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import from_levels, to_uint8
 from lightcube.solids.mesh import Mesh
 from lightcube.solids.relief import Relief, ReliefRecipe

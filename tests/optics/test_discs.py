@@ -16,7 +16,8 @@ from lightcube.forward import casting
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.light import Light
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import swept_mm
 from lightcube.pictures.targets import Targets

@@ -12,7 +12,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 
 E = np.array([[3.0, 0.5, 0.1], [0.2, 2.0, 0.9], [0.1, 0.2, 4.0], [2.0, 2.0, 2.0]])
 NAMES = ("cyan", "magenta", "yellow", "black")

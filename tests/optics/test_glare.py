@@ -8,7 +8,8 @@ import pytest
 import lightcube as lc
 from lightcube.optics.glare import ghosts
 from lightcube.optics.glass import Glass
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import Views
 from tests.helpers import plain_glass as plain
 

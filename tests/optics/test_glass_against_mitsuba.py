@@ -12,7 +12,7 @@ from lightcube.forward.casting import cast
 from lightcube.optics.cube import Cube
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from tests.conftest import INTERPRETED
 from tests.helpers.plain_glass import Block, Body, Cylinder, Sphere, absorbance, traced
 

@@ -9,7 +9,8 @@ from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import Mixture, falling_light, shown_light
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.tables import Fading
 from tests.conftest import INTERPRETED
 from tests.helpers import plain

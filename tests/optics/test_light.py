@@ -29,7 +29,8 @@ from lightcube.optics.light import (
     seeds,
     soft_lattice,
 )
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from tests.helpers.areas import divided
 from tests.helpers.thin import cast, play
 

@@ -13,7 +13,8 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.glass import Form, Glass
 from lightcube.optics.law import falling_light
 from lightcube.optics.refraction import bent
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import Views
 from lightcube.planning.feasibility import impossible
 from tests.helpers import plain_glass as plain

@@ -18,7 +18,8 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
 from lightcube.optics.law import fade, falling_light
 from lightcube.optics.light import Light
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.tables import Lamps, Screens
 from lightcube.optics.views import spread_angles

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from tests.helpers import plain
 from tests.helpers.thin import cast, play

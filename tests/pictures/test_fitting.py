@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lightcube.errors import InputError
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, picture_shape
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import to_uint16
 from lightcube.optics.views import distinct_angles, spread_angles
 from lightcube.pictures.fitting import Fit, as_levels, cut_off, fit, fit_report, targets_of

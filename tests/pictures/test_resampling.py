@@ -8,7 +8,7 @@ from lightcube.backward.problem import pose
 from lightcube.backward.solving import solve
 from lightcube.backward.units import coarser, halvings
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.resampling import enlarged, halved
 from lightcube.pictures.targets import Targets

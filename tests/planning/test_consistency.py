@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lightcube.io.scenes import read_scene
 from lightcube.kernels.layout import columns_from_volume, pictures_from_columns
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.samples import photographs

@@ -12,7 +12,7 @@ from lightcube.errors import InputError
 from lightcube.kernels import ordering
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.arranging import spread_over_screen
 from lightcube.pictures.targets import Targets

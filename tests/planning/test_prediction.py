@@ -12,7 +12,7 @@ from lightcube.backward.solving import solve
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid, raster_shape
 from lightcube.optics.light import Light
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.targets import Targets
 from lightcube.planning import prediction

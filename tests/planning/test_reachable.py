@@ -7,7 +7,7 @@ import pytest
 
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.pictures.targets import Targets
 from lightcube.planning.reachable import least_light, out_of_reach, sentences, too_bright

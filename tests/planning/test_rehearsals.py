@@ -10,7 +10,7 @@ from lightcube.backward.mat import Mat
 from lightcube.backward.recipe import Recipe
 from lightcube.events import Interrupted, Progress, Said
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.pictures.targets import Targets
 from lightcube.planning import order, rehearsals
 from lightcube.planning.order import Order

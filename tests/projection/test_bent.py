@@ -7,7 +7,8 @@ from lightcube.kernels import tasks
 from lightcube.optics.glass import Form, Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import bent
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.projection.bent import BentBeams
 from lightcube.projection.projector import dot_test
 from lightcube.projection.rays import Rays

@@ -8,7 +8,7 @@ from numpy.typing import DTypeLike, NDArray
 from scipy.sparse import csr_array, random_array
 
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.projection.inked import Inked, Operator
 from lightcube.projection.projector import Projector, dot_test
 

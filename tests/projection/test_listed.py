@@ -7,7 +7,7 @@ from lightcube.kernels.rays import BRICK
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import bent
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.projection import rays as engine
 from lightcube.projection.projector import Projector
 from lightcube.projection.rays import Rays

@@ -8,7 +8,8 @@ import pytest
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import bent
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.report import bending
 
 GRID = Grid((6, 8, 8), 2.5)

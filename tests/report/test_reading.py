@@ -14,7 +14,7 @@ from lightcube.cli import main
 from lightcube.io import save
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import targets_of
 from lightcube.report import verdict

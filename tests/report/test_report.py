@@ -24,7 +24,8 @@ from lightcube.io import save
 from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.fitting import targets_of
 from lightcube.report.html import image

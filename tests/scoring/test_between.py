@@ -23,7 +23,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.grid import Grid
 from lightcube.optics.haze import Phase, veil_part
-from lightcube.optics.rig import soft, turntable
+from lightcube.optics.setups import soft, turntable
 from lightcube.optics.transfer import encode
 from lightcube.pictures.fitting import as_levels
 from lightcube.pictures.targets import Targets

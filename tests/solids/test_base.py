@@ -6,7 +6,7 @@ from scipy import ndimage
 
 from lightcube.errors import InputError
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.solids import projections
 from lightcube.solids.base import with_base

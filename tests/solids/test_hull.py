@@ -12,7 +12,8 @@ from lightcube.errors import InputError
 from lightcube.kernels.hull import MOST, STEP
 from lightcube.kernels.tasks import using
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.solids import projections
 from lightcube.solids.certificate import cast_mesh, certify

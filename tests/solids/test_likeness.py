@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.solids.likeness import Pair, is_along_one_axis, pairs
 from lightcube.solids.silhouettes import Silhouettes

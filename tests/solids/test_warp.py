@@ -10,7 +10,8 @@ from scipy import ndimage
 from lightcube.errors import InputError
 from lightcube.kernels import bending
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.solids import projections
 from lightcube.solids import warp as warping

@@ -11,7 +11,7 @@ from lightcube.events import Interrupted, Progress, Said, Tell
 from lightcube.io import read_scene, save
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.pictures.fitting import as_levels, targets_of
 from lightcube.pictures.targets import Targets
 from lightcube.scoring import metrics

@@ -9,7 +9,7 @@ from lightcube.backward.needs import Speed
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solving import make_job
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.pictures.targets import Targets
 from lightcube.verbs import solving
 

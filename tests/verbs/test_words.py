@@ -9,7 +9,8 @@ import pytest
 from lightcube.backward.recipe import Recipe
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.pictures.fitting import Fit
 from lightcube.pictures.pictures import Pictures
 from lightcube.planning.plan import Plan, plan

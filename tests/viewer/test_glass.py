@@ -9,7 +9,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import bent
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from tests.helpers.areas import THIN, averaged
 from tests.helpers.paging import Evaluate, asked, nearly, paged
 from tests.viewer.test_shadows import OFF, Run, shadows, worst

@@ -15,7 +15,7 @@ import lightcube
 from lightcube.drawing.standing import drawn, standing
 from lightcube.forward.turning import moment, powers_of
 from lightcube.optics.light import JUDGE_DISC, discs_sampled
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import rotations
 from lightcube.viewer import modules

@@ -25,7 +25,7 @@ from lightcube.errors import InputError
 from lightcube.optics import showing
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import to_uint8
 from lightcube.viewer import notebook

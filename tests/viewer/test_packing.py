@@ -22,7 +22,7 @@ from lightcube.errors import InputError
 from lightcube.forward.turning import moment
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import encode
 from lightcube.viewer import packing
 from lightcube.viewer.description import describe, zipped

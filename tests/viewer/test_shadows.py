@@ -13,7 +13,7 @@ from scipy.ndimage import map_coordinates
 
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.transfer import Transfer, decode, encode
 from lightcube.viewer import packing

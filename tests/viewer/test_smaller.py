@@ -18,7 +18,7 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.pictures.fitting import targets_of
 from lightcube.pictures.resampling import coarser
 from lightcube.pictures.targets import Targets

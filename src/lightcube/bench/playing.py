@@ -7,7 +7,7 @@ from lightcube.bench.products import CHANNELS
 from lightcube.forward.casting import player
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 
 #: Angles that are looked at for each repeat.
 _ANGLES = 5

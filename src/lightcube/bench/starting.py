@@ -12,7 +12,7 @@ from lightcube import io
 from lightcube.bench.clock import seconds
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 
 
 def starts() -> list[dict[str, Any]]:

@@ -22,7 +22,7 @@ from lightcube.kernels.layout import columns_from_volume, pictures_from_columns,
 from lightcube.optics.absorption import extinction, transmittance
 from lightcube.optics.cube import Cube
 from lightcube.optics.grid import Grid, raster_shape
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import to_uint8
 from lightcube.optics.views import spread_angles
 from lightcube.projection.projector import Projector

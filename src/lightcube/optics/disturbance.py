@@ -30,7 +30,7 @@ class Disturbance:
         Light on the screen where it should be black, as a fraction of white, added in linear light.
     disc_deg
         Angular diameter of the lamp's disc where it should have none, degrees; the screen then stands one cube width
-        behind the turning cube's reach (`lightcube.optics.rig.soft`), and behind glass where it stands.
+        behind the turning cube's reach (`lightcube.optics.setups.soft`), and behind glass where it stands.
     further
         By how much of the cube's width every screen stands too far away, along the light through its picture's middle.
     haze

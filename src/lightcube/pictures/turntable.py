@@ -11,7 +11,8 @@ from lightcube.optics.arrays import Numbers, Reals, keep
 from lightcube.optics.checks import check_fields, checked
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.tables import POWER_MAX, check_black, check_veil, power_bounds
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import check_angles, check_lamp, check_span, distinct_angles, doubt_angles, spread_angles
@@ -49,7 +50,7 @@ class Turntable:
         than what it shows.
     screen_mm
         How far behind the circle that the turning cube's corners sweep the screen stands, mm, where the lamp has a
-        disc, or there is glass; default the cube's width, and with glass as `lightcube.optics.rig.in_glass` has it.
+        disc, or there is glass; default the cube's width, and with glass as `lightcube.optics.setups.in_glass` has it.
         Else it does not matter.
     glass
         What bends the light: the clear body of the cube, or its bath; None = nothing.

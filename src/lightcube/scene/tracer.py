@@ -10,7 +10,8 @@ from lightcube.errors import InputError
 from lightcube.optics.arrays import Images, Reals, locked
 from lightcube.optics.checks import checked
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.views import Views, spread_angles
 from lightcube.pictures.targets import Targets
 from lightcube.scene.description import ShadowCamera

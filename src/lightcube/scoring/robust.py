@@ -12,7 +12,8 @@ from lightcube.optics.arrays import Reals
 from lightcube.optics.cube import Cube
 from lightcube.optics.disturbance import DISTURBANCES, Disturbance
 from lightcube.optics.haze import veil_part
-from lightcube.optics.rig import Rig, soft
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import soft
 from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import encode
 from lightcube.optics.views import Views

@@ -20,7 +20,7 @@ from lightcube.errors import InputError
 from lightcube.optics.absorption import extinction, transmittance
 from lightcube.optics.arrays import Flags, locked
 from lightcube.optics.grid import Grid
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.transfer import to_uint8
 from lightcube.optics.views import spread_angles
 from lightcube.projection.projector import Projector

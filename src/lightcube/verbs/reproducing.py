@@ -23,7 +23,8 @@ from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
 from lightcube.optics.glass import Glass
 from lightcube.optics.light import Light
-from lightcube.optics.rig import Rig, turntable
+from lightcube.optics.rig import Rig
+from lightcube.optics.setups import turntable
 from lightcube.optics.stack import Stack
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.told import remembered

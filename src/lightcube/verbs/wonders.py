@@ -7,7 +7,7 @@ from lightcube import io
 from lightcube.backward.recipe import Recipe
 from lightcube.optics.grid import Grid
 from lightcube.optics.material import Material
-from lightcube.optics.rig import turntable
+from lightcube.optics.setups import turntable
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.optics.views import spread_angles
 from lightcube.pictures.pictures import Pictures
