@@ -53,7 +53,7 @@ _BEYOND = 1.02
 
 @dataclass(frozen=True, eq=False)
 class Rig:
-    """Every picture's views, how they add up, and what turns: a turntable's (`lightcube.optics.setups.turntable`) or a stage's (`Stage.rig`).
+    """Every picture's views, how they add up, and what turns: of a turntable, or of a stage (`Stage.rig`).
 
     Parameters
     ----------
