@@ -46,10 +46,11 @@ def forget_points() -> None:
 def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Interpreted kernels take few points, short rehearsals and drafts; compiled ones have it all."""
     room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
-    if INTERPRETED and room not in ("optics", "forward", "viewer") and file not in ("test_docstrings", "test_older"):
+    few = room not in ("optics", "forward", "viewer") and file not in ("test_docstrings", "test_older")
+    if INTERPRETED and few:
         forget_points()
-        for name, few in (("JUDGE", 5), ("JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
-            monkeypatch.setattr(light, name, few)
+        for name, count in (("JUDGE", 5), ("JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
+            monkeypatch.setattr(light, name, count)
         monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2, 0.0))
         for quality, effort in QUALITIES.items():
             monkeypatch.setitem(QUALITIES, quality, effort._replace(light=light.Light()))
@@ -63,5 +64,5 @@ def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.
         monkeypatch.setattr("lightcube.planning.order._SWAPS", 1)
         monkeypatch.setattr("lightcube.planning.plan.WIDTHS", (0.5, 1.0))
     yield
-    if INTERPRETED:
+    if INTERPRETED and few:
         forget_points()
