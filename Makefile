@@ -16,6 +16,9 @@ BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 PYTEST := -m pytest -q -n auto --dist worksteal
 
+# Tests start hundreds of programs: each would compile the package anew, and each worker of the suite all tests.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test test-lowest test-newest check coverage fuzz kills clean
 
 demo: .venv/.ready
