@@ -11,6 +11,7 @@ import pytest
 from hypothesis import settings
 
 from lightcube.backward.recipe import QUALITIES
+from lightcube.io import _3mf
 from lightcube.optics import light
 from lightcube.planning import prediction
 from lightcube.report import measuring
@@ -29,6 +30,7 @@ atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 if INTERPRETED:
     measuring.ROOM = (27, 48)  # here: a report may be measured for a whole module
+    _3mf._SIDE = 16  # each file of a mesh has a picture of it
 
 
 # Whoever starts the suite in the background may have it ignore Ctrl-C, and programs inherit that; tests press it.
