@@ -12,7 +12,7 @@ from PIL import Image
 from lightcube import io
 from lightcube.backward import solving
 from lightcube.backward.mat import Mat
-from lightcube.backward.recipe import Recipe
+from lightcube.backward.recipe import Quality, Recipe
 from lightcube.optics.cube import Cube
 from lightcube.pictures.samples import photographs
 from lightcube.planning.plan import plan
@@ -24,7 +24,8 @@ from tests.helpers.browser import opened
 __all__ = ["run"]
 
 #: Voxels across, and how well they are solved for: those of the docs take minutes.
-SIDE, QUALITY = (48, "normal") if "LIGHTCUBE_PICTURES" in os.environ else (16, "draft")
+SIDE = 48 if "LIGHTCUBE_PICTURES" in os.environ else 16
+QUALITY: Quality = "normal" if "LIGHTCUBE_PICTURES" in os.environ else "draft"
 
 
 @pytest.fixture(scope="module")
