@@ -1,6 +1,7 @@
 # make demo   set everything up and run the demonstration, into out/
 # make test   set everything up and run the tests, compiled, and those of the rooms that compute interpreted too
-#             (one thread for each of the processes that run side by side; tests of threads take more)
+#             (one thread for each of the processes that run side by side; tests of threads take more; each process takes
+#             tests that stand together, for what is made or compiled once for many, and in the end some of another's)
 # make check  lint, format and types
 # make test-lowest, make test-newest
 #             the tests with the lowest versions that pyproject.toml allows, and with the newest that there are
@@ -13,6 +14,10 @@ COMPUTING := backward forward kernels laws optics planning projection scene scor
 EXTRAS ?= dev,heif,plot,notebook,remote,cluster,studio
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
+PYTEST := -m pytest -q -n auto --dist worksteal
+
+# Tests start hundreds of programs: each would compile the package anew, and each worker of the suite all tests.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo test test-lowest test-newest check coverage fuzz kills clean
 
@@ -20,11 +25,11 @@ demo: .venv/.ready
 	$(BIN)/lightcube demo
 
 test: .venv/.ready-$(EXTRAS)
-	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -q -n auto
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -n auto $(addprefix tests/,$(COMPUTING))
+	NUMBA_NUM_THREADS=1 $(BIN)/python $(PYTEST)
+	NUMBA_DISABLE_JIT=1 $(BIN)/python $(PYTEST) $(addprefix tests/,$(COMPUTING))
 
 test-lowest test-newest: test-%: .venv-%
-	NUMBA_CACHE_DIR=.venv-$*/numba NUMBA_NUM_THREADS=1 .venv-$*/bin/python -m pytest -q -n auto $(TESTS)
+	NUMBA_CACHE_DIR=.venv-$*/numba NUMBA_NUM_THREADS=1 .venv-$*/bin/python $(PYTEST) $(TESTS)
 
 check: .venv/.ready-$(EXTRAS)
 	$(BIN)/ruff check .
@@ -32,14 +37,14 @@ check: .venv/.ready-$(EXTRAS)
 	$(BIN)/mypy
 
 kills: .venv/.ready-$(EXTRAS)
-	LIGHTCUBE_KILLS=all $(BIN)/python -m pytest -q -n auto tests/hostile/test_kills.py
+	LIGHTCUBE_KILLS=all $(BIN)/python $(PYTEST) tests/hostile/test_kills.py
 
 coverage: .venv/.ready-$(EXTRAS)
 	NUMBA_DISABLE_JIT=1 $(BIN)/coverage run -m pytest -q
 	$(BIN)/coverage report --skip-covered --show-missing
 
 fuzz: .venv/.ready-$(EXTRAS)
-	LIGHTCUBE_FUZZ=2000 $(BIN)/python -m pytest -q -n auto tests/hostile
+	LIGHTCUBE_FUZZ=2000 $(BIN)/python $(PYTEST) tests/hostile
 
 clean:
 	rm -rf .venv .venv-lowest .venv-newest out .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -1,6 +1,6 @@
 """Cubes in glass: how good pictures become in each design, and what a wrong index of refraction costs.
 
-    python benchmarks/glass.py [designs|large|speed ...]
+    python benchmarks/glass.py [designs|large|speed|foretold ...]
 
 The first twelve photographs of scikit-image that come with the project, 24 x 24 pixels in a cube of 40 voxels a side
 (n = 40, 100 mm), unless said: normal quality, areas, lamps of power 16 at most, no mat, no hold. PSNR in dB, mean /
@@ -143,6 +143,18 @@ def speed() -> None:
         )
 
 
+def foretold() -> None:
+    """What plans tell of cubes in glass, and under veils, and what they become: mean PSNR, dB."""
+    places = [lc.Turntable(glass=lc.Glass(IOR, form)) for form in ("block", "cylinder", "sphere", "bath")]
+    for place in [*places, lc.Turntable(veil=0.001), lc.Turntable(veil=0.01)]:
+        name = f"veil of {place.veil:g}" if place.glass is None else place.glass.form
+        for n, count, width in ((32, 4, 0.5), (32, 8, 0.5), (32, 16, 0.6), (48, 8, 0.6), (48, 12, 0.4), (48, 16, 0.5)):
+            planned = lc.plan(photographs(count), n, picture_width=width, turntable=place)
+            cube = lc.solve(planned.targets, planned.grid, planned.recipe).cube
+            told, found = planned.prediction.psnr_mean, lc.score(cube, planned.targets)["psnr_mean"]
+            print(f"{name}, n = {n}, {count} of {width:g}: {told:.1f} told, {found:.1f} found", flush=True)
+
+
 if __name__ == "__main__":
-    for asked in sys.argv[1:] or ["designs", "large", "speed"]:
-        {"designs": designs, "large": large, "speed": speed}[asked]()
+    for asked in sys.argv[1:] or ["designs", "large", "speed", "foretold"]:
+        {"designs": designs, "large": large, "speed": speed, "foretold": foretold}[asked]()

@@ -3,7 +3,8 @@
     python benchmarks/rays.py [--n N] [--views V] [--pixels P]
 
 A colour cube, views from all over the hemisphere onto screens square to them, P x P pixels a voxel apart where they
-pass the cube's middle. Best of three. *traversal* is the same rays traced and not used; *from L2* multiplies and adds
+pass the cube's middle. Best of three; traced anew in every product, and where there is room also with pieces that are
+kept. *traversal* is the same rays traced and not used; *from L2* multiplies and adds
 up rows of three colours in random order out of 240 KB: what a product would take if lengths were known and every row
 near.
 """
@@ -116,17 +117,26 @@ def near(threads: int) -> float:
     return best(lambda: tasks.run(from_l2, 64, _LONG, *data)) / (64 * 200 * len(x)) * 1e9 * threads
 
 
-def rows(kind: str, matrix: Rays) -> Iterator[str]:
-    """Lines of the table, for one thread and for all."""
-    x = np.random.default_rng(1).random((matrix.shape[1], 3), dtype=np.float32)
-    b = matrix.forward(x)
+def rows(kind: str, grid: Grid, beams: Views) -> Iterator[str]:
+    """Lines of the table, for one thread and for all: traced anew, and kept."""
+    anew, kept = Rays(grid, beams), Rays(grid, beams)
+    x = np.random.default_rng(1).random((anew.shape[1], 3), dtype=np.float32)
+    b = anew.forward(x)
+    anew._lists = ()
+    yield from _lines(kind, anew, x, b)
+    kept.adjoint(b)
+    if kept._lists:
+        yield from _lines(f"{kind}, kept", kept, x, b)
+
+
+def _lines(kind: str, matrix: Rays, x: NDArray[np.float32], b: NDArray[np.float32]) -> Iterator[str]:
     data = *matrix._rays, matrix._picture, matrix._heard, matrix.grid.shape
     pieces = traversal(*data)
     for threads in sorted({1, tasks.threads()}):
         tasks.set_threads(threads)
         took = [best(lambda: traversal(*data)), best(lambda: matrix.forward(x)), best(lambda: matrix.adjoint(b))]
         each = (took[1] + took[2]) / 2 / pieces * 1e9 * threads
-        figures = " | ".join(f"{seconds:.2f}" for seconds in (*took, took[1] + took[2]))
+        figures = " | ".join(f"{seconds:.3f}" for seconds in (*took, took[1] + took[2]))
         yield f"| {kind} | {threads} | {pieces / 1e6:.0f} M | {figures} | {each:.1f} | {near(threads):.2f} |"
 
 
@@ -140,8 +150,8 @@ def main() -> None:
     heads = "light", "threads", "pieces", "traversal, s", "forward, s", "adjoint, s", "pass, s", "ns a piece and thread"
     print(f"| {' | '.join(heads)} | from L2, ns |\n|{'---|' * (len(heads) + 1)}")
     for point in (False, True):
-        matrix = Rays(grid, views(asked.n, asked.views, asked.pixels, point=point))
-        for row in rows("from points" if point else "parallel", matrix):
+        beams = views(asked.n, asked.views, asked.pixels, point=point)
+        for row in rows("from points" if point else "parallel", grid, beams):
             print(row, flush=True)
 
 

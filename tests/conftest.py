@@ -11,6 +11,7 @@ import pytest
 from hypothesis import settings
 
 from lightcube.backward.recipe import QUALITIES
+from lightcube.io import _3mf
 from lightcube.optics import light
 from lightcube.planning import prediction
 from lightcube.report import measuring
@@ -29,6 +30,7 @@ atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 if INTERPRETED:
     measuring.ROOM = (27, 48)  # here: a report may be measured for a whole module
+    _3mf._SIDE = 16  # each file of a mesh has a picture of it
 
 
 # Whoever starts the suite in the background may have it ignore Ctrl-C, and programs inherit that; tests press it.
@@ -46,10 +48,11 @@ def forget_points() -> None:
 def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Interpreted kernels take few points, short rehearsals and drafts; compiled ones have it all."""
     room, _, file = request.module.__name__.removeprefix("tests.").rpartition(".")
-    if INTERPRETED and room not in ("optics", "forward", "viewer") and file not in ("test_docstrings", "test_older"):
+    few = room not in ("optics", "forward", "viewer") and file not in ("test_docstrings", "test_older")
+    if INTERPRETED and few:
         forget_points()
-        for name, few in (("JUDGE", 5), ("JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
-            monkeypatch.setattr(light, name, few)
+        for name, count in (("JUDGE", 5), ("JUDGE_STEP", 3), ("JUDGE_ROW", 3), ("JUDGE_DISC", 2)):
+            monkeypatch.setattr(light, name, count)
         monkeypatch.setattr(light.Light.__init__, "__defaults__", (3, 2, 0.0))
         for quality, effort in QUALITIES.items():
             monkeypatch.setitem(QUALITIES, quality, effort._replace(light=light.Light()))
@@ -63,5 +66,5 @@ def brief_where_interpreted(request: pytest.FixtureRequest, monkeypatch: pytest.
         monkeypatch.setattr("lightcube.planning.order._SWAPS", 1)
         monkeypatch.setattr("lightcube.planning.plan.WIDTHS", (0.5, 1.0))
     yield
-    if INTERPRETED:
+    if INTERPRETED and few:
         forget_points()

@@ -17,7 +17,7 @@ from lightcube.optics.light import Light, bundle
 from lightcube.optics.rig import Rig
 from lightcube.optics.setups import soft
 from lightcube.scoring.metrics import score
-from tests.backward.test_mat import GRID, some_targets
+from tests.backward.test_mat import GRID, PASSES, some_targets
 
 SMOOTH = len(bundle(wishes.SMOOTH, in_slices=False)[0])
 COARSE = len(bundle(wishes.MAT, in_slices=False)[0])
@@ -127,7 +127,7 @@ def test_lamps_with_discs_are_asked_for_at_their_discs_too() -> None:
 @pytest.mark.parametrize("elevation_deg", [0.0, 35.0])
 def test_asked_for_smoothness_the_grain_is_less(elevation_deg: float) -> None:
     targets = some_targets(elevation_deg, (4, 6) if elevation_deg else (10, 6))
-    cubes = [solve(targets, GRID, Recipe(passes=60, light=Light(5, 3, grain))).cube for grain in (0.0, 0.3)]
+    cubes = [solve(targets, GRID, Recipe(passes=PASSES, light=Light(5, 3, grain))).cube for grain in (0.0, 0.3)]
     without, smooth = (score(cube, targets) for cube in cubes)
     assert smooth["grain_rms"] < 0.9 * without["grain_rms"]
     assert smooth["psnr_mean"] > 25

@@ -2,10 +2,12 @@
 
 import ast
 import inspect
+import json
 import os
 import signal
 import subprocess
 import sys
+from collections.abc import Sequence
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -31,6 +33,17 @@ atexit.register(lambda: sys.stderr.write("|" + " ".join(name for name in sys.mod
 from lightcube.__main__ import main
 main()
 """
+#: Runs several commands in turn, and names the heads of all modules that are loaded after each.
+LISTING_EACH = """
+import json, sys
+from lightcube.__main__ import main
+for words in json.loads(sys.argv[1]):
+    sys.argv[1:] = words
+    try:
+        main()
+    except SystemExit as done:
+        sys.stderr.write("|" + json.dumps([done.code, [name for name in sys.modules if "." not in name]]) + "\\n")
+"""
 
 
 def called(*words: object, **environment: str) -> tuple[int, str, str]:
@@ -49,6 +62,16 @@ def loaded(program: str, *words: object) -> tuple[int, set[str]]:
     done = subprocess.run([sys.executable, "-c", program, *map(str, words)], capture_output=True, text=True)
     assert "Traceback" not in done.stderr
     return done.returncode, set(done.stderr.rpartition("|")[2].split())
+
+
+def loaded_by_each(asked: Sequence[Sequence[str]]) -> list[tuple[int, set[str]]]:
+    """As `loaded` by commands of one program, which starts once: what the first has loaded is there for all others."""
+    words = [sys.executable, "-c", LISTING_EACH, json.dumps(asked)]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert "Traceback" not in done.stderr
+    told = [json.loads(line[1:]) for line in done.stderr.splitlines() if line.startswith("|")]
+    assert len(told) == len(asked)
+    return [(code, set(found)) for code, found in told]
 
 
 @pytest.fixture
@@ -71,17 +94,15 @@ def test_what_names_no_command_loads_none(words: tuple[str, ...]) -> None:
     assert not found & {*HEAVY, "numpy", "skimage", "PIL"}
 
 
-@pytest.mark.parametrize("name", main.COMMANDS)
-def test_help_of_a_command_and_options_that_it_lacks_load_no_compiler(name: str) -> None:
-    for option, expected in (("--help", 0), ("--magic", 2)):
-        code, found = loaded(LISTING, name, option)
-        assert code == expected
-        assert not found & HEAVY
+def test_help_of_a_command_and_options_that_it_lacks_load_no_compiler() -> None:
+    asked = [(name, option) for name in main.COMMANDS for option in ("--help", "--magic")]
+    for words, (code, found) in zip(asked, loaded_by_each(asked), strict=True):
+        assert code == (0 if "--help" in words else 2), words
+        assert not found & HEAVY, words
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
+def test_what_cannot_be_is_said_before_a_compiler_is_loaded(cube: Path, tmp_path: Path) -> None:
+    asked = [
         ("info", "{tmp}/none.zarr"),
         ("play", "{tmp}/none.zarr", "-o", "{tmp}/a.mp4"),
         ("play", "{cube}", "-o", "{tmp}/a.doc"),
@@ -97,13 +118,11 @@ def test_help_of_a_command_and_options_that_it_lacks_load_no_compiler(name: str)
         ("draw", "{tmp}/none.zarr", "-o", "{tmp}/a.png"),
         ("trace", "{tmp}/none.toml", "-o", "{tmp}/a"),
         ("publish", "{tmp}/none.zarr.partial"),
-    ],
-    ids=" ".join,
-)
-def test_what_cannot_be_is_said_before_a_compiler_is_loaded(words: tuple[str, ...], cube: Path, tmp_path: Path) -> None:
-    code, found = loaded(LISTING, *(word.format(tmp=tmp_path, cube=cube) for word in words))
-    assert code == 2
-    assert not found & HEAVY
+    ]
+    filled = [[word.format(tmp=tmp_path, cube=cube) for word in words] for words in asked]
+    for words, (code, found) in zip(asked, loaded_by_each(filled), strict=True):
+        assert code == 2, words
+        assert not found & HEAVY, words
 
 
 def test_what_is_in_a_cube_is_said_without_a_compiler(cube: Path) -> None:

@@ -1,5 +1,6 @@
 """Pixels in parts: each the mean over its own area, which together are the pixel."""
 
+import functools
 import itertools
 from typing import Any
 
@@ -62,14 +63,20 @@ def test_parts_are_what_is_plainly_averaged(elevation_deg: float, zoom: int) -> 
     assert zoom == 1 or np.std(means(shown, zoom).repeat(zoom, 1).repeat(zoom, 2) - shown) > 0.01
 
 
+@functools.cache
+def finely(elevation_deg: float) -> NDArray[Any]:
+    """At very many points: of each elevation once, because it takes long."""
+    many: Points = along_row(256) if elevation_deg == 0 else [(float(x), float(y)) for x, y in lattice(610)]
+    return averaged(cube_of(elevation_deg), STOPS, many)
+
+
 @pytest.mark.parametrize(("elevation_deg", "screen"), [(0.0, 0.02), (35.0, 0.01)])
 @pytest.mark.parametrize("zoom", [2, 3, 4, 7, MOST_ZOOM])
 def test_the_mean_of_parts_is_the_pixel(elevation_deg: float, screen: float, zoom: int) -> None:
     """But for what the points of either miss, beside very many points."""
     cube = cube_of(elevation_deg)
     pixels, parts = play(cube, picture_only=True), means(play(cube, picture_only=True, zoom=zoom), zoom)
-    many: Points = along_row(256) if elevation_deg == 0 else [(float(x), float(y)) for x, y in lattice(610)]
-    exact = averaged(cube, STOPS, many)
+    exact = finely(elevation_deg)
 
     def off(shown: NDArray[Any], wanted: NDArray[Any]) -> float:
         return float(np.sqrt(np.mean((encode(shown.astype(np.float64)) - encode(wanted.astype(np.float64))) ** 2)))

@@ -12,7 +12,7 @@ from PIL import Image
 from lightcube import io
 from lightcube.backward import solving
 from lightcube.backward.mat import Mat
-from lightcube.backward.recipe import Recipe
+from lightcube.backward.recipe import Quality, Recipe
 from lightcube.optics.cube import Cube
 from lightcube.pictures.samples import photographs
 from lightcube.planning.plan import plan
@@ -23,11 +23,15 @@ from tests.helpers.browser import opened
 
 __all__ = ["run"]
 
+#: Voxels across, and how well they are solved for: those of the docs take minutes.
+SIDE = 48 if "LIGHTCUBE_PICTURES" in os.environ else 16
+QUALITY: Quality = "normal" if "LIGHTCUBE_PICTURES" in os.environ else "draft"
+
 
 @pytest.fixture(scope="module")
 def cube() -> Cube:
-    """Eight photographs in 48 x 48 x 48 voxels, in mats and held, as `lightcube solve` makes them."""
-    planned = plan(photographs(8), 48, Recipe.of_quality("normal", mat=Mat()), longest_hold=True, smooth=True)
+    """Eight photographs in mats and held, as `lightcube solve` makes them."""
+    planned = plan(photographs(8), SIDE, Recipe.of_quality(QUALITY, mat=Mat()), longest_hold=True, smooth=True)
     found = solving.solve(planned.targets, planned.grid, planned.recipe).cube
     return replace(found, scores=metrics.score(found, planned.targets))
 

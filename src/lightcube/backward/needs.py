@@ -130,8 +130,12 @@ def _solver(
 
 def job_memory(job: Job) -> int:
     """`memory_needed` of a job."""
-    rig = job.targets.rig
-    every, views = asked(rig, job.grid, job.recipe).rig, rig.views
+    return _memory_in(job.units, job, asked(job.targets.rig, job.grid, job.recipe).rig)
+
+
+def _memory_in(units: int, job: Job, every: Rig) -> int:
+    """`memory_needed` of a job in so many units, of whose pictures all that is asked stands on a rig."""
+    rig, views = job.targets.rig, job.targets.rig.views
     steepest = float(np.max(np.abs(views.elevations_deg)))
     parts = _parts(job.grid, every)
     per_stop, beams = -(-len(every.views) // len(views)) * parts, len(every.views) * math.prod(every.picture_shape)
@@ -140,7 +144,7 @@ def job_memory(job: Job) -> int:
     return (
         mixed
         + kept
-        + _dyes_memory(job, beams * parts)
+        + _dyes_memory(units, job, beams * parts)
         + _rays_memory(job, beams)
         + memory_needed(
             job.recipe.solver,
@@ -152,7 +156,7 @@ def job_memory(job: Job) -> int:
             sums=None if len(every) == len(every.views) and parts == 1 else -(-len(every) // len(rig)),
             levels=job.levels,
             apart=views.slices_a_row(job.grid),
-            units=job.units,
+            units=units,
             channels=job.channels,
             dtype=job.recipe.dtype,
         )
@@ -185,15 +189,16 @@ def _parts(grid: Grid, rig: Rig) -> int:
     return Projector(grid, rig).parts if isinstance(grid, Stack) else 1
 
 
-def _dyes_memory(job: Job, beams: int) -> int:
-    """More bytes of a job whose voxels are mixed of dyes, for so many beams.
+def _dyes_memory(units: int, job: Job, beams: int) -> int:
+    """More bytes of a job in so many units whose voxels are mixed of dyes, for so many beams.
 
     What is mixed, and what is cast before and after colours are set apart; unknowns of more dyes than colours; what
     reaches each pixel, and its shadow's strength, through a clear material that is not quite clear.
     """
     if job.dyes is None:
         return 0
-    share = max(part.columns for part in job.parts) / sum(part.columns for part in job.parts)
+    parts = split(job.grid.shape, job.channels, units, level=job.level)
+    share = max(part.columns for part in parts) / sum(part.columns for part in parts)
     size, more = np.dtype(job.recipe.dtype).itemsize, job.kinds - job.channels
     unknowns = (more * job.recipe.solver.arrays[0] + job.kinds + job.channels) * size
     pixels = job.channels * (size + (_MIXED if np.any(job.dyes.base) else 0))
@@ -202,7 +207,8 @@ def _dyes_memory(job: Job, beams: int) -> int:
 
 def fewest_units(job: Job, memory: int) -> int:
     """Into how many units to split a job: as few as fit into so many bytes; where none fits, as few as need least."""
-    needed = [job_memory(replace(job, units=units)) for units in range(1, job.most_units + 1)]
+    every = asked(job.targets.rig, job.grid, job.recipe).rig
+    needed = [_memory_in(units, job, every) for units in range(1, job.most_units + 1)]
     fitting = [units for units, each in enumerate(needed, 1) if each <= memory]
     return fitting[0] if fitting else needed.index(min(needed)) + 1
 

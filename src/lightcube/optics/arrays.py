@@ -59,14 +59,18 @@ def as_indices(given: Indices, count: int, what: str) -> Counts:
         array = np.arange(count)[given] if isinstance(given, slice) else np.asarray(given)
     except (TypeError, ValueError):
         array = np.asarray(None)
-    said = " ".join(repr(given).split())[:60]
     if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
-        raise InputError(f"{what} are taken by a list of whole numbers, not by {said}: give one")
+        raise InputError(f"{what} are taken by a list of whole numbers, not by {_in_short(given)}: give one")
     if not array.size:
-        raise InputError(f"none of {count} {what} is taken by {said}: take one at least")
+        raise InputError(f"none of {count} {what} is taken by {_in_short(given)}: take one at least")
     if not -count <= array.min() <= array.max() < count:
-        raise InputError(f"there are {count} {what}, and {said} names others: count from 0 to {count - 1}")
+        raise InputError(f"there are {count} {what}, and {_in_short(given)} names others: count from 0 to {count - 1}")
     return array.astype(np.intp, copy=False)
+
+
+def _in_short(given: object) -> str:
+    """How something is written, on a line; of arrays that takes long."""
+    return " ".join(repr(given).split())[:60]
 
 
 def owned(array: ArrayLike, dtype: DTypeLike | None, *, order: Any = "K") -> NDArray[Any]:

@@ -168,16 +168,18 @@ def shadow_matrices(lamps: NDArray[np.float64], screens: NDArray[np.float64]) ->
     matrix; Cramer's rule turns places into columns and rows.
     """
     points = np.vstack([np.zeros(3), np.eye(3)])
+    corner, right, up = screens[:, None, 0], screens[:, None, 1], screens[:, None, 2]
+    from_lamp = lamps[:, None, 3]
+    normal = np.cross(right, up)
+    size = np.sum(normal**2, axis=2)
+    size[size == 0] = 1.0  # pixels on a line: the matrix is 0, and shadows may be anywhere
+    light = lamps[:, None, :3] - from_lamp[..., None] * corner
+    ways = points - corner
+    aside, away = np.sum(ways * normal, axis=2), np.sum(light * normal, axis=2)
+    onto = aside[..., None] * light - away[..., None] * ways
+    across, along = (np.sum(np.cross(*each) * normal, axis=2) / size for each in ((onto, up), (right, onto)))
+    values = -np.sign(away)[..., None] * np.stack([across, along, from_lamp * aside - away], axis=1)
     matrices = np.empty((len(lamps), 3, 4))
-    for view, (lamp, (corner, right, up)) in enumerate(zip(lamps, screens, strict=True)):
-        normal = np.cross(right, up)
-        size = normal @ normal or 1.0  # pixels on a line: the matrix is 0, and shadows may be anywhere
-        light = lamp[:3] - lamp[3] * corner
-        ways = points - corner
-        aside, away = ways @ normal, light @ normal
-        onto = np.outer(aside, light) - away * ways
-        values = np.stack([np.cross(onto, up) @ normal / size, np.cross(right, onto) @ normal / size])
-        values = -np.sign(away) * np.vstack([values, lamp[3] * aside - away])
-        matrices[view, :, 3] = values[:, 0]
-        matrices[view, :, :3] = values[:, 1:] - values[:, :1]
+    matrices[..., 3] = values[..., 0]
+    matrices[..., :3] = values[..., 1:] - values[..., :1]
     return matrices
