@@ -123,9 +123,9 @@ def test_a_studio_that_is_killed_goes_on_where_it_was(client: TestClient, tmp_pa
     client.patch("/api/settings", json={"making": LONG})
     client.post("/api/solving/start")
     until(lambda: begun(client))
-    kept = (folder / "made" / "solving.json").read_bytes()
+    kept = (folder / "made" / "cube.json").read_bytes()
     client.__exit__()
-    (folder / "made" / "solving.json").write_bytes(kept)
+    (folder / "made" / "cube.json").write_bytes(kept)
     with opened(folder) as again:
         assert again.get("/api/solving").json()["status"] == "running"
         until(lambda: again.get("/api/solving").json()["done"])
@@ -155,4 +155,4 @@ def test_what_cannot_be_done_now_is_a_sentence(client: TestClient, deed: str) ->
 
 def test_one_picture_is_no_cube(client: TestClient) -> None:
     client.put("/api/pictures", json={"keys": []})
-    assert "at least two pictures" in client.post("/api/solving/start").json()["sentence"]
+    assert "at least 2 pictures, and there is none" in client.post("/api/solving/start").json()["sentence"]
