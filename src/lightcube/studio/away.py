@@ -12,6 +12,7 @@ from lightcube.events import Tell
 from lightcube.jobs.reading import load
 from lightcube.studio.away_cubes import CUBES, FILMS
 from lightcube.studio.away_solids import PLATES, SOLIDS
+from lightcube.studio.makers import without_commands
 from lightcube.studio.offered import Order, Thing
 from lightcube.viewer.label import Label
 
@@ -37,4 +38,5 @@ def make(
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         said = offered[name].make(Order(read(str(source)), source, target, label, captions, tell))
-    return [*said, *(f"{each.message}" for each in warned if issubclass(each.category, UserWarning))]
+    noticed = (f"{each.message}" for each in warned if issubclass(each.category, UserWarning))
+    return without_commands([*said, *noticed])

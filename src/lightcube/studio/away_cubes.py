@@ -104,7 +104,7 @@ def _sheet(order: Order[Cube]) -> list[str]:
 def _itself(order: Order[Cube]) -> list[str]:
     """The cube in one file."""
     io.Output(order.target, "cube", overwrite=True).write(order.thing)
-    return [of_pictures(order.thing), "all of it, bit for bit: lightcube opens it again"]
+    return [of_pictures(order.thing), "all of it, bit for bit, for this program"]
 
 
 def _exported(kind: Kind, options: Mapping[str, Any] | None = None) -> Callable[[Order[Cube]], list[str]]:

@@ -15,7 +15,6 @@ from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.reach import count_pieces
 from lightcube.solids.relief import Relief
 from lightcube.solids.shape import Shape, as_cube
-from lightcube.studio.makers import without_commands
 from lightcube.studio.offered import Order, Thing
 from lightcube.verbs import hull_words, hulls, reliefs, viewing
 from lightcube.viewer.page import relief_page
@@ -29,7 +28,7 @@ def _mesh(order: Order[Shape]) -> list[str]:
     """The solid for a printer; the file is read again, and it is said what that casts."""
     io.Output(order.target, "shape", overwrite=True).write(order.thing)
     found = hulls.certificate(str(order.target), order.thing)
-    return without_commands(hull_words.results(order.thing, found, count_pieces(order.thing.inside)))
+    return hull_words.results(order.thing, found, count_pieces(order.thing.inside))
 
 
 def _page(order: Order[Shape]) -> list[str]:
@@ -48,7 +47,7 @@ def _outlines(order: Order[Shape]) -> list[str]:
 def _shape(order: Order[Shape]) -> list[str]:
     """The solid in one file."""
     io.Output(order.target, "shape", overwrite=True).write(order.thing)
-    return ["all of it: its field, silhouettes, lamps and screens; lightcube opens it again"]
+    return ["all of it: its field, silhouettes, lamps and screens, for this program"]
 
 
 #: Of solids, in the page's order.
@@ -67,7 +66,7 @@ SOLIDS: Mapping[str, Thing[Shape]] = {
 def _plate(order: Order[Relief]) -> list[str]:
     """The plate as its suffix says: for a printer, as heights, or all of it."""
     io.Output(order.target, "relief", overwrite=True).write(order.thing)
-    return without_commands(reliefs.told(order.thing, score_relief(order.thing, off=True)))
+    return reliefs.told(order.thing, score_relief(order.thing, off=True))
 
 
 def _plates_page(order: Order[Relief]) -> list[str]:
@@ -81,7 +80,7 @@ def _sheet(order: Order[Relief]) -> list[str]:
     scores = score_relief(order.thing, off=True)
     drawn = relief_sheet(order.thing, scores, order.label.title)
     io.Output(order.target, "picture", overwrite=True).write(drawn)
-    return without_commands(reliefs.told(order.thing, scores))
+    return reliefs.told(order.thing, scores)
 
 
 def _movie(order: Order[Relief]) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from lightcube import io
 from lightcube.optics.attenuator import Films
 from lightcube.optics.tables import POWER_MAX
 from lightcube.solids.relief import ReliefRecipe
@@ -89,6 +90,8 @@ class FilmsMaking(Strict):
     size_mm: Annotated[float, Field(ge=40, le=180, allow_inf_nan=False)] = _FILMS.size_mm
     #: By how much films may lie off, so that pictures stand it.
     assembly_mm: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.2
+    #: What they are printed with, as `lightcube materials` lists it; any = red, green and blue light.
+    inks: Literal["any", "cmyk-film", "cmy-film"] = "cmyk-film"
     lamp: _Lamp = POWER_MAX
     fit: Literal["crop", "pad"] = "crop"
     quality: Quality = "normal"
@@ -126,6 +129,7 @@ def of_films(made: FilmsMaking) -> Options:
         gap_mm=_unless(_FILMS.gap_mm, made.gap_mm),
         size_mm=_unless(_FILMS.size_mm, made.size_mm),
         assembly_mm=made.assembly_mm or None,
+        material=None if made.inks == "any" else io.read_dyes(made.inks),
         lamp_max=_unless(POWER_MAX, made.lamp),
         fit=made.fit,
         quality=_unless("normal", made.quality),
@@ -163,6 +167,12 @@ def option_words(said: Options) -> list[str]:
     usual = Options()
     pairs = [(each.name, getattr(said, each.name)) for each in fields(Options)]
     return [word for name, value in pairs if value != getattr(usual, name) for word in _typed(name, value)]
+
+
+def film_words(made: FilmsMaking) -> list[str]:
+    """The same of films."""
+    words = option_words(of_films(made.model_copy(update={"inks": "any"})))
+    return words if made.inks == "any" else [*words, "--material", made.inks]
 
 
 def shape_words(made: ShapeMaking) -> list[str]:

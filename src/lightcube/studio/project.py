@@ -208,7 +208,7 @@ class Project:
 def _checked(settings: Settings) -> Settings:
     """The same settings, every field looked at again; `InputError` says which cannot be."""
     try:
-        return Settings.model_validate(settings.model_dump())
+        return Settings.model_validate(settings.model_dump(warnings=False))
     except ValidationError as error:
         raise InputError(said(error)) from error
 

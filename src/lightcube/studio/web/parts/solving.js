@@ -25,7 +25,7 @@ export function mount(section, studio) {
     element("p", { class: "quiet", text: "The higher, the nearer the pictures come to what is wanted (decibels)." }));
   const turn = element("button", { type: "button", class: "switch", text: "Turn it", click: () => studio.goTo("turning") });
   section.append(element("div", { class: "row" }, ...Object.values(does), turn), bar, said, found, walls, more);
-  let [points, kind] = [[], studio.state.settings.kind];
+  let [points, kind] = [[], ""];
 
   function show(facts) {
     const { status, can, done, of, changed } = facts;
@@ -86,7 +86,6 @@ export function mount(section, studio) {
     if (points.length > 1) draw(curve, points);
   }
 
-  begin();
   return { update: (state) => show(state.solving) };
 }
 

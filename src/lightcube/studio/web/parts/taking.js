@@ -47,7 +47,8 @@ export function mount(section, studio) {
       cards.clear();
       named.hidden = things.every(({ name }) => name !== "square");
       groups.replaceChildren();
-      for (const [group, title] of GROUPS) {
+      const first = (group) => things.findIndex((thing) => thing.group === group);
+      for (const [group, title] of GROUPS.toSorted(([one], [other]) => first(one) - first(other))) {
         const made = things.filter((thing) => thing.group === group).map((thing) => {
           cards.set(thing.name, cardOf(thing));
           return cards.get(thing.name).card;

@@ -67,6 +67,9 @@ export const MAKINGS = {
       { name: "assembly_mm", label: "May lie off", low: 0, high: 1, step: 0.1, ends: ["laid exactly", "laid by hand"], text: (value) => (value ? `by ${value} mm` : "not at all") },
       LAMP,
     ],
-    choices: [FIT, CARE],
+    choices: [
+      { name: "inks", label: "Printed with", options: [["cmyk-film", "four inks"], ["cmy-film", "three inks"], ["any", "any colours"]] },
+      FIT, CARE,
+    ],
   },
 };
