@@ -22,7 +22,7 @@ from lightcube.studio.making import MOST_PICTURES, FilmsMaking, PlateMaking, Sha
 from lightcube.studio.pictures import Strip
 from lightcube.studio.project import MADE, KindName, Picture, Project, Settings
 from lightcube.studio.solver import Task
-from lightcube.verbs import reliefs
+from lightcube.verbs import hulls, reliefs
 from lightcube.viewer.label import Label
 from tests.cli.test_cli import run
 
@@ -158,6 +158,25 @@ def test_what_it_is_made_of_changes_with_what_counts_and_with_nothing_else() -> 
     room = Settings(kind="room", pictures=pictures)
     moved = room.model_copy(update={"parts": SMALL["parts"]})
     assert made_of(room) != made_of(moved)
+
+
+def test_pictures_stand_where_they_are_said_to(project: Project, desk: Any) -> None:
+    """Where the silhouettes and lamps of what is read are; nothing is said where something else decides."""
+    settings = become(project, desk, "shape")
+    wanted = hulls.read([str(project.folder / "pictures")], *KINDS["shape"].how(settings)[:2])
+    screens = wanted.silhouettes.rig.screens.names
+    assert KINDS["shape"].places(settings) == screens == ("front", "side", "top")
+    assert wanted.silhouettes.names == ("a", "b", "c")
+    best = settings.model_copy(update={"shape": settings.shape.model_copy(update={"placement": "best"})})
+    named = [
+        each.model_copy(update={"name": name}) for each, name in zip(settings.pictures, screens[::-1], strict=True)
+    ]
+    for other in (best, settings.model_copy(update={"pictures": tuple(named)})):
+        assert KINDS["shape"].places(other) == ()
+    assert KINDS["plate"].places(settings)[1] == "lamp on the left"
+    settings = become(project, desk, "room")
+    stage = io.read_stage(project.path(rooms.FILE))[0]
+    assert KINDS["room"].places(settings) == [f"{shot.screen} {shot.stop + 1}" for shot in stage.shots]
 
 
 @pytest.mark.parametrize("name", MADE_SOON)

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.studio.kept import linear, png
+from lightcube.studio.makers import without_commands
 from lightcube.studio.project import Crop
 from lightcube.verbs.options import Options
 
@@ -123,8 +124,9 @@ class Looking:
     def answer(self, asked: Asked) -> None:
         """Tell more and more of one question."""
         try:
-            for facts in asked.foretell(self, asked):
-                self.pipe.send(("forecast", {"number": asked.number, **facts}))
+            for told in asked.foretell(self, asked):
+                notes = without_commands(told.get("notes", ()))
+                self.pipe.send(("forecast", {"number": asked.number, **told, "notes": notes}))
                 self.give_way()
         except InputError as error:
             self.pipe.send(("forecast", {"number": asked.number, "stage": "failed", "sentence": f"{error}"}))

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from lightcube.errors import InputError
-from lightcube.solids.relief import MOST
+from lightcube.solids.relief import LAMPS_DEG, MOST, side_of
+from lightcube.solids.walls import WALLS
 from lightcube.studio import foretelling, makers, making
 from lightcube.studio.forecaster import Foretell, of_a_turntable
 from lightcube.studio.kept import dropped
 from lightcube.studio.project import MADE, PICTURES, KindName, Picture, Project, Settings
-from lightcube.studio.rooms import FILE, PART, pictures_of
+from lightcube.studio.rooms import FILE, PART, pictures_of, room_of
 from lightcube.studio.solver import Make, solve
 from lightcube.wording import counted
 
@@ -49,6 +50,8 @@ class Kind:
         What can be taken away, by the name of its table.
     also
         What else of the settings it depends on.
+    places
+        Where pictures stand, in their order, if it is known and worth a word.
     can_pause
         Whether what was begun can be gone on with.
     """
@@ -68,6 +71,7 @@ class Kind:
     things: Literal["cubes", "films", "solids", "plates"]
     source: str = PICTURES
     also: Callable[[Settings], Any] = lambda _: None
+    places: Callable[[Settings], Sequence[str]] = lambda _: ()
     are: Literal["is", "are"] = "is"
     can_pause: bool = True
 
@@ -80,6 +84,22 @@ class Kind:
 def _of_shape(settings: Settings) -> tuple[int, int]:
     """Three walls take a picture each."""
     return (3, 3) if settings.shape.where == "walls" else (2, making.MOST_PICTURES)
+
+
+def _on_walls(settings: Settings) -> Sequence[str]:
+    """On which wall a picture stands; whose names say so are put there by these."""
+    by_name = sorted(picture.name.lower() for picture in settings.pictures[: len(WALLS)]) == sorted(WALLS)
+    given = settings.shape.where == "walls" and settings.shape.placement == "given"
+    return WALLS if given and not by_name else ()
+
+
+def _in_room(settings: Settings) -> Sequence[str]:
+    """On which screen a picture stands, and at which stop where there are several."""
+    room = room_of(settings)
+    if room is None:
+        return ()
+    stops = [""] if len(room.stops_deg) == 1 else [f" {number + 1}" for number in range(len(room.stops_deg))]
+    return [f"{screen.name}{stop}" for screen in room.screens for stop in stops]
 
 
 #: The table, in the page's order.
@@ -112,6 +132,7 @@ KINDS: Mapping[KindName, Kind] = {
         words=lambda settings: making.shape_words(settings.shape),
         verb="hull",
         file="solid.shape.zarr",
+        places=_on_walls,
         make=makers.carve,
         foretell=foretelling.of_a_solid,
         things="solids",
@@ -128,6 +149,7 @@ KINDS: Mapping[KindName, Kind] = {
         words=lambda settings: making.plate_words(settings.plate),
         verb="relief",
         file="plate.relief.zarr",
+        places=lambda settings: () if settings.plate.colour else [f"lamp {side_of(each)}" for each in LAMPS_DEG],
         make=makers.press,
         foretell=foretelling.of_a_plate,
         things="plates",
@@ -165,6 +187,7 @@ KINDS: Mapping[KindName, Kind] = {
         things="cubes",
         source=FILE,
         also=lambda settings: settings.parts.get(PART),
+        places=_in_room,
     ),
 }
 #: What the page is told of a kind.

@@ -206,7 +206,8 @@ class Strip:
         samples = [{"name": name, "title": sample.title} for name, sample in SAMPLES.items()]
         settings = self._desk.project.settings
         least, most = kind_of(settings).counts(settings)
-        counts = {"used": len(used(settings)), "least": least, "takes": most}
+        places = list(kind_of(settings).places(settings))
+        counts = {"used": len(used(settings)), "least": least, "takes": most, "places": places}
         return {"missing": missing, "most": MOST_PICTURES, "samples": samples, **counts}
 
     def write(self) -> None:

@@ -8,7 +8,8 @@ import { wear } from "../tools/wearing.js";
 export function mount(section, studio) {
   wear("/web/choosing/choosing.css");
   const cards = new Map(studio.kinds.map((kind) => [kind.name, cardOf(kind, choose)]));
-  section.append(element("div", { class: "kinds", role: "radiogroup", "aria-label": "What will it be?" }, ...[...cards.values()].map((card) => card)));
+  const row = element("div", { class: "kinds", role: "radiogroup", "aria-label": "What will it be?" }, ...cards.values());
+  section.append(row);
   section.addEventListener("keydown", (event) => {
     const way = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 }[event.key];
     const all = [...cards.values()];
@@ -35,6 +36,8 @@ export function mount(section, studio) {
         card.setAttribute("aria-checked", String(name === settings.kind));
         card.tabIndex = name === settings.kind ? 0 : -1;
       }
+      const chosen = cards.get(settings.kind);
+      row.scrollLeft = chosen.offsetLeft - row.offsetLeft - (row.clientWidth - chosen.offsetWidth) / 2;
     },
   };
 }

@@ -92,14 +92,14 @@ function countedOf(count, { used, least, takes }, { kind }) {
 }
 
 /** Make the strip anew, and keep the focus where it was. */
-function fill(strip, settings, { missing, used }, studio) {
+function fill(strip, settings, known, studio) {
   const at = document.activeElement?.closest?.("[data-key]")?.dataset.key;
   const what = document.activeElement?.dataset?.does;
-  strip.replaceChildren(...settings.pictures.map((picture, number) => itemOf(picture, number, used, missing, studio)));
+  strip.replaceChildren(...settings.pictures.map((picture, number) => itemOf(picture, number, known, studio)));
   if (at !== undefined) strip.querySelector(`[data-key="${at}"] [data-does="${what}"]`)?.focus({ preventScroll: true });
 }
 
-function itemOf(picture, number, used, missing, studio) {
+function itemOf(picture, number, { used, missing, places }, studio) {
   const { key, name, crop } = picture;
   const change = (json) => studio.ask(`/api/pictures/${key}`, { method: "PATCH", json });
   const gone = missing.includes(key);
@@ -110,7 +110,7 @@ function itemOf(picture, number, used, missing, studio) {
     change: () => (named.value.trim() ? change({ name: named.value.trim() }) : (named.value = name)) });
   return element("li", { "data-key": key, "data-unused": number >= used, tabindex: "0", "data-does": "item",
     "aria-label": `Picture ${number + 1}, ${name}. Alt with the arrow keys moves it.` },
-    element("span", { class: "number", text: number + 1 }),
+    element("span", { class: "number", text: (number < used && places[number]) || number + 1 }),
     gone ? element("p", { class: "gone", text: "This picture vanished from the folder: remove it." }) : shown,
     named,
     element("div", { class: "deeds" },
