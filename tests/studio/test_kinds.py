@@ -206,6 +206,17 @@ def test_outlines_that_no_solid_casts_are_not_called_good(project: Project, desk
     assert {picture["mark"] for picture in bad["pictures"]} != {"good"}
 
 
+def test_a_doubt_about_a_picture_stands_beside_it(project: Project, desk: Any) -> None:
+    levels = np.full((40, 40, 3), 235, np.uint8)
+    levels[:30, 8:32] = 20  # cut off above
+    Image.fromarray(levels).save(project.path("dropped", f"{1:016x}.png"))
+    become(project, desk, "shape")
+    told = list(KINDS["shape"].foretell(Looking(), asked(project)))[-1]  # type: ignore[arg-type]
+    reasons = [picture["reason"] for picture in told["pictures"]]
+    assert reasons == ["", "its shape touches the border of its picture, and may be cut off there", ""]
+    assert not any(each.startswith("b: ") for each in told["notes"])
+
+
 @pytest.mark.parametrize("name", MADE_SOON)
 def test_it_is_made_as_its_command_makes_it_and_taken_away(
     name: KindName, project: Project, desk: Any, run: Callable[..., Any], tmp_path: Path

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.events import Progress, Said
 from lightcube.studio.forecaster import FIRST, Asked, Look, Looking, facts, looks_of, mark_of, told_of_cube
+from lightcube.studio.makers import names_of, without_commands
 
 #: Passes of films in a first look, cells along a picture, and voxels of a solid's block along its longest side in both.
 _PASSES, _CELLS, _VOXELS = 12, 32, (32, 56)
@@ -64,13 +65,22 @@ def of_a_solid(looking: Looking, asked: Asked) -> Iterator[dict[str, Any]]:
     for stage, most, way in tried:
         wanted = hulls.read([str(asked.source)], replace(options, n=min(most, options.n)), cutting)
         made = making.make(wanted, way, lambda *_: looking.give_way())
-        notes = [*hull_words.doubts(wanted), *making.in_words(made, is_placed=bool(wanted.placed))]
+        doubts = hull_words.doubts(wanted)
+        reasons = {name: _first_of(name, doubts) for name in made.given.names}
+        notes = [each for each in doubts if not any(each.startswith(f"{name}: ") for name in reasons)]
+        notes += making.in_words(made, is_placed=bool(wanted.placed))
         looks = [
-            Look(name, np.asarray(levels), _kept(overlap), f"{overlap:.0%} as drawn")
+            Look(name, np.asarray(levels), _kept(overlap), f"{overlap:.0%} as drawn", reasons[name])
             for name, levels, overlap in zip(made.given.names, tiles(made), made.overlaps, strict=True)
         ]
         yield facts(asked, looks, began, stage, notes if stage == "whole" else ())
     looking.show(asked, as_cube(made.shape))
+
+
+def _first_of(name: str, doubts: Sequence[str]) -> str:
+    """The first doubt about a picture, for people who have no terminal."""
+    about = [each.removeprefix(f"{name}: ") for each in doubts if each.startswith(f"{name}: ")]
+    return next(iter(without_commands(about)), "")
 
 
 def _kept(overlap: float) -> str:
@@ -104,7 +114,6 @@ def _of_plate(made: Any, scores: Any) -> list[Look]:
     from lightcube.drawing.relief_sheet import as_seen, in_words
     from lightcube.optics.transfer import to_uint8
     from lightcube.solids.relief_light import shown
-    from lightcube.studio.makers import names_of
 
     judged = [(scores["near_psnr_mean"], scores["psnr_mean"])]
     if not made.is_colour:
