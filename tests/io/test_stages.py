@@ -194,6 +194,19 @@ def test_equal_names_are_told_apart(folder: Path) -> None:
     assert read.names == tuple(shot.name for shot in stage.shots)
 
 
+def test_pictures_are_called_as_the_file_says_and_several_are_numbered(folder: Path) -> None:
+    pictures = [{"file": "one.png", "name": "spring", "screen": "wall"}]
+    pictures += [{"file": "one.png", "screen": "floor"}]
+    tables = MINIMAL | {"screen": [WALL, FLOOR], "picture": pictures}
+    assert read_stage(stage_file(folder, tables))[1].names == ("spring", "one")
+    (folder / "several").mkdir()
+    for number in range(2):
+        (folder / "several" / f"{number}.png").write_bytes((folder / "one.png").read_bytes())
+    several = {"file": "several", "name": "ball", "screen": "wall"}
+    tables = MINIMAL | {"turntable": {"count": 2}, "picture": [several]}
+    assert read_stage(stage_file(folder, tables))[1].names == ("ball 1", "ball 2")
+
+
 def test_pictures_are_looked_up_beside_the_file(folder: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     inner = folder / "far" / "inner"
     inner.mkdir(parents=True, exist_ok=True)

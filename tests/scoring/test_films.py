@@ -17,6 +17,7 @@ from lightcube.scoring.films import absorbance, coverage, disturbed
 from lightcube.scoring.metrics import score
 from lightcube.scoring.robust import robust
 from tests.helpers import films as plain
+from tests.helpers import prints
 
 NAMES = ["one", "two", "three"]
 
@@ -45,6 +46,13 @@ def test_films_that_are_not_off_cast_what_they_cast(cube: lc.Cube) -> None:
 def test_ink_of_another_strength_is_another_cube(cube: lc.Cube) -> None:
     weak = replace(cube, extinction=(0.9 * cube.extinction).astype(np.float32))
     np.testing.assert_allclose(shown(cube, ink=-0.1), np.stack(list(lc.cast(weak))), atol=1e-6)
+
+
+def test_films_of_inks_are_off_as_others_are(cube: lc.Cube) -> None:
+    """What is wrong is wrong with the absorbance, whatever it was mixed of."""
+    inked = prints.stack(3, inks=prints.INKS)
+    plain = replace(inked, amounts=None, dyes=None)
+    np.testing.assert_array_equal(shown(inked, ink=-0.1), shown(plain, ink=-0.1))
 
 
 def test_ghosts_are_light_that_is_spread_evenly(cube: lc.Cube) -> None:

@@ -13,6 +13,7 @@ pytest.importorskip("uvicorn", reason="the studio's extra is not installed")
 import uvicorn
 
 from lightcube.studio.app import make_app
+from lightcube.studio.kinds import KINDS
 from lightcube.studio.project import Project
 
 
@@ -117,7 +118,7 @@ def test_a_wall_out_of_the_light_is_red_and_comes_back(tab: Any) -> None:
     tab.mouse.up()
     tab.wait_for_selector(".troubles .bad:has-text('miss screen \\'side wall\\'')")
     assert tab.locator(".plan-of .handle.bad").count() == 4  # the lamp and the wall, in both plans
-    assert tab.is_disabled("text=Keep this room")
+    assert tab.is_disabled("text=Make a cube for this room")
     assert seen_by_axe(tab, "rooms") == []
     tab.click("text=Into the shadow")
     tab.wait_for_selector(".troubles .well")
@@ -134,3 +135,65 @@ def test_a_telephone_shows_it_all(tab: Any, door: str) -> None:
     tab.click(f"nav >> text={door}")
     tab.wait_for_selector("canvas.room, .troubles li")
     assert tab.evaluate("document.documentElement.scrollWidth") <= 360
+
+
+STATE = "fetch('/api/state').then((answer) => answer.json())"
+
+
+def heard_of(tab: Any, field: str, before: dict[str, Any]) -> set[str]:
+    """Which settings are others than they were."""
+    now = tab.evaluate(STATE)["settings"][field]
+    return {each for each in now if now[each] != before[field][each]}
+
+
+#: Chooses the last of some options, as a person does.
+CHOOSE_LAST = "(each) => { each.selectedIndex = each.length - 1; each.dispatchEvent(new Event('change')); }"
+
+
+def wait_until_heard(tab: Any, field: str, before: dict[str, Any], names: set[str]) -> None:
+    began = time.monotonic()
+    while not heard_of(tab, field, before) >= names:
+        assert time.monotonic() - began < 20, names - heard_of(tab, field, before)
+        tab.wait_for_timeout(50)
+
+
+def test_all_that_can_be_said_of_each_kind_is_heard(tab: Any) -> None:
+    """Each slider and choice moves the setting of its name, of the kind that is chosen, and the command with it."""
+    tab.get_by_role("button", name="Five letters").click()
+    tab.wait_for_selector(".strip li:nth-child(5)")
+    for name, kind in KINDS.items():
+        if name == "room":
+            continue
+        tab.get_by_role("radio", name=kind.title).click()
+        tab.wait_for_selector(f".kind[aria-checked=true]:has-text('{kind.title}')")
+        tab.wait_for_selector(f".command code:has-text('lightcube {kind.verb} ')")
+        before = tab.evaluate(STATE)["settings"]
+        controls = tab.locator(".sliders input:visible, .choices-of-making select:visible")
+        names = set(controls.evaluate_all("(all) => all.map((each) => each.name)"))
+        for each in names:
+            control = tab.locator(f".forecast [name={each}]")
+            if control.evaluate("(each) => each.tagName") == "INPUT":
+                control.press("Home")
+            else:
+                control.evaluate(
+                    "(each) => { each.selectedIndex = each.length - 1; each.dispatchEvent(new Event('change')); }"
+                )
+        wait_until_heard(tab, kind.settings, before, names)
+        after = tab.evaluate(STATE)["settings"]
+        assert heard_of(tab, kind.settings, before) == names
+        assert {each for each in after if after[each] != before[each]} == {kind.settings}
+        assert tab.locator(".said .bad").count() == 0, tab.locator(".said").inner_text()
+    assert seen_by_axe(tab, "choosing") == []
+    assert seen_by_axe(tab, "forecast") == []
+    tab.get_by_role("radio", name="A light cube").press("ArrowLeft")
+    assert tab.evaluate("document.activeElement.textContent").startswith("A cube in your room")
+
+
+def test_a_room_becomes_a_cube_in_the_studio(tab: Any) -> None:
+    tab.click("nav >> text=Room")
+    tab.click("text=Wall and floor")
+    tab.wait_for_selector(".troubles .well")
+    tab.click("text=Make a cube for this room")
+    tab.wait_for_selector(".kind[aria-checked=true]:has-text('A cube in your room')")
+    tab.wait_for_selector(".command code:has-text('room.toml')")
+    assert tab.is_visible("#part-forecast")

@@ -17,8 +17,9 @@ from hypothesis import strategies as st
 
 from lightcube.cli import main
 from lightcube.errors import InputError
-from lightcube.studio.making import command_of, options_of, words_of
-from lightcube.studio.project import Crop, Making, Picture, Project, Settings, toml_text
+from lightcube.studio.kinds import command_of
+from lightcube.studio.making import Making, of_cube, option_words
+from lightcube.studio.project import Crop, Picture, Project, Settings, toml_text
 from lightcube.verbs.options import Options
 
 NAMES = (
@@ -165,12 +166,15 @@ def solve_command() -> Any:
         mat=st.sampled_from(["dark", "grey", "light", "none"]),
         order=st.sampled_from(["given", "best"]),
         quality=st.sampled_from(["draft", "normal", "best"]),
+        stands=st.sampled_from(["air", "block", "cylinder"]),
     )
 )
 def test_the_command_says_what_the_sliders_say(making: Making) -> None:
     """Read again as the command line reads it, the words are the very options."""
-    typed = command_of(Path("/a folder"), making).split(" ", 2)[2]
+    typed = command_of(Path("/a folder"), Settings(making=making)).split(" ", 2)[2]
     assert typed.startswith("'/a folder/pictures' -o '/a folder/made/cube.zarr'")
-    given = solve_command().make_context("solve", ["pictures", "-o", "cube.zarr", *words_of(making)]).params
+    words = ["pictures", "-o", "cube.zarr", *option_words(of_cube(making))]
+    given = solve_command().make_context("solve", words).params
+    given["ior"] = None if given["ior"] is None else (float(given["ior"]),)
     said = Options(**{name: value for name, value in given.items() if name in Options.__dataclass_fields__})
-    assert said == options_of(making)
+    assert said == of_cube(making)

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from lightcube import io
 from lightcube.studio import rooms
 from lightcube.studio.desk import Desk
-from lightcube.studio.project import PICTURES
+from lightcube.studio.project import PICTURES, Picture
 
 #: What the `client` asks.
 PART = rooms
@@ -82,20 +82,24 @@ def test_what_cannot_stand_is_a_sentence(client: TestClient, change: dict[str, A
     assert refused.json()["sentence"]
 
 
-def test_the_file_that_is_kept_is_the_same_stage(client: TestClient, desk: Desk) -> None:
-    refused = client.post("/api/rooms/keep", json=a_room())
-    assert refused.json()["sentence"].startswith("this room shows 4 pictures, and the project has 0")
+def test_a_room_that_is_kept_makes_the_project_a_cube_for_it_and_its_file_is_the_same_stage(
+    client: TestClient, desk: Desk
+) -> None:
+    pictures = tuple(Picture(key=f"{number:016x}", name=f"n{number}") for number in range(5))
+    desk.project.change(lambda before: before.model_copy(update={"pictures": pictures}))
     for number in range(5):
-        Image.fromarray(np.full((8, 8, 3), 40 * number, np.uint8)).save(desk.project.path(PICTURES, f"{number:02}.png"))
+        levels = np.full((8, 8, 3), 40 * number, np.uint8)
+        Image.fromarray(levels).save(desk.project.path(PICTURES, f"{number + 1:04d}.png"))
     assert client.post("/api/rooms/keep", json=a_room()).status_code == 200
-    stage, pictures, _ = io.read_stage(desk.project.path(rooms.FILE))
-    wanted = rooms.stage_of(rooms.Room(**a_room()))
-    assert (stage.lamps, stage.screens, stage.stops_deg) == (wanted.lamps, wanted.screens, wanted.stops_deg)
+    assert (desk.project.settings.kind, rooms.pictures_of(desk.project.settings)) == ("room", 4)
+    stage, read, _ = io.read_stage(desk.project.path(rooms.FILE))
+    wanted = rooms.stage_of(rooms.Room(**a_room()), 64)
+    assert (stage.grid, stage.lamps, stage.screens) == (wanted.grid, wanted.lamps, wanted.screens)
     assert [(shot.screen, shot.lamps, shot.stop) for shot in stage.shots] == [
         (shot.screen, shot.lamps, shot.stop) for shot in wanted.shots
     ]
-    assert len(pictures) == 4
-    assert pictures.images[1].mean() > pictures.images[0].mean()
+    assert read.names == ("n0", "n1", "n2", "n3")
+    assert read.images[1].mean() > read.images[0].mean()
 
 
 def test_a_room_that_cannot_be_is_not_kept(client: TestClient, desk: Desk) -> None:

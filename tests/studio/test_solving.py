@@ -102,6 +102,28 @@ def test_paused_it_goes_on_and_stopped_it_is_kept(client: TestClient) -> None:
     assert not begun(client)
 
 
+def test_a_plate_is_stopped_and_what_was_there_stays(client: TestClient) -> None:
+    client.patch("/api/settings", json={"kind": "plate", "plate": {"columns": 32, "quality": "draft"}})
+    assert client.post("/api/solving/start").json()["status"] == "running"
+    until(lambda: status(client) == "done")
+    made = client.get("/api/solving").json()
+    assert (len(made["pictures"]), made["psnr"]) == (4, None)
+    assert any("lamp on the right" in each for each in made["said"])
+    assert client.get("/api/taking").json()["has_cube"]
+    client.patch("/api/settings", json={"plate": {"columns": 256, "quality": "best"}})
+    assert client.post("/api/solving/start").json()["can"] == ["stop"]
+    until(lambda: client.get("/api/solving").json()["done"])
+    assert client.post("/api/solving/pause").status_code == 400
+    client.post("/api/solving/stop")
+    until(lambda: status(client) == "done")
+    assert client.get("/api/solving").json()["changed"]
+    plate = io.read_relief(Path(client.get("/api/state").json()["folder"]) / "made" / "plate.relief.zarr")
+    assert plate.heights_px.shape == (32, 32)
+    client.patch("/api/settings", json={"kind": "cube"})
+    assert status(client) == "idle"
+    assert not client.get("/api/taking").json()["has_cube"]
+
+
 @pytest.mark.skipif(os.name != "posix", reason="processes are killed by signals")
 def test_a_solve_that_is_killed_goes_on(client: TestClient) -> None:
     client.patch("/api/settings", json={"making": LONG})
@@ -123,9 +145,9 @@ def test_a_studio_that_is_killed_goes_on_where_it_was(client: TestClient, tmp_pa
     client.patch("/api/settings", json={"making": LONG})
     client.post("/api/solving/start")
     until(lambda: begun(client))
-    kept = (folder / "made" / "solving.json").read_bytes()
+    kept = (folder / "made" / "cube.json").read_bytes()
     client.__exit__()
-    (folder / "made" / "solving.json").write_bytes(kept)
+    (folder / "made" / "cube.json").write_bytes(kept)
     with opened(folder) as again:
         assert again.get("/api/solving").json()["status"] == "running"
         until(lambda: again.get("/api/solving").json()["done"])
@@ -155,4 +177,4 @@ def test_what_cannot_be_done_now_is_a_sentence(client: TestClient, deed: str) ->
 
 def test_one_picture_is_no_cube(client: TestClient) -> None:
     client.put("/api/pictures", json={"keys": []})
-    assert "at least two pictures" in client.post("/api/solving/start").json()["sentence"]
+    assert "at least 2 pictures, and there is none" in client.post("/api/solving/start").json()["sentence"]

@@ -16,10 +16,11 @@ from tests.helpers.made import a_cube
 
 #: What the `client` asks.
 PART = taking
+CUBE = "cube.zarr"
 
 
 def with_cube(desk: Desk) -> None:
-    lc.save(a_cube((8, 8, 8)), desk.project.path(MADE, taking.CUBE))
+    lc.save(a_cube((8, 8, 8)), desk.project.path(MADE, CUBE))
 
 
 def finished(client: TestClient, name: str) -> dict[str, Any]:
@@ -35,7 +36,7 @@ def finished(client: TestClient, name: str) -> dict[str, Any]:
 def test_without_a_cube_nothing_is_made(client: TestClient) -> None:
     assert client.get("/api/taking").json()["has_cube"] is False
     refused = client.post("/api/taking/page", json={})
-    assert (refused.status_code, refused.json()["sentence"]) == (400, "there is no cube yet: make one first")
+    assert (refused.status_code, refused.json()["sentence"]) == (400, "there is none of the cube yet: make it first")
 
 
 @pytest.mark.parametrize("name", ["page", "sheet", "cube", "shell", "points", "volume", "schedule"])
@@ -48,7 +49,7 @@ def test_what_is_made_says_what_it_is_worth_and_is_saved(client: TestClient, des
     assert thing["made"]["said"]
     saved = client.get(f"/api/taking/{name}/file")
     assert len(saved.content) == thing["made"]["bytes"] > 0
-    assert thing["made"]["file"] == f"Zoë-we-{name}.{away.THINGS[name].suffix}"
+    assert thing["made"]["file"] == f"Zoë-we-{name}.{away.things('cubes')[name].suffix}"
     assert {path.name for path in desk.project.folder.iterdir() if not path.name.startswith(".")} <= {
         *("dropped", "pictures", "made", "project.toml", "history.json")
     }
@@ -63,7 +64,7 @@ def test_what_was_made_is_known_when_the_studio_is_started_again_and_when_it_is_
     again = taking.Taking(desk)
     (thing,) = (each for each in again.state()["things"] if each["name"] == "cube")
     assert thing["made"]["is_old"] is False
-    lc.save(a_cube((8, 8, 8), seed=3), desk.project.path(MADE, taking.CUBE), overwrite=True)
+    lc.save(a_cube((8, 8, 8), seed=3), desk.project.path(MADE, CUBE), overwrite=True)
     (thing,) = (each for each in again.state()["things"] if each["name"] == "cube")
     assert thing["made"]["is_old"] is True
 
@@ -75,7 +76,7 @@ def test_what_is_stopped_leaves_nothing(client: TestClient, desk: Desk) -> None:
     client.post("/api/taking/stop")
     thing = finished(client, "wide")
     assert (thing["made"], thing["failed"]) == (None, "")
-    assert not list(desk.project.path(MADE, "away").iterdir())
+    assert not list(desk.project.path(MADE, "away").rglob("*.*"))
 
 
 @pytest.mark.parametrize("name", ["nothing", "..", "page.html", "%2e%2e"])
@@ -87,7 +88,7 @@ def test_no_other_file_is_made_or_given(client: TestClient, desk: Desk, name: st
 
 def test_what_fails_says_why(client: TestClient, desk: Desk) -> None:
     with_cube(desk)
-    next(desk.project.path(MADE, taking.CUBE).rglob("c/*/*/*/*")).write_bytes(b"no")
+    next(desk.project.path(MADE, CUBE).rglob("c/*/*/*/*")).write_bytes(b"no")
     client.post("/api/taking/sheet", json={})
     thing = finished(client, "sheet")
     assert thing["made"] is None

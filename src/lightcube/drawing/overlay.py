@@ -25,14 +25,19 @@ def overlays(found: Repaired, title: str = "") -> NDArray[np.uint8]:
     -------
     ``(row, column, 3)`` 8-bit sRGB.
     """
-    windows = FINE * found.given.rig.stops.window
-    pairs = zip(found.given.inside, found.shape.silhouettes.inside, windows, strict=True)
-    tiles = [tile(given[:rows, :columns], cast[:rows, :columns]) for given, cast, (rows, columns) in pairs]
-    high, wide = (max(each.size[axis] for each in tiles) for axis in (1, 0))
+    drawn = tiles(found)
+    high, wide = (max(each.size[axis] for each in drawn) for axis in (1, 0))
     said = [(name, f"overlap {overlap:.0%}") for name, overlap in zip(found.given.names, found.overlaps, strict=True)]
     how = "dark: given and cast; orange: given, not cast; blue: cast beside it"
-    head = title or f"{counted(len(tiles), 'silhouette')}, outlines moved by {found.moved_px:.1f} pixels"
-    return np.asarray(laid_out([_in_middle(each, wide, high) for each in tiles], said, (head, how)))
+    head = title or f"{counted(len(drawn), 'silhouette')}, outlines moved by {found.moved_px:.1f} pixels"
+    return np.asarray(laid_out([_in_middle(each, wide, high) for each in drawn], said, (head, how)))
+
+
+def tiles(found: Repaired) -> list[Image.Image]:
+    """Each silhouette as given over what is cast in its place."""
+    windows = FINE * found.given.rig.stops.window
+    pairs = zip(found.given.inside, found.shape.silhouettes.inside, windows, strict=True)
+    return [tile(given[:rows, :columns], cast[:rows, :columns]) for given, cast, (rows, columns) in pairs]
 
 
 def tile(given: Flags, cast: Flags) -> Image.Image:

@@ -125,6 +125,7 @@ class PictureTable(Table):
     """One picture for the stop number `stop`, or several for it and the following ones, or one each for `stops`."""
 
     file: Line
+    name: Name | None = None
     screen: Name
     lamps: tuple[Name, ...] | None = None
     stop: Count = 1
@@ -136,6 +137,12 @@ class PictureTable(Table):
         if {"stop", "stops"} <= self.model_fields_set:
             raise PydanticCustomError("stops", "stop and stops are both given: use one of the two")
         return self
+
+    def names_of(self, read: tuple[str, ...]) -> Sequence[str]:
+        """What pictures that were read with these names are called."""
+        if self.name is None:
+            return read
+        return [self.name] if len(read) == 1 else [f"{self.name} {number + 1}" for number in range(len(read))]
 
     def stops_of(self, count: int, last: int) -> Sequence[int]:
         """Numbers of the stops, from 1 to `last`, of so many pictures; `InputError` where they do not come out."""

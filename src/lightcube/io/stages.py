@@ -77,13 +77,15 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
         with _about(f"{file.name}: picture {number}"):
             pictures = read_pictures(file.parent / table.file, transfer=transfer, least=1)
             stops = table.stops_of(len(pictures), len(stage.stops_deg))
-        shots += [replace(first, name=name, stop=stop - 1) for name, stop in zip(pictures.names, stops, strict=True)]
+        named = zip(table.names_of(pictures.names), stops, strict=True)
+        shots += [replace(first, name=name, stop=stop - 1) for name, stop in named]
         images += pictures.images
         opacities += pictures.opacities
         fits += [table.fit] * len(pictures)
     shots = _told_apart(shots)
-    named = Pictures(tuple(images), tuple(shot.name for shot in shots), transfer=transfer, opacities=tuple(opacities))
-    return replace(stage, shots=tuple(shots)), named, tuple(fits)
+    names = tuple(shot.name for shot in shots)
+    given = Pictures(tuple(images), names, transfer=transfer, opacities=tuple(opacities))
+    return replace(stage, shots=tuple(shots)), given, tuple(fits)
 
 
 def _read_attenuator(file: Path, said: AttenuatorFile, transfer: Transfer) -> tuple[Stage, Pictures, tuple[Fit, ...]]:

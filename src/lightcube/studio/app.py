@@ -20,10 +20,12 @@ from lightcube.errors import InputError, shown
 from lightcube.scene.description import sentence
 from lightcube.studio.desk import Desk
 from lightcube.studio.guard import LOOPBACK, Guard
-from lightcube.studio.project import Making, Project
+from lightcube.studio.kinds import described
+from lightcube.studio.project import MAKINGS, Project
 
 #: The parts of the page in their order: name, title, and which door it stands behind.
 PARTS = (
+    ("choosing", "What will it be?", "make"),
     ("pictures", "Pictures", "make"),
     ("forecast", "Forecast", "make"),
     ("solving", "Make", "make"),
@@ -38,8 +40,12 @@ _KINDS = {"html": "text/html", "css": "text/css", "js": "text/javascript", "svg"
 class _Change(BaseModel):
     """What is changed of the settings; what is not said stays."""
 
+    kind: str | None = None
     title: str | None = None
     making: dict[str, Any] | None = None
+    shape: dict[str, Any] | None = None
+    plate: dict[str, Any] | None = None
+    films: dict[str, Any] | None = None
     part: str | None = None
     kept: Any = None
 
@@ -83,17 +89,22 @@ def _own(desk: Desk) -> APIRouter:
         """How all stands."""
         return desk.state()
 
+    @router.get("/kinds")
+    def kinds() -> list[dict[str, Any]]:
+        """What a project can become."""
+        return described()
+
     @router.patch("/settings")
     def settings(change: _Change) -> dict[str, Any]:
-        """Change what is said of the cube, of its title, or of what a part keeps."""
+        """Change what is to be made, how, its title, or what a part keeps."""
         asked = change.model_dump(exclude_unset=True)
 
         def changed(before: Any) -> Any:
-            update: dict[str, Any] = {}
-            if asked.get("title") is not None:
-                update["title"] = asked["title"]
-            if asked.get("making") is not None:
-                update["making"] = Making.model_construct(**(before.making.model_dump() | asked["making"]))
+            update: dict[str, Any] = {name: asked[name] for name in ("kind", "title") if asked.get(name) is not None}
+            for name in MAKINGS:
+                if asked.get(name) is not None:
+                    made = getattr(before, name)
+                    update[name] = type(made).model_construct(**(made.model_dump() | asked[name]))
             if asked.get("part") is not None:
                 update["parts"] = before.parts | {asked["part"]: asked.get("kept")}
             return before.model_copy(update=update)

@@ -1,214 +1,42 @@
-"""What can be made of a cube to be taken away: a table from a name to what makes the file and says how good it is."""
+"""What can be taken away of each kind of thing, and what makes its file and says how good it is."""
 
 from __future__ import annotations
 
-import shutil
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 from lightcube import io
-from lightcube.drawing import films
-from lightcube.events import Tell, counting
-from lightcube.fabrication import exporting as fabrication
-from lightcube.fabrication.sidecar import Kind
-from lightcube.fabrication.thinning import as_films
-from lightcube.io._places import place
+from lightcube.events import Tell
 from lightcube.jobs.reading import load
-from lightcube.optics.cube import Cube
-from lightcube.optics.stack import Stack
-from lightcube.scoring.metrics import mark
-from lightcube.verbs import exporting, reporting, scoring, viewing
-from lightcube.verbs.refitting import wanted_of
+from lightcube.studio.away_cubes import CUBES, FILMS
+from lightcube.studio.away_solids import PLATES, SOLIDS
+from lightcube.studio.makers import without_commands
+from lightcube.studio.offered import Order, Thing
 from lightcube.viewer.label import Label
-from lightcube.viewer.page import page
 
-#: Films that a cube is made of where nothing is said.
-FILMS = 5
-
-
-@dataclass(frozen=True)
-class Order:
-    """What is asked for: the cube, where its file lies, the file to be made, its label, and what is chosen."""
-
-    cube: Cube
-    source: Path
-    target: Path
-    label: Label
-    captions: bool
-    tell: Tell
-
-
-@dataclass(frozen=True)
-class Thing:
-    """Something to be taken away.
-
-    Parameters
-    ----------
-    title, said
-        For people: what it is called, what it is for.
-    suffix
-        Of its file.
-    group
-        Which of the page's rows it stands in.
-    make
-        Makes the file and returns sentences: how good it is, and what is to be known of it.
-    """
-
-    title: str
-    said: str
-    suffix: str
-    group: Literal["show", "know", "make"]
-    make: Callable[[Order], list[str]]
-
-
-def of_pictures(cube: Cube) -> str:
-    """How good the pictures of a cube are, in a sentence."""
-    mean, least = cube.scores.get("psnr_mean"), cube.scores.get("psnr_min")
-    if not isinstance(mean, float) or not isinstance(least, float):
-        return "how good its pictures are is not known: the cube keeps no scores"
-    return f"its pictures are {mark(mean)}: {mean:.1f} dB on average, the worst {least:.1f}"
-
-
-def _page(order: Order) -> list[str]:
-    """The page in which the cube is turned."""
-    cube = order.cube
-    if isinstance(cube.grid, Stack):
-        text, exact = page(cube, order.label), "its light is cast exactly"
-    else:
-        made = viewing.page(cube, order.label, order.tell)
-        text, exact = made.text, f"its shadows are off by {made.worst_levels:.1f} of 255 levels at most"
-    io.Output(order.target, "page", overwrite=True).write(text)
-    return [of_pictures(cube), exact, "it opens in any browser, without a network: mail it, or put it on a stick"]
-
-
-def _movie(shape: Literal["square", "portrait", "wide"] | None) -> Callable[[Order], list[str]]:
-    """A movie of the pictures in a shape, or of the room."""
-
-    def make(order: Order) -> list[str]:
-        cube = order.cube
-        if shape is None:
-            film = films.film(cube, view="room")
-        else:
-            film = films.film(cube, format=shape, captions=order.captions)
-        io.Output(order.target, "pictures", overwrite=True).write(
-            _counted(film, len(film), order.tell),
-            count=len(film),
-            transfer=cube.transfer,
-            fps=film.fps,
-            scale=1,
-            shared=True,
-            views=film.show.views,
-            names=film.show.names,
-        )
-        return [each for each in (of_pictures(cube), film.said, film.warning) if each]
-
-    return make
-
-
-def _counted(frames: films.Film, count: int, tell: Tell) -> Iterator[NDArray[np.float32] | NDArray[np.uint8]]:
-    """Frames as they are, each told of."""
-    advance = counting(tell)
-    for number, frame in enumerate(frames):
-        yield frame
-        advance(number + 1, count)
-
-
-def _report(order: Order) -> list[str]:
-    """All that is known of the cube."""
-    made = reporting.report(order.cube, str(order.source), None, order.tell, order.label)
-    io.Output(order.target, "page", overwrite=True).write(made.text)
-    return [
-        of_pictures(order.cube),
-        "pictures beside what was wanted, curves, and the command that makes the cube again",
-    ]
-
-
-def _sheet(order: Order) -> list[str]:
-    """Each picture beside what was wanted."""
-    targets = wanted_of(order.cube, None)
-    found = scoring.score(order.cube, targets, order.tell)
-    io.Output(order.target, "picture", overwrite=True).write(
-        scoring.sheet(order.cube, targets, found, order.label.title)
-    )
-    return [of_pictures(order.cube)]
-
-
-def _itself(order: Order) -> list[str]:
-    """The cube in one file."""
-    io.Output(order.target, "cube", overwrite=True).write(order.cube)
-    return [of_pictures(order.cube), "all of it, bit for bit: lightcube opens it again"]
-
-
-def _exported(kind: Kind, options: Mapping[str, Any] | None = None) -> Callable[[Order], list[str]]:
-    """A file for printers, lasers and other programs."""
-
-    def make(order: Order) -> list[str]:
-        return _export(order, order.cube, kind, options or {}, order.target)
-
-    return make
-
-
-def _films(order: Order) -> list[str]:
-    """The cube solved anew as a few films, on pages to be printed."""
-    stack = order.cube if isinstance(order.cube.grid, Stack) else as_films(order.cube, FILMS, tell=order.tell)
-    said = [] if stack is order.cube else exporting.said_of_films(stack)
-    return [*said, *_export(order, stack, "film", {}, order.target)]
-
-
-def _slices(order: Order) -> list[str]:
-    """A folder of slices, in one file."""
-    folder = order.target.with_suffix("")
-    try:
-        said = _export(order, order.cube, "polyjet", {"resins": io.read_dyes("polyjet")}, folder)
-        shutil.make_archive(str(folder), "zip", folder)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-    return said
-
-
-def _export(order: Order, cube: Cube, kind: Kind, options: Mapping[str, Any], target: Path) -> list[str]:
-    """Write a file, and say what it casts."""
-    at = place(target)
-    fabrication.check(at, kind, overwrite=True)
-    planned = fabrication.plan(cube, at, kind, options)
-    document = fabrication.write(cube, at, kind, planned, True, order.tell, is_scored=True, made_from=None)
-    return exporting.told(document)
-
-
-#: What can be taken away, in the page's order.
-THINGS: Mapping[str, Thing] = {
-    "page": Thing(
-        "A page", "The cube to be turned by hand, in one file that opens in any browser.", "html", "show", _page
-    ),
-    "square": Thing("A square movie", "For messages and posts.", "mp4", "show", _movie("square")),
-    "portrait": Thing("An upright movie", "For telephones and stories.", "mp4", "show", _movie("portrait")),
-    "wide": Thing("A wide movie", "For screens and projectors.", "mp4", "show", _movie("wide")),
-    "room": Thing("A movie of the room", "Lamp, cube and walls, as the table turns.", "mp4", "show", _movie(None)),
-    "sheet": Thing("A sheet", "Each picture beside what was wanted.", "png", "know", _sheet),
-    "report": Thing("A report", "All that is known of the cube, to keep and to print.", "html", "know", _report),
-    "cube": Thing("The cube itself", "In one file, to go on with.", "zarr.zip", "know", _itself),
-    "films": Thing("Films", f"The cube as {FILMS} printed transparencies, on pages.", "pdf", "make", _films),
-    "shell": Thing("Shells", "Surfaces around what is darkest, for a 3-D printer.", "3mf", "make", _exported("shell")),
-    "slices": Thing("Slices", "For a printer of coloured droplets (PolyJet).", "zip", "make", _slices),
-    "points": Thing("Points", "For a laser that marks glass inside.", "ply", "make", _exported("points")),
-    "blender": Thing("A volume for Blender", "OpenVDB, in metres.", "vdb", "make", _exported("volume", {"unit": "m"})),
-    "volume": Thing("A volume", "NRRD, for 3-D Slicer and others.", "nrrd", "make", _exported("volume")),
-    "paraview": Thing("A volume for ParaView", "VTI.", "vti", "make", _exported("volume")),
-    "schedule": Thing(
-        "A schedule", "When the table turns, and how bright lamps are.", "csv", "make", _exported("schedule")
-    ),
+#: What is offered, in the page's order, and what reads the thing that it is made of.
+OFFERS: Mapping[str, tuple[Mapping[str, Thing[Any]], Callable[[str], Any]]] = {
+    "cubes": (CUBES, load),
+    "films": (FILMS, load),
+    "solids": (SOLIDS, io.read_shape),
+    "plates": (PLATES, io.read_relief),
 }
 
 
-def make(name: str, source: Path, target: Path, label: Label, tell: Tell, *, captions: bool) -> Sequence[str]:
-    """Make a thing's file of a cube's file; returns what is to be said of it. `InputError` where it cannot be."""
+def things(offer: str) -> Mapping[str, Thing[Any]]:
+    """What can be taken away, by name."""
+    return OFFERS[offer][0]
+
+
+def make(
+    offer: str, name: str, source: Path, target: Path, label: Label, tell: Tell, *, captions: bool
+) -> Sequence[str]:
+    """Make a thing's file of another one; returns what is to be said of it. `InputError` where it cannot be."""
+    offered, read = OFFERS[offer]
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
-        said = THINGS[name].make(Order(load(str(source)), source, target, label, captions, tell))
-    return [*said, *(f"{each.message}" for each in warned if issubclass(each.category, UserWarning))]
+        said = offered[name].make(Order(read(str(source)), source, target, label, captions, tell))
+    noticed = (f"{each.message}" for each in warned if issubclass(each.category, UserWarning))
+    return without_commands([*said, *noticed])

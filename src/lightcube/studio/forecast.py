@@ -14,7 +14,7 @@ from fastapi import APIRouter
 from lightcube.studio import forecaster
 from lightcube.studio.desk import Desk
 from lightcube.studio.kept import dropped
-from lightcube.studio.making import options_of
+from lightcube.studio.kinds import kind_of, made_of, used
 
 
 def router(desk: Desk) -> APIRouter:
@@ -35,6 +35,10 @@ def router(desk: Desk) -> APIRouter:
     return routes
 
 
+#: What is told of pictures of some kinds, and at some stages, only.
+_OF_CUBES = {"costs", "full", "psnr", "angles_deg", "voxels"}
+
+
 class Forecast:
     """The forecast of a desk's project."""
 
@@ -42,9 +46,9 @@ class Forecast:
         self._desk, self._lock = desk, threading.RLock()
         self._process: SpawnProcess | None = None
         self._pipe: Connection | None = None
-        self._number, self._asked = 0, ""
+        self._number, self._asked, self._kind = 0, "", ""
         self._parts: dict[str, bytes] = {}
-        self._facts: dict[str, Any] = {"status": "none", "pictures": []}
+        self._facts: dict[str, Any] = {"status": "none", "pictures": [], "notes": []}
 
     def described(self) -> dict[str, Any]:
         """What is told, as plain JSON."""
@@ -69,26 +73,32 @@ class Forecast:
                 return
             project = self._desk.project
             settings = project.settings
-            used = settings.used
-            files = tuple(dropped(project, picture.key) for picture in used)
-            if len(used) < 2 or not all(file.is_file() for file in files):
+            kind, pictures = kind_of(settings), used(settings)
+            files = tuple(dropped(project, picture.key) for picture in pictures)
+            if len(pictures) < max(1, kind.counts(settings)[0]) or not all(file.is_file() for file in files):
                 self._asked = ""
                 self._number += 1
                 self._parts = {}
-                self._set(status="none", pictures=[])
+                self._set(status="none", pictures=[], notes=[])
                 return
             question = forecaster.Asked(
                 self._number + 1,
-                tuple(picture.key for picture in used),
-                tuple(picture.name for picture in used),
+                kind.foretell,
+                kind.how(settings),
+                tuple(picture.key for picture in pictures),
+                tuple(picture.name for picture in pictures),
                 files,
-                tuple(picture.crop for picture in used),
-                options_of(settings.making),
+                tuple(picture.crop for picture in pictures),
+                project.folder / kind.source,
                 settings.title,
             )
-            if repr((question.keys, question.names, question.crops, question.options)) == self._asked:
+            about = made_of(settings)
+            if about == self._asked:
                 return
-            self._asked = repr((question.keys, question.names, question.crops, question.options))
+            if settings.kind != self._kind:
+                self._kind, self._parts = settings.kind, {}
+                self._set(pictures=[], notes=[])
+            self._asked = about
             self._number = question.number
             self._set(status="compiling" if self._facts["status"] == "compiling" else "looking")
             if self._process is None:
@@ -129,7 +139,7 @@ class Forecast:
             self._set(status="compiling")
         elif what == "ready" and self._facts["status"] == "compiling":
             self._set(status="looking" if self._asked else "none")
-        elif what == "cube":
+        elif what == "cube" and facts.pop("number") == self._number:
             self._parts = facts
             self._desk.hub.tell("forecast", {"cube": True})
         elif what == "forecast" and facts["number"] == self._number:
@@ -138,6 +148,7 @@ class Forecast:
 
     def _set(self, **facts: Any) -> None:
         self._facts |= facts
-        if "pictures" in facts and "costs" not in facts:
-            self._facts.pop("costs", None)
+        if "pictures" in facts:  # what was told of others is not of these
+            for name in _OF_CUBES - set(facts):
+                self._facts.pop(name, None)
         self._desk.hub.tell("forecast", self._facts)

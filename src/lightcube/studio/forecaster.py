@@ -1,4 +1,7 @@
-"""The forecast, in a process of its own: small cubes are solved, and tell how each picture's wall will look."""
+"""The forecast, in a process of its own: small cubes are solved, and tell how each picture's wall will look.
+
+What is told of other things than cubes on a turntable stands in `lightcube.studio.foretelling`.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,9 @@ import signal
 import time
 import warnings
 from base64 import b64encode
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -20,11 +23,12 @@ from numpy.typing import NDArray
 
 from lightcube.errors import InputError
 from lightcube.studio.kept import linear, png
+from lightcube.studio.makers import without_commands
 from lightcube.studio.project import Crop
 from lightcube.verbs.options import Options
 
 #: Voxels across and passes of the first look, and of cubes that lack a picture.
-_FIRST, _LACKING = (20, 8), (16, 10)
+FIRST, _LACKING = (20, 8), (16, 10)
 #: Of a picture as it is read, pixels along a side.
 _SIDE = 200
 #: So much more than the picture is shown of its wall, on all sides.
@@ -35,21 +39,46 @@ _EMPTY_DB, _FULL_DB = 52.0, 26.0
 _MOST_LACKING = 16
 #: Seconds without another question before what takes long is begun.
 _PAUSE_S = 0.8
-#: A picture costs the others something where they gain so many dB without it.
-_COSTS_DB = 0.7
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What a forecast is asked for: a number, the pictures' keys, names, files and crops, and how the cube is made."""
+    """What a forecast is asked for.
+
+    Parameters
+    ----------
+    number
+        Later questions have larger ones.
+    foretell, how
+        Who answers for what is to be made, and how that is made, as its verb takes it.
+    keys, names, files, crops
+        Of the pictures as they were dropped.
+    source
+        The same as the verb reads them.
+    title
+        What it will be called.
+    """
 
     number: int
+    foretell: Foretell
+    how: Any
     keys: tuple[str, ...]
     names: tuple[str, ...]
     files: tuple[Path, ...]
     crops: tuple[Crop, ...]
-    options: Options
+    source: Path
     title: str
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a picture's wall will look, in 8-bit levels, how good that is, as a mark and in figures, and why."""
+
+    name: str
+    levels: NDArray[np.uint8]
+    mark: str
+    worth: str
+    reason: str = ""
 
 
 class _Newer(Exception):  # noqa: N818 - nothing is wrong
@@ -62,7 +91,7 @@ def run(pipe: Connection) -> None:
     warnings.simplefilter("ignore")
     with suppress(AttributeError, OSError):
         os.nice(5)  # a solve goes first
-    looking = _Looking(pipe)
+    looking = Looking(pipe)
     from lightcube.kernels.compiled import when_compiling  # here: the compiler comes with it
 
     with suppress(EOFError, OSError), when_compiling(lambda: pipe.send(("compiling", {}))):
@@ -78,141 +107,166 @@ def run(pipe: Connection) -> None:
 
 
 @dataclass
-class _Looking:
+class Looking:
     """Small cubes, and what is kept of them."""
 
     pipe: Connection
     kept: Any = None
-    _known: dict[str, Any] = field(default_factory=dict)
 
     def warm(self) -> None:
         """Load, and compile where that was never done, before anything is asked."""
         rng = np.random.default_rng(0)
         images = tuple(rng.random((12, 12, 3)).astype(np.float32) for _ in range(2))
-        planned = self._plan(images, ("a", "b"), Options(n=24, picture_width=0.5, hold_deg=0.0, grain=0.0))
-        self._look(planned, _FIRST)
+        planned = _planned(images, ("a", "b"), Options(n=24, picture_width=0.5, hold_deg=0.0, grain=0.0))
+        self.look(planned, FIRST)
         self.kept = None
 
     def answer(self, asked: Asked) -> None:
         """Tell more and more of one question."""
         try:
-            for facts in self._answers(asked):
-                self.pipe.send(("forecast", {"number": asked.number, **facts}))
-                self._give_way()
+            for told in asked.foretell(self, asked):
+                notes = without_commands(told.get("notes", ()))
+                self.pipe.send(("forecast", {"number": asked.number, **told, "notes": notes}))
+                self.give_way()
         except InputError as error:
             self.pipe.send(("forecast", {"number": asked.number, "stage": "failed", "sentence": f"{error}"}))
 
-    def _answers(self, asked: Asked) -> Iterator[dict[str, Any]]:
-        began = time.monotonic()
-        images = tuple(_read(file, crop) for file, crop in zip(asked.files, asked.crops, strict=True))
-        quick = self._plan(images, asked.names, replace(asked.options, grain=0.0, order="given"))
-        small, self.kept = self._look(quick, _FIRST, self.kept)
-        yield self._told(asked, quick, small, self.kept, began, "first")
-        planned = quick
-        if asked.options.order == "best":
-            planned = self._plan(images, asked.names, replace(asked.options, grain=0.0))
-        small, cube = self._look(planned)
-        told = self._told(asked, planned, small, cube, began, "whole")
-        yield told
-        yield from self._turned(asked, cube)
-        if 2 < len(asked.keys) <= _MOST_LACKING:
-            yield told | {"stage": "costs", "costs": self._costs(planned)}
-
-    def _plan(self, images: tuple[NDArray[np.float32], ...], names: tuple[str, ...], options: Options) -> Any:
-        from lightcube.pictures.pictures import Pictures
-        from lightcube.verbs import solving
-
-        planning = solving.of_pictures(lambda: Pictures(images, names), options)
-        return planning(rehearsals=solving.rehearsals(), told=False)
-
-    def _look(self, planned: Any, size: tuple[int, int] | None = None, start: Any = None) -> tuple[Any, Any]:
-        """Solve a small cube: of a size and so many passes, or as predictions are fitted to."""
+    def look(self, planned: Any, size: tuple[int, int] | None = None) -> tuple[Any, Any]:
+        """Solve a small cube: from the one before, of a size and so many passes, or as predictions are fitted to."""
         from lightcube.backward.job import FEW
         from lightcube.planning.prediction import rehearsed
 
         width, passes, points = (*size, FEW) if size else (None, None, None)
-        return rehearsed(
+        small, cube = rehearsed(
             planned.targets,
             planned.grid,
             planned.recipe,
             width=width,
             passes=passes,
             points=points,
-            start=start,
-            callback=self._watch,
+            start=self.kept if size else None,
+            callback=self.watch,
         )
+        self.kept = cube if size else self.kept
+        return small, cube
 
-    def _watch(self, _: Any) -> None:
-        self._give_way()
+    def watch(self, _: Any) -> None:
+        """Look on while something is solved."""
+        self.give_way()
 
-    def _give_way(self) -> None:
+    def give_way(self) -> None:
         """Leave a question where another one is asked."""
         if self.pipe.poll():
             raise _Newer
 
-    def _told(self, asked: Asked, planned: Any, small: Any, cube: Any, began: float, stage: str) -> dict[str, Any]:
-        """What the walls look like, and how good they are."""
-        from lightcube.planning.prediction import law, reached, rehearsal_of
-        from lightcube.scoring.metrics import mark
-
-        across = max(cube.grid.shape[1:])
-        ratio = max(planned.grid.shape[1:]) / across
-        told = law(reached(small, cube), ratio, rehearsal_of(planned.recipe))
-        keys = dict(zip(asked.names, asked.keys, strict=True)) if planned.order is not None else {}
-        pictures = []
-        for number, (name, psnr, wall, wanted) in enumerate(
-            zip(planned.targets.names, told, _walls(cube), small.pictures, strict=True)
-        ):
-            word = mark(float(psnr))
-            pictures.append(
-                {
-                    "key": keys.get(name, asked.keys[number]),
-                    "name": name,
-                    "image": b64encode(png(wall)).decode(),
-                    "psnr": round(float(psnr), 1),
-                    "mark": word,
-                    "reason": _reason(word, wanted),
-                }
-            )
-        mean = float(np.mean(told))
-        return {
-            "stage": stage,
-            "pictures": pictures,
-            "psnr": round(mean, 1),
-            "full": round(min(max((_EMPTY_DB - mean) / (_EMPTY_DB - _FULL_DB), 0.03), 1.0), 3),
-            "angles_deg": [round(float(each), 2) for each in planned.targets.rig.stops.angle_deg],
-            "voxels": across,
-            "seconds": round(time.monotonic() - began, 3),
-        }
-
-    def _turned(self, asked: Asked, cube: Any) -> Iterator[dict[str, Any]]:
-        """The small cube itself, to be turned until there is a better one."""
+    def show(self, asked: Asked, cube: Any) -> None:
+        """Tell the small cube itself, to be turned until there is a better one."""
         from lightcube.viewer.description import zipped
-        from lightcube.viewer.page import contents
+        from lightcube.viewer.page import parts_of
 
         if self.pipe.poll(_PAUSE_S):
             raise _Newer
-        description, voxels = contents(cube, asked.title or "A first idea")
-        self.pipe.send(("cube", {"scene": zipped(description), "voxels": voxels}))
-        yield from ()
+        description, data = parts_of(cube, asked.title or "A first idea")
+        self.pipe.send(("cube", {"number": asked.number, "scene": zipped(description), "voxels": data}))
 
-    def _costs(self, planned: Any) -> list[float]:
-        """By how many dB the others become better without each picture."""
-        from lightcube.planning.prediction import reached, rehearsed
 
-        def without(number: int | None) -> NDArray[np.float64]:
-            kept = np.array([each for each in range(len(planned.targets)) if each != number])
-            targets = planned.targets if number is None else planned.targets.take(kept)
-            width, passes = _LACKING
-            found = rehearsed(targets, planned.grid, planned.recipe, width=width, passes=passes, callback=self._watch)
-            return np.asarray(reached(*found))
+#: Tells more and more of what will come of a question.
+Foretell = Callable[[Looking, Asked], Iterator[dict[str, Any]]]
 
-        everyone = without(None)
-        costs = []
-        for number in range(len(everyone)):
-            gained = without(number) - np.delete(everyone, number)
-            costs.append(round(float(np.mean(gained)), 2))
-        return costs
+
+def of_a_turntable(looking: Looking, asked: Asked) -> Iterator[dict[str, Any]]:
+    """What will come of a cube on a turntable."""
+    began = time.monotonic()
+    images = tuple(_read(file, crop) for file, crop in zip(asked.files, asked.crops, strict=True))
+    planned = _planned(images, asked.names, replace(asked.how, grain=0.0, order="given"))
+    yield told_of_cube(asked, planned, *looking.look(planned, FIRST), began, "first")
+    if asked.how.order == "best":
+        planned = _planned(images, asked.names, replace(asked.how, grain=0.0))
+    small, cube = looking.look(planned)
+    told = told_of_cube(asked, planned, small, cube, began, "whole") | {"notes": planned.doubtful}
+    yield told
+    looking.show(asked, cube)
+    if 2 < len(asked.keys) <= _MOST_LACKING:
+        yield told | {"stage": "costs", "costs": _costs(looking, planned)}
+
+
+def _planned(images: tuple[NDArray[np.float32], ...], names: tuple[str, ...], options: Options) -> Any:
+    from lightcube.pictures.pictures import Pictures
+    from lightcube.verbs import solving
+
+    planning = solving.of_pictures(lambda: Pictures(images, names), options)
+    return planning(rehearsals=solving.rehearsals(), told=False)
+
+
+def told_of_cube(asked: Asked, planned: Any, small: Any, cube: Any, began: float, stage: str) -> dict[str, Any]:
+    """What the walls of a small cube look like, how good the large one will be, and how full."""
+    from lightcube.planning.prediction import law, reached, rehearsal_of
+
+    across = max(cube.grid.shape[1:])
+    ratio = max(planned.grid.shape[1:]) / across
+    told = law(reached(small, cube), ratio, rehearsal_of(planned.recipe))
+    reasons = [_reason(mark_of(psnr), wanted) for psnr, wanted in zip(told, small.pictures, strict=True)]
+    mean = float(np.mean(told))
+    return facts(asked, looks_of(cube, told, reasons), began, stage) | {
+        "psnr": round(mean, 1),
+        "full": round(min(max((_EMPTY_DB - mean) / (_EMPTY_DB - _FULL_DB), 0.03), 1.0), 3),
+        "angles_deg": [round(float(each), 2) for each in planned.targets.rig.stops.angle_deg],
+        "voxels": across,
+    }
+
+
+def mark_of(psnr: float) -> str:
+    """Good, fair or poor."""
+    from lightcube.scoring.metrics import mark
+
+    return mark(float(psnr))
+
+
+def looks_of(cube: Any, told: Iterable[float], reasons: Sequence[str]) -> list[Look]:
+    """How the walls of a cube look, and how good they are said to be."""
+    each = zip(cube.names, _walls(cube), told, reasons, strict=True)
+    return [Look(name, levels, mark_of(psnr), f"{psnr:.1f} dB", reason) for name, levels, psnr, reason in each]
+
+
+def facts(asked: Asked, looks: Sequence[Look], began: float, stage: str, notes: Sequence[str] = ()) -> dict[str, Any]:
+    """What is told of all pictures, whoever foretold it; `notes` are sentences on the whole."""
+    keys = dict(zip(asked.names, asked.keys, strict=True))
+    pictures = [
+        {
+            "key": keys[look.name] if len(keys) == len(looks) and look.name in keys else asked.keys[number],
+            "name": look.name,
+            "image": b64encode(png(look.levels)).decode(),
+            "mark": look.mark,
+            "worth": look.worth,
+            "reason": look.reason,
+        }
+        for number, look in enumerate(looks)
+    ]
+    return {
+        "stage": stage,
+        "pictures": pictures,
+        "notes": list(notes),
+        "seconds": round(time.monotonic() - began, 3),
+    }
+
+
+def _costs(looking: Looking, planned: Any) -> list[float]:
+    """By how many dB the others become better without each picture."""
+    from lightcube.planning.prediction import reached, rehearsed
+
+    def without(number: int | None) -> NDArray[np.float64]:
+        kept = np.array([each for each in range(len(planned.targets)) if each != number])
+        targets = planned.targets if number is None else planned.targets.take(kept)
+        width, passes = _LACKING
+        found = rehearsed(targets, planned.grid, planned.recipe, width=width, passes=passes, callback=looking.watch)
+        return np.asarray(reached(*found))
+
+    everyone = without(None)
+    costs = []
+    for number in range(len(everyone)):
+        gained = without(number) - np.delete(everyone, number)
+        costs.append(round(float(np.mean(gained)), 2))
+    return costs
 
 
 @lru_cache(maxsize=128)

@@ -31,9 +31,10 @@ from lightcube.io.pictures_folder import VIEWS_FILE, views_text
 from lightcube.optics.transfer import to_uint8
 from lightcube.studio.desk import Desk
 from lightcube.studio.kept import box, dropped, png, smaller
-from lightcube.studio.project import DROPPED, MOST_PICTURES, PICTURES, Crop, Picture, Project, Settings
+from lightcube.studio.kinds import kind_of, used
+from lightcube.studio.making import MOST_PICTURES
+from lightcube.studio.project import DROPPED, PICTURES, Crop, Picture, Project, Settings
 from lightcube.studio.samples import SAMPLES
-from lightcube.wording import counted
 
 #: Pixels of a picture in the strip.
 _STRIP = 260
@@ -203,13 +204,17 @@ class Strip:
             if not dropped(self._desk.project, picture.key).is_file()
         ]
         samples = [{"name": name, "title": sample.title} for name, sample in SAMPLES.items()]
-        return {"missing": missing, "most": MOST_PICTURES, "samples": samples}
+        settings = self._desk.project.settings
+        least, most = kind_of(settings).counts(settings)
+        places = list(kind_of(settings).places(settings))
+        counts = {"used": len(used(settings)), "least": least, "takes": most, "places": places}
+        return {"missing": missing, "most": MOST_PICTURES, "samples": samples, **counts}
 
     def write(self) -> None:
         """Write the pictures that are used, cropped and in order, where commands read them."""
         project = self._desk.project
         with self._lock:
-            wanted = {f"{number:04d}.png": each for number, each in enumerate(project.settings.used, 1)}
+            wanted = {f"{number:04d}.png": each for number, each in enumerate(used(project.settings), 1)}
             for name, picture in wanted.items():
                 file = dropped(project, picture.key)
                 if self._written.get(name) != picture and file.is_file():
@@ -221,22 +226,6 @@ class Strip:
                 self._written.pop(stale, None)
             names = views_text(None, [picture.name for picture in wanted.values()]).encode()
             project.write(names, PICTURES, VIEWS_FILE)
-
-
-def check_there(project: Project) -> None:
-    """Raise `InputError` where pictures that are used are gone from the folder, or there are too few."""
-    used = project.settings.used
-    if len(used) < 2:
-        raise InputError(f"a cube needs at least two pictures, and there {_are(len(used))}: drop more")
-    gone = [picture.name for picture in used if not dropped(project, picture.key).is_file()]
-    if gone:
-        raise InputError(
-            f"{counted(len(gone), 'picture')} vanished from the folder ({', '.join(gone[:3])}): remove and drop again"
-        )
-
-
-def _are(count: int) -> str:
-    return "is one" if count == 1 else "is none"
 
 
 def _names_in(project: Project) -> set[str]:

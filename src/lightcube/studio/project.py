@@ -11,13 +11,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from lightcube.errors import InputError
 from lightcube.io._bounds import check_text
 from lightcube.io._files import system_errors
 from lightcube.io._toml import read_tables
 from lightcube.scene.description import sentence
+from lightcube.studio.making import MOST_PICTURES, FilmsMaking, Making, PlateMaking, ShapeMaking, Strict
 
 if sys.platform != "win32":
     import fcntl
@@ -26,24 +27,23 @@ else:
 
 #: Of the file of settings; another one is not read.
 FORMAT = 1
-#: Pictures that a project holds at most: a cube shows so many only where they are small.
-MOST_PICTURES = 64
 #: Changes that can be undone.
 _MOST_STEPS = 200
 _FILE, _HISTORY, _LOCK = "project.toml", "history.json", ".studio.lock"
 #: Folders: what was dropped, what is solved for, and what was made.
 DROPPED, PICTURES, MADE = "dropped", "pictures", "made"
 
+#: What can be made; the table of them is `lightcube.studio.kinds.KINDS`.
+KindName = Literal["cube", "room", "shape", "plate", "films"]
+#: Settings that say how something is made.
+MAKINGS = ("making", "shape", "plate", "films")
+
 _Part = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 _Key = Annotated[str, Field(pattern="^[0-9a-f]{16}$")]
 _Name = Annotated[str, Field(min_length=1, max_length=80)]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Crop(_Strict):
+class Crop(Strict):
     """What is taken of a picture, as parts of its width and height from its upper left."""
 
     left: _Part = 0.0
@@ -58,7 +58,7 @@ class Crop(_Strict):
         return self
 
 
-class Picture(_Strict):
+class Picture(Strict):
     """A picture of the strip: the key of its file, its name, and what is taken of it."""
 
     key: _Key
@@ -66,31 +66,18 @@ class Picture(_Strict):
     crop: Crop = Crop()
 
 
-class Making(_Strict):
-    """How the cube is made: what the page's sliders say."""
+class Settings(Strict):
+    """All that is said of a project: how each kind of thing is made, also of those that it is not now."""
 
-    voxels: Annotated[int, Field(ge=16, le=160)] = 64
-    width: Annotated[float, Field(ge=0.2, le=1, allow_inf_nan=False)] = 0.5
-    lamp: Annotated[float, Field(ge=1, le=64, allow_inf_nan=False)] = 16.0
-    hold_deg: Annotated[float, Field(ge=0, le=6, allow_inf_nan=False)] = 0.25
-    #: The most that the glass takes away, 1/mm: clear glass is bright, rich glass has deep colours; 0 = any.
-    richness: Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)] = 0.0
-    #: How many pictures of the strip are used, from its beginning; 0 = all.
-    count: Annotated[int, Field(ge=0, le=MOST_PICTURES)] = 0
-    fit: Literal["crop", "pad"] = "crop"
-    mat: Literal["dark", "grey", "light", "none"] = "dark"
-    order: Literal["given", "best"] = "given"
-    quality: Literal["draft", "normal", "best"] = "normal"
-
-
-class Settings(_Strict):
-    """All that is said of a project."""
-
+    kind: KindName = "cube"
     title: Annotated[str, Field(max_length=120)] = ""
     pictures: Annotated[tuple[Picture, ...], Field(max_length=MOST_PICTURES)] = ()
     making: Making = Making()
+    shape: ShapeMaking = ShapeMaking()
+    plate: PlateMaking = PlateMaking()
+    films: FilmsMaking = FilmsMaking()
     #: What other parts of the studio keep, by their names.
-    parts: dict[Annotated[str, Field(pattern="^[a-z]{1,20}$")], Any] = {}
+    parts: dict[Annotated[str, Field(pattern="^[a-z]{1,20}$")], Any] = {}  # noqa: RUF012 - pydantic copies it
 
     @model_validator(mode="after")
     def _each_once(self) -> Settings:
@@ -99,11 +86,6 @@ class Settings(_Strict):
         if len(json.dumps(self.parts)) > 100_000:
             raise ValueError("more is said of the other parts than is kept")
         return self
-
-    @property
-    def used(self) -> tuple[Picture, ...]:
-        """The pictures that the cube is made of."""
-        return self.pictures[: self.making.count or None]
 
 
 class Project:
@@ -226,7 +208,7 @@ class Project:
 def _checked(settings: Settings) -> Settings:
     """The same settings, every field looked at again; `InputError` says which cannot be."""
     try:
-        return Settings.model_validate(settings.model_dump())
+        return Settings.model_validate(settings.model_dump(warnings=False))
     except ValidationError as error:
         raise InputError(said(error)) from error
 
@@ -255,8 +237,10 @@ def _of_tables(tables: dict[str, Any], called: str) -> Settings:
 def toml_text(settings: Settings) -> str:
     """The file of settings."""
     plain = settings.model_dump(mode="json")
-    lines = [f"format = {FORMAT}", f"title = {_text(plain['title'])}", f"parts = {_text(json.dumps(plain['parts']))}"]
-    lines += ["", "[making]", *(f"{name} = {_text(value)}" for name, value in plain["making"].items())]
+    lines = [f"format = {FORMAT}", *(f"{name} = {_text(plain[name])}" for name in ("kind", "title"))]
+    lines.append(f"parts = {_text(json.dumps(plain['parts']))}")
+    for made in MAKINGS:
+        lines += ["", f"[{made}]", *(f"{name} = {_text(value)}" for name, value in plain[made].items())]
     for picture in plain["pictures"]:
         crop = ", ".join(f"{name} = {value!r}" for name, value in picture["crop"].items())
         lines += ["", "[[pictures]]", f"key = {_text(picture['key'])}", f"name = {_text(picture['name'])}"]
@@ -269,7 +253,7 @@ def toml_text(settings: Settings) -> str:
 def _text(value: str | float) -> str:
     """A value as TOML has it: JSON's escapes, and DEL, which only TOML wants escaped."""
     if not isinstance(value, str):
-        return repr(value)
+        return json.dumps(value)
     safe = value.encode("utf-8", "replace").decode()
     return json.dumps(safe, ensure_ascii=False).replace("\x7f", "\\u007f")
 

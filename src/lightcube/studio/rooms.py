@@ -4,23 +4,27 @@ from __future__ import annotations
 
 import json
 import math
-import shlex
 from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field, ValidationError
 
-from lightcube.errors import InputError
+from lightcube.errors import InputError, shown
+from lightcube.io._files import system_errors
 from lightcube.optics.grid import Grid
 from lightcube.optics.stage import Lamp, Screen, Shot, Stage
 from lightcube.planning.feasibility import doubtful, impossible
 from lightcube.studio.desk import Desk
-from lightcube.studio.project import MADE, PICTURES
-from lightcube.wording import counted
+from lightcube.studio.making import Strict
+from lightcube.studio.project import PICTURES, Project, Settings
 
-#: The stage file of a project; voxels of its cube along a side, and their whole length, mm.
-FILE, _VOXELS, _SIZE_MM = "room.toml", 48, 100.0
+#: The stage file of a project, and what of the settings keeps the room.
+FILE, PART = "room.toml", "rooms"
+#: Voxels along a side of the cube that is looked at, and their whole length, mm.
+_VOXELS, _SIZE_MM = 48, 100.0
+#: Letters of a picture's name at most.
+_LETTERS = 64
 #: What is nearer to the turntable's axis than this, mm, is above or below the cube.
 _ASIDE_MM = 1.0
 #: A bulb's pixels are so many times as wide as voxels at most.
@@ -29,11 +33,7 @@ _Mm = Annotated[float, Field(ge=-1000, le=1000, allow_inf_nan=False)]
 _Name = Annotated[str, Field(pattern=r"^[^\W_](?:[\w -]{0,28}[^\W_])?$")]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Standing(_Strict):
+class Standing(Strict):
     """Where something stands, mm: x to the right and y up in the plan, z up in the room."""
 
     name: _Name
@@ -56,7 +56,7 @@ class RoomScreen(Standing):
     lamp: _Name
 
 
-class Room(_Strict):
+class Room(Strict):
     """A room with a turntable in its middle."""
 
     lamps: Annotated[list[RoomLamp], Field(min_length=1, max_length=8)]
@@ -69,6 +69,8 @@ class Room(_Strict):
 def router(desk: Desk) -> APIRouter:
     """What the editor of the room asks."""
     made = APIRouter(prefix="/api/rooms")
+    desk.minding.insert(0, lambda: write(desk.project))  # before others read it
+    desk.starting.insert(0, lambda: write(desk.project))
 
     @made.post("/check")
     def check(room: Room) -> dict[str, Any]:
@@ -77,23 +79,43 @@ def router(desk: Desk) -> APIRouter:
 
     @made.post("/keep")
     def keep(room: Room) -> dict[str, Any]:
-        """Write the room into the project as a stage file, for its pictures; refused while something cannot be."""
+        """Let the project become a cube for this room; refused while something cannot be."""
         found = checked(room)
         if found["impossible"]:
             raise InputError(f"this room cannot be yet: {found['impossible'][0]['sentence']}")
-        files = sorted(each.name for each in desk.project.path(PICTURES).iterdir() if each.suffix == ".png")
-        wanted = len(room.screens) * len(room.stops_deg)
-        if len(files) < wanted:
-            raise InputError(
-                f"this room shows {counted(wanted, 'picture')}, and the project has {len(files)}: "
-                "drop more pictures, or take fewer stops or screens"
-            )
-        folder = desk.project.folder
-        desk.project.write(text(room, files).encode(), FILE)
-        command = shlex.join(["lightcube", "solve", str(folder / FILE), "-o", str(folder / MADE / "room.zarr")])
-        return {"file": str(folder / FILE), "pictures": wanted, "command": command}
+        kept = room.model_dump(mode="json")
+        return desk.change(
+            lambda before: before.model_copy(update={"kind": "room", "parts": before.parts | {PART: kept}})
+        )
 
     return made
+
+
+def room_of(settings: Settings) -> Room | None:
+    """The room that a project keeps; None where there is none."""
+    try:
+        return Room.model_validate(settings.parts.get(PART))
+    except ValidationError:
+        return None
+
+
+def pictures_of(settings: Settings) -> int:
+    """How many pictures the room of a project shows."""
+    room = room_of(settings)
+    return 1 if room is None else len(room.screens) * len(room.stops_deg)
+
+
+def write(project: Project) -> None:
+    """Write the room into the project as a stage file, for the pictures that there are."""
+    settings = project.settings
+    room, file = room_of(settings), project.path(FILE)
+    if room is None:
+        return
+    made = text(room, [picture.name for picture in settings.pictures], settings.making.voxels).encode()
+    with system_errors(file, "reading"):
+        before = file.read_bytes() if file.is_file() else b""
+    if made != before:
+        project.write(made, FILE)
 
 
 def checked(room: Room) -> dict[str, Any]:
@@ -111,9 +133,9 @@ def checked(room: Room) -> dict[str, Any]:
     }
 
 
-def stage_of(room: Room) -> Stage:
+def stage_of(room: Room, voxels: int = _VOXELS) -> Stage:
     """A room as a stage; `InputError` where it is none."""
-    grid = Grid((_VOXELS, _VOXELS, _VOXELS), _SIZE_MM / _VOXELS)
+    grid = Grid((voxels, voxels, voxels), _SIZE_MM / voxels)
     lamps = {lamp.name for lamp in room.lamps}
     for screen in room.screens:
         if screen.lamp not in lamps:
@@ -126,7 +148,7 @@ def stage_of(room: Room) -> Stage:
                 each.name,
                 (each.x, each.y, each.z),
                 (each.side_mm, each.side_mm),
-                _pitch_mm(room, each),
+                _pitch_mm(room, each, voxels),
                 normal=_facing(each),
             )
             for each in room.screens
@@ -156,12 +178,12 @@ def _from(place: tuple[float, float, float]) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _pitch_mm(room: Room, screen: RoomScreen) -> float:
+def _pitch_mm(room: Room, screen: RoomScreen, voxels: int) -> float:
     """From pixel to pixel: as wide as the shadow of a voxel in the cube's middle."""
     lamp = next(each for each in room.lamps if each.name == screen.lamp)
     near, far = math.hypot(lamp.x, lamp.y, lamp.z), math.hypot(screen.x, screen.y, screen.z)
     times = 1.0 if lamp.far or near < _ASIDE_MM else min((near + far) / near, _MOST_TIMES)
-    return round(_SIZE_MM / _VOXELS * times, 4)
+    return round(_SIZE_MM / voxels * times, 4)
 
 
 def _facing(screen: RoomScreen) -> tuple[float, float, float]:
@@ -172,10 +194,10 @@ def _facing(screen: RoomScreen) -> tuple[float, float, float]:
     return (round(-screen.x / aside, 6) + 0.0, round(-screen.y / aside, 6) + 0.0, 0.0)
 
 
-def text(room: Room, files: Sequence[str]) -> str:
+def text(room: Room, names: Sequence[str], voxels: int) -> str:
     """A room as a stage file: the first screen has the first pictures, one for each stop, and so on."""
     stops = ", ".join(f"{each:g}" for each in room.stops_deg)
-    lines = ["[cube]", f"shape = [{_VOXELS}, {_VOXELS}, {_VOXELS}]", f"size_mm = {_SIZE_MM:g}", ""]
+    lines = ["[cube]", f"shape = [{voxels}, {voxels}, {voxels}]", f"size_mm = {_SIZE_MM:g}", ""]
     lines += ["[turntable]", f"stops_deg = [{stops}]"]
     for lamp in room.lamps:
         place = (lamp.x, lamp.y, lamp.z)
@@ -184,14 +206,12 @@ def text(room: Room, files: Sequence[str]) -> str:
     for screen in room.screens:
         side = _listed((screen.side_mm, screen.side_mm))
         lines += ["", "[[screen]]", f'name = "{screen.name}"', f"centre_mm = {_listed((screen.x, screen.y, screen.z))}"]
-        lines += [
-            f"normal = {_listed(_facing(screen))}",
-            f"size_mm = {side}",
-            f"pitch_mm = {_pitch_mm(room, screen):g}",
-        ]
+        lines += [f"normal = {_listed(_facing(screen))}", f"size_mm = {side}"]
+        lines.append(f"pitch_mm = {_pitch_mm(room, screen, voxels):g}")
     shots = [(screen, stop) for screen in room.screens for stop in range(len(room.stops_deg))]
-    for (screen, stop), file in zip(shots, files, strict=False):
-        lines += ["", "[[picture]]", f"file = {json.dumps(f'{PICTURES}/{file}', ensure_ascii=False)}"]
+    for number, ((screen, stop), name) in enumerate(zip(shots, names, strict=False), 1):
+        lines += ["", "[[picture]]", f'file = "{PICTURES}/{number:04d}.png"']
+        lines.append(f"name = {json.dumps(shown(name)[:_LETTERS].strip() or 'picture', ensure_ascii=False)}")
         lines += [f'screen = "{screen.name}"', f'lamps = ["{screen.lamp}"]', f"stop = {stop + 1}"]
     return "\n".join(lines) + "\n"
 

@@ -1,4 +1,4 @@
-"""The solve, in a process of its own: it tells what happens through a pipe, and stops when it is told to."""
+"""What makes things, in a process of its own: it tells what happens through a pipe, and stops when it is told to."""
 
 from __future__ import annotations
 
@@ -7,13 +7,15 @@ import threading
 import time
 import warnings
 from base64 import b64encode
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from dataclasses import dataclass
 from multiprocessing.connection import Connection
-from pathlib import Path
 from typing import Any, Literal
 
 from lightcube.errors import InputError
-from lightcube.events import Progress, Said
+from lightcube.events import Interrupted, Progress, Said
+from lightcube.studio.kept import png
 
 #: Seconds between two looks at the wall at least, and so many times as long as one takes.
 _LOOK_S, _PATIENCE = 0.7, 6.0
@@ -23,44 +25,83 @@ _TURN_S, _TURN_PATIENCE = 2.0, 12.0
 Deed = Literal["start", "resume", "keep"]
 
 
-def run(pipe: Connection, deed: Deed, pictures: str, out: str, options: Any, title: str) -> None:
+@dataclass(frozen=True)
+class Task:
+    """What is to be made: of which pictures or room, where, how (as its verb takes it), and what it is called."""
+
+    source: str
+    out: str
+    how: Any
+    title: str
+
+
+def run(pipe: Connection, make: Make, deed: Deed, task: Task) -> None:
     """Do what is asked for; the last that is told says how it ended.
 
     Parameters
     ----------
+    make
+        Makes a thing of its kind.
     deed
-        Start anew, go on with what is in the unfinished cube of `out`, or make a cube of what is there.
+        Start anew, go on with what there is unfinished, or make the thing of what is there.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever began this says when it ends
     warnings.simplefilter("ignore")
-    told = _Told(pipe, title)
+    told = Told(pipe)
     try:
-        if deed == "keep":
-            _keep(told, out)
-        else:
-            _solve(told, deed, pictures, out, options)
+        make(told, deed, task)
+    except Interrupted:
+        told("stopped")
     except InputError as error:
         told("failed", sentence=f"{error}")
     except MemoryError:
-        told("failed", sentence="the machine has not enough memory for this: make the cube smaller")
+        told("failed", sentence="the machine has not enough memory for this: make it smaller")
     except OSError as error:
         told("failed", sentence=f"the system refused it ({error.strerror or error}): make room, and go on")
 
 
-class _Told:
+class Told:
     """What is told through the pipe; nobody at its other end is as good as being told to stop."""
 
-    def __init__(self, pipe: Connection, title: str) -> None:
-        self._pipe, self.title, self._lock = pipe, title, threading.Lock()
+    def __init__(self, pipe: Connection) -> None:
+        self._pipe, self._lock = pipe, threading.Lock()
         self.stopping = threading.Event()
         threading.Thread(target=self._listen, daemon=True).start()
 
     def __call__(self, what: str, **facts: Any) -> None:
+        """Tell something and its facts."""
         try:
             with self._lock:
                 self._pipe.send((what, facts))
         except OSError:
             self.stopping.set()
+
+    def compiling(self) -> None:
+        """Tell that there is something to be compiled."""
+        self("said", sentence="compiling, once: about half a minute", compiling=True)
+
+    def event(self, event: Progress | Said) -> bool:
+        """Tell what a verb tells; True where it is to stop."""
+        if isinstance(event, Progress):
+            figures = dict(event.figures)
+            self("progress", done=event.done, of=event.of, psnr=figures.get("PSNR"), left_s=event.left_s)
+        else:
+            self("said", sentence=event.sentence, compiling=False)
+        return self.stopping.is_set()
+
+    def wall(self, names: Iterable[str], shown: Iterable[Any], fine: int) -> None:
+        """Tell what the walls show, each in 8-bit levels."""
+        images = (b64encode(png(levels)).decode() for levels in shown)
+        pictures = [{"name": name, "image": image} for name, image in zip(names, images, strict=True)]
+        self("wall", pictures=pictures, voxels=fine)
+
+    def turn(self, thing: Any, title: str) -> None:
+        """Tell a thing as the viewer takes it."""
+        from lightcube.viewer.description import zipped
+        from lightcube.viewer.page import parts_of
+
+        description, data = parts_of(thing, title)
+        self("cube", scene=zipped(description), voxels=data)
 
     def _listen(self) -> None:
         with suppress(EOFError, OSError):
@@ -68,57 +109,51 @@ class _Told:
         self.stopping.set()
 
 
-def _solve(told: _Told, deed: Deed, pictures: str, out: str, options: Any) -> None:
-    """Solve from the beginning, or from where it was."""
+#: Makes a thing of a kind: see `run`.
+Make = Callable[[Told, Deed, Task], None]
+
+
+def solve(told: Told, deed: Deed, task: Task) -> None:
+    """Solve a cube or films from the beginning or from where it was, or keep what is there."""
+    if deed == "keep":
+        _keep(told, task)
+        return
     told("said", sentence="getting ready", compiling=False)
     from lightcube.kernels.compiled import when_compiling  # here: the compiler comes with it
 
-    def compiling() -> None:
-        told("said", sentence="compiling, once: about half a minute", compiling=True)
-
-    with when_compiling(compiling):
+    with when_compiling(told.compiling):
         from lightcube.backward.needs import job_memory
         from lightcube.jobs import publishing, running
         from lightcube.jobs.partial import DiskStore, load_job, open_partial, partial_path
         from lightcube.verbs import solving
 
         if deed == "resume":
-            job, store = load_job(partial_path(out)), DiskStore(partial_path(out))
+            job, store = load_job(partial_path(task.out)), DiskStore(partial_path(task.out))
         else:
-            planned = solving.read(pictures, options, told=False)(solving.rehearsals())
+            planned = solving.read(task.source, task.how, told=False)(solving.rehearsals())
             job = solving.job(planned)
             solving.check_memory(job_memory(job))
-            store = open_partial(out, job, overwrite=True)
-        show = _Show(told)
-
-        def tell(event: Progress | Said) -> bool:
-            if isinstance(event, Progress):
-                figures = dict(event.figures)
-                told("progress", done=event.done, of=event.of, psnr=figures.get("PSNR"), left_s=event.left_s)
-            else:
-                told("said", sentence=event.sentence, compiling=False)
-            return told.stopping.is_set()
-
-        if not running.run(job, job.pieces, store, tell, show):
+            store = open_partial(task.out, job, overwrite=True)
+        show = _Show(told, task.title)
+        if not running.run(job, job.pieces, store, told.event, show):
             told("stopped")
             return
         told("said", sentence="looking at what it shows", compiling=False)
-        cube = publishing.finish(job, store, out, overwrite=True).solution.cube
+        cube = publishing.finish(job, store, task.out, overwrite=True).solution.cube
     show.wall(cube)
-    show.turn(cube)
+    told.turn(cube, task.title)
     told("done", **_facts(cube))
 
 
-def _keep(told: _Told, out: str) -> None:
+def _keep(told: Told, task: Task) -> None:
     """Make a cube of what is there."""
     from lightcube.jobs import publishing
     from lightcube.jobs.partial import partial_path
     from lightcube.scoring import metrics
 
-    cube = publishing.publish(partial_path(out), overwrite=True).solution.cube
-    show = _Show(told)
-    show.wall(cube)
-    show.turn(cube)
+    cube = publishing.publish(partial_path(task.out), overwrite=True).solution.cube
+    _Show(told, task.title).wall(cube)
+    told.turn(cube, task.title)
     told("kept", **_facts(cube, metrics.score(cube) if cube.targets is not None else None))
 
 
@@ -135,8 +170,8 @@ def _facts(cube: Any, scores: Any = None) -> dict[str, Any]:
 class _Show:
     """Watches a solve: what the wall shows now, and the cube to be turned, as often as it costs little."""
 
-    def __init__(self, told: _Told) -> None:
-        self._told, self._next_wall, self._next_turn, self._done = told, 0.0, 0.0, 0.0
+    def __init__(self, told: Told, title: str) -> None:
+        self._told, self._title, self._next_wall, self._next_turn = told, title, 0.0, 0.0
 
     def __call__(self, step: Any) -> None:
         """Look, where it is time."""
@@ -149,31 +184,13 @@ class _Show:
             self._next_wall = time.monotonic() + max(_LOOK_S, _PATIENCE * (time.monotonic() - now))
         if now >= self._next_turn:
             began = time.monotonic()
-            self.turn(cube)
+            self._told.turn(cube, self._title)
             self._next_turn = time.monotonic() + max(_TURN_S, _TURN_PATIENCE * (time.monotonic() - began))
 
     def wall(self, cube: Any) -> None:
         """Tell what the wall shows at each stop."""
         from lightcube.forward.casting import cast
         from lightcube.optics.transfer import to_uint8
-        from lightcube.studio.kept import png
 
-        shown = [b64encode(png(to_uint8(picture, cube.transfer))).decode() for picture in cast(cube)]
-        told = [{"name": name, "image": image} for name, image in zip(cube.names, shown, strict=True)]
-        self._told("wall", pictures=told, voxels=int(max(cube.grid.shape)))
-
-    def turn(self, cube: Any) -> None:
-        """Tell the cube as the viewer takes it."""
-        from lightcube.viewer.description import zipped
-        from lightcube.viewer.page import contents
-
-        description, voxels = contents(cube, self._told.title or "Light cube")
-        self._told("cube", scene=zipped(description), voxels=voxels)
-
-
-def places(folder: Path) -> tuple[str, str]:
-    """Where a project's pictures are, and its cube."""
-    from lightcube.studio.making import CUBE
-    from lightcube.studio.project import MADE, PICTURES
-
-    return str(folder / PICTURES), str(folder / MADE / CUBE)
+        shown = (to_uint8(picture, cube.transfer) for picture in cast(cube))
+        self._told.wall(cube.names, shown, int(max(cube.grid.shape)))

@@ -1,4 +1,4 @@
-"""Solving in the studio: a process of its own, paused, kept and gone on with, also after a kill."""
+"""Making things in the studio: in a process of its own, paused, kept and gone on with, also after a kill."""
 
 from __future__ import annotations
 
@@ -18,48 +18,54 @@ from lightcube.errors import InputError
 from lightcube.jobs.partial import discard_partial, is_partial, partial_path
 from lightcube.studio import solver
 from lightcube.studio.desk import Desk
-from lightcube.studio.making import command_of, options_of
-from lightcube.studio.pictures import check_there
-from lightcube.studio.project import MADE
+from lightcube.studio.kinds import KINDS, check_there, command_of, made_of, used
+from lightcube.studio.project import MADE, KindName, Settings
 
 Status = Literal["idle", "running", "stopping", "paused", "done", "kept", "failed"]
 #: What can be done in which state.
 _MAY: dict[str, frozenset[Status]] = {
     "start": frozenset({"idle", "paused", "done", "kept", "failed"}),
+    "stop": frozenset({"running"}),
     "pause": frozenset({"running"}),
     "resume": frozenset({"paused", "kept", "failed"}),
     "keep": frozenset({"running", "paused", "failed"}),
     "discard": frozenset({"paused", "kept", "failed"}),
 }
+#: What only can be done where there is something to go on with, and where there is nothing.
+_GOING_ON, _AT_ONCE = frozenset({"pause", "resume", "keep", "discard"}), frozenset({"stop"})
 #: Seconds that a solve is given to keep what it has, when the studio ends.
 _GRACE_S = 8.0
 #: Points of the curve that are told.
 _CURVE = 240
-_FILE, _SCENE, _VOXELS = "solving.json", "scene.gz", "voxels.gz"
 
 
 def router(desk: Desk) -> APIRouter:
-    """What is asked of the solve, and the cube for the viewer."""
+    """What is asked of the making, and the thing for the viewer."""
     routes = APIRouter(prefix="/api")
-    solving = Solving(desk)
-    desk.parts["solving"] = solving.described
-    desk.starting.append(solving.go_on)
-    desk.closing.append(solving.close)
+    every = {name: Solving(desk, name) for name in KINDS}
+
+    def now() -> Solving:
+        return every[desk.project.settings.kind]
+
+    desk.parts["solving"] = lambda: now().described()
+    for solving in every.values():
+        desk.starting.append(solving.go_on)
+        desk.closing.append(solving.close)
 
     @routes.post("/solving/{deed}")
-    def do(deed: Literal["start", "pause", "resume", "keep", "discard"]) -> dict[str, Any]:
-        """Start, pause, go on, stop and keep what is there, or throw the unfinished cube away."""
-        return solving.do(deed)
+    def do(deed: Literal["start", "stop", "pause", "resume", "keep", "discard"]) -> dict[str, Any]:
+        """Start, stop, pause, go on, stop and keep what is there, or throw what is unfinished away."""
+        return now().do(deed)
 
     @routes.get("/solving")
     def stands() -> dict[str, Any]:
-        """How the solve stands, with what the wall shows now and the curve of how it went."""
-        return solving.described() | {"wall": solving.wall, "curve": solving.curve}
+        """How the making stands, with what the wall shows now and the curve of how it went."""
+        return now().described() | {"wall": now().wall, "curve": now().curve}
 
     @routes.get("/cube/{part}", response_class=Response)
     def cube(part: Literal["scene", "voxels"]) -> Response:
-        """The newest cube that there is, as the viewer reads it: its scene or its voxels, gzipped."""
-        data = solving.part(part)
+        """The newest thing that there is, as the viewer reads it: its scene or its voxels, gzipped."""
+        data = now().part(part)
         if data is None:
             raise HTTPException(404)
         return Response(data, media_type="application/octet-stream")
@@ -68,37 +74,46 @@ def router(desk: Desk) -> APIRouter:
 
 
 class Solving:
-    """The solve of a desk's project."""
+    """How a thing of one kind is made of a desk's project."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk, self._lock = desk, threading.RLock()
+    def __init__(self, desk: Desk, name: KindName) -> None:
+        self._desk, self._lock, self._name, self._kind = desk, threading.RLock(), name, KINDS[name]
         self._process: SpawnProcess | None = None
         self._pipe: Connection | None = None
         self._after = ""
         self._parts: dict[str, bytes] = {}
         self.wall: dict[str, Any] = {"pictures": [], "voxels": 0}
         self.curve: list[list[float]] = []
-        self._pictures, self._out = solver.places(desk.project.folder)
+        self._before: tuple[dict[str, Any], dict[str, Any]] = {}, self.wall
+        self._out = str(desk.project.folder / MADE / self._kind.file)
         self._facts: dict[str, Any] = {"status": "idle", "version": 0, "pictures": [], "made_of": "", **_nothing()}
         self._facts |= self._remembered()
 
     def described(self) -> dict[str, Any]:
         """How it stands, as plain JSON."""
         with self._lock:
-            project = self._desk.project
-            settings = project.settings
+            settings = self._settings
+            not_here = _AT_ONCE if self._kind.can_pause else _GOING_ON
+            can = {deed for deed, states in _MAY.items() if self._facts["status"] in states}
             return {
                 **{name: value for name, value in self._facts.items() if name != "made_of"},
-                "can": sorted(deed for deed, states in _MAY.items() if self._facts["status"] in states),
+                "kind": self._name,
+                "can": sorted(can - not_here),
                 "changed": self._has_changed(),
-                "command": command_of(project.folder, settings.making) if len(settings.used) > 1 else "",
+                "command": command_of(self._desk.project.folder, settings) if used(settings) else "",
             }
+
+    @property
+    def _settings(self) -> Settings:
+        """The project's, as if it were to become this."""
+        return self._desk.project.settings.model_copy(update={"kind": self._name})
 
     def do(self, deed: str) -> dict[str, Any]:
         """Do what is asked; `InputError` where it cannot be done now."""
         with self._lock:
-            if self._facts["status"] not in _MAY[deed]:
-                raise InputError(f"the cube is {_SAID[self._facts['status']]}: {deed} is for another moment")
+            if deed not in self.described()["can"]:
+                stands = f"{self._kind.called} {self._kind.are} {_SAID[self._facts['status']]}"
+                raise InputError(f"{stands}: {deed} is for another moment")
             if deed == "start":
                 check_there(self._desk.project)
                 self._begin("start")
@@ -110,7 +125,7 @@ class Solving:
             elif self._process is None:
                 self._begin("keep")
             else:
-                self._after = "keep" if deed == "keep" else ""
+                self._after = deed
                 self._set(status="stopping")
                 self._stop()
             return self.described()
@@ -119,18 +134,21 @@ class Solving:
         """Go on with what ran when the studio was ended or killed."""
         with self._lock:
             if self._facts["status"] in ("running", "stopping"):
-                self._facts["status"] = "paused"
+                self._facts["status"] = "paused" if self._kind.can_pause else "idle"
                 if self._is_begun():
                     self._begin("resume")
+                elif not self._kind.can_pause and self._desk.project.settings.kind == self._name:
+                    self._begin("start")
 
     def part(self, name: str) -> bytes | None:
         """Scene or voxels of the newest cube; None where there is none."""
         with self._lock:
             if name in self._parts:
                 return self._parts[name]
-        file = self._desk.project.path(MADE, f"{name}.gz")
+        file = self._desk.project.path(MADE, f"{self._kind.stem}.{name}.gz")
         is_newest = self._facts["status"] != "running" and not self._has_changed()
-        return file.read_bytes() if file.is_file() and is_newest else self._desk.first_cube(name)
+        first = None if is_newest and file.is_file() else self._desk.first_cube(name)
+        return file.read_bytes() if first is None and file.is_file() else first
 
     def close(self) -> None:
         """End the process; what it has reached is kept, and gone on with when the studio starts again."""
@@ -148,15 +166,17 @@ class Solving:
         project = self._desk.project
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
-        options, title = options_of(project.settings.making), project.settings.title
-        asked = (theirs, deed, self._pictures, self._out, options, title)
+        settings, source = self._settings, str(project.folder / self._kind.source)
+        task = solver.Task(source, self._out, self._kind.how(settings), settings.title or self._kind.title)
+        asked = (theirs, self._kind.make, deed, task)
         process = context.Process(target=solver.run, args=asked, daemon=True, name="lightcube-solver")
         process.start()
         theirs.close()
         self._process, self._pipe = process, ours
         if deed == "start":
+            self._before = dict(self._facts), self.wall
             self.curve, self.wall, self._parts = [], {"pictures": [], "voxels": 0}, {}
-            self._facts |= _nothing() | {"made_of": self._of(), "pictures": []}
+            self._facts |= _nothing() | {"made_of": made_of(settings), "pictures": [], "said": []}
         self._set(status="stopping" if deed == "keep" else "running", sentence="")
         threading.Thread(target=self._hear, args=(process, ours), daemon=True).start()
 
@@ -169,6 +189,8 @@ class Solving:
                 with self._lock:
                     if process is self._process:
                         self._heard(last, facts)
+                if last in ("done", "kept"):  # there is something to take away now; nobody waits for the lock
+                    self._desk.hub.tell("state", self._desk.state())
         except (EOFError, OSError):
             process.join()
         with self._lock:
@@ -181,7 +203,7 @@ class Solving:
         """Take up one thing that was told."""
         if what == "wall":
             self.wall = facts
-            self._desk.hub.tell("solving", {"wall": facts})
+            self._tell({"wall": facts})
         elif what == "cube":
             self._parts = facts
             self._set(version=self._facts["version"] + 1)
@@ -195,20 +217,25 @@ class Solving:
             self._set(sentence=facts["sentence"])
         elif what in ("done", "kept"):
             for name, data in self._parts.items():
-                self._desk.project.write(data, MADE, f"{name}.gz")
+                self._desk.project.write(data, MADE, f"{self._kind.stem}.{name}.gz")
             self._set(status=what, left_s=None, sentence="", **facts)
         elif what == "failed":
             self._set(status="failed", left_s=None, sentence=facts["sentence"])
 
     def _ended(self, last: str) -> None:
         """The process is gone: as it was told to, or not."""
-        if last == "stopped" and self._after == "keep":
-            self._after = ""
+        after, self._after = self._after, ""
+        if last == "stopped" and after == "keep":
             self._begin("keep")
-        elif last == "stopped":
+        elif last == "stopped" and self._kind.can_pause:
             self._set(status="paused", left_s=None, sentence="")
-        elif last not in ("done", "kept", "failed"):
+        elif last == "stopped":
+            before, self.wall = self._before
+            self._set(**before)
+        elif last not in ("done", "kept", "failed") and self._kind.can_pause:
             self._set(status="paused", left_s=None, sentence="solving was ended from outside: go on, nothing is lost")
+        elif last not in ("done", "kept", "failed"):
+            self._set(status="failed", left_s=None, sentence="the making was ended from outside: begin anew")
 
     def _set(self, **facts: Any) -> None:
         """Change how it stands, keep that where it is another state, and tell everybody."""
@@ -218,11 +245,18 @@ class Solving:
             kept = {name: value for name, value in self._facts.items() if name not in ("sentence", "left_s")}
             try:
                 self._desk.project.write(
-                    json.dumps(kept | {"curve": self.curve, "wall": self.wall}).encode(), MADE, _FILE
+                    json.dumps(kept | {"curve": self.curve, "wall": self.wall}).encode(),
+                    MADE,
+                    f"{self._kind.stem}.json",
                 )
             except InputError as error:
                 self._facts["sentence"] = f"{error}"
-        self._desk.hub.tell("solving", self.described())
+        self._tell(self.described())
+
+    def _tell(self, facts: dict[str, Any]) -> None:
+        """Tell everybody, where the project is to become this."""
+        if self._desk.project.settings.kind == self._name:
+            self._desk.hub.tell("solving", facts)
 
     def _stop(self) -> None:
         """Tell the process to stop."""
@@ -237,17 +271,12 @@ class Solving:
 
     def _has_changed(self) -> bool:
         """Whether the cube was made of something else than what stands there now."""
-        return self._facts["made_of"] not in ("", self._of())
-
-    def _of(self) -> str:
-        """What the cube is made of, to see whether it has changed."""
-        settings = self._desk.project.settings
-        return json.dumps([settings.making.model_dump(), [each.model_dump() for each in settings.used]], sort_keys=True)
+        return self._facts["made_of"] not in ("", made_of(self._settings))
 
     def _remembered(self) -> dict[str, Any]:
         """How it stood when the studio was last open; nothing where that is not known."""
         try:
-            kept = json.loads(self._desk.project.path(MADE, _FILE).read_bytes())
+            kept = json.loads(self._desk.project.path(MADE, f"{self._kind.stem}.json").read_bytes())
             self.curve, self.wall = kept.pop("curve"), kept.pop("wall")
             if kept["status"] in _SAID:
                 return {name: kept[name] for name in self._facts if name in kept}
@@ -258,12 +287,12 @@ class Solving:
 
 def _nothing() -> dict[str, Any]:
     """Nothing is reached yet."""
-    return {"done": 0, "of": 0, "psnr": None, "left_s": None, "sentence": ""}
+    return {"done": 0, "of": 0, "psnr": None, "left_s": None, "sentence": "", "said": []}
 
 
 _SAID: dict[str, str] = {
     "idle": "not begun",
-    "running": "being solved",
+    "running": "being made",
     "stopping": "about to stop",
     "paused": "paused",
     "done": "finished",

@@ -16,10 +16,13 @@ from lightcube.errors import InputError
 from lightcube.events import Interrupted, Progress, Said
 from lightcube.io._files import system_errors
 from lightcube.studio.desk import Desk
+from lightcube.studio.kinds import Kind, kind_of
 from lightcube.studio.project import MADE
 
-#: The cube of a project, where things made of it lie, and what is known of these.
-CUBE, _AWAY, _KNOWN = "cube.zarr", "away", "taking.json"
+#: Where things lie that were made to be taken away, and what is known of these, by what they were made of and name.
+_AWAY, _KNOWN = "away", "taking.json"
+#: How far a thing is that was just begun.
+_NOTHING = {"done": 0, "of": 0}
 #: Letters of a file's name at most.
 _MOST_LETTERS = 60
 
@@ -80,38 +83,41 @@ class Taking:
 
     def state(self) -> dict[str, Any]:
         """How it stands, as plain JSON."""
-        from lightcube.studio.away import THINGS  # here: all that makes files comes with it
+        from lightcube.studio import away  # here: all that makes files comes with it
 
-        cube = self._cube_as_of()
+        kind, made = kind_of(self._desk.project.settings), self._made_at()
         with self._lock:
             things = []
-            for name, thing in THINGS.items():
-                known = self._made.get(name)
-                if known is not None and not self._path(known["file"]).is_file():
+            for name, thing in away.things(kind.things).items():
+                known = self._made.get(_key(kind, name))
+                if known is not None and not self._path(kind, known["file"]).is_file():
                     known = None
                 told: dict[str, Any] = {"name": name, "title": thing.title, "said": thing.said, "suffix": thing.suffix}
-                told |= {"group": thing.group, "made": None, "failed": self._failed.get(name, "")}
+                told |= {"group": thing.group, "made": None, "failed": self._failed.get(_key(kind, name), "")}
                 if known is not None:
-                    told["made"] = {**known, "is_old": known["of"] != cube}
+                    told["made"] = {**known, "is_old": known["of"] != made}
                 things.append(told)
-            return {"has_cube": cube is not None, "things": things, "doing": self._doing}
+            doing = self._doing if self._doing is None or self._doing["kind"] == kind.stem else {"name": "", **_NOTHING}
+            return {"has_cube": made is not None, "kind": kind.stem, "things": things, "doing": doing}
 
     def begin(self, name: str, asked: _Asked) -> None:
         """Begin to make a thing; `InputError` where there is none of the name, nothing to make it of, or no time."""
-        from lightcube.studio.away import THINGS
+        from lightcube.studio import away
 
-        if name not in THINGS:
-            raise InputError(f"nothing that can be taken away has this name: ask for one of {', '.join(THINGS)}")
-        if self._cube_as_of() is None:
-            raise InputError("there is no cube yet: make one first")
+        kind = kind_of(self._desk.project.settings)
+        things = away.things(kind.things)
+        if name not in things:
+            raise InputError(f"nothing that can be taken away has this name: ask for one of {', '.join(things)}")
+        if self._made_at() is None:
+            there = "is none of" if kind.are == "is" else "are none of"
+            raise InputError(f"there {there} {kind.called} yet: make {'it' if kind.are == 'is' else 'them'} first")
         with self._lock:
             if self._doing is not None:
-                busy = THINGS[self._doing["name"]].title.lower()
-                raise InputError(f"{busy} is being made: wait for it, or stop it")
-            self._doing = {"name": name, "done": 0, "of": 0}
-            self._failed.pop(name, None)
+                raise InputError(f"{self._doing['title'].lower()} is being made: wait for it, or stop it")
+            self._doing = {"name": name, "kind": kind.stem, "title": things[name].title, **_NOTHING}
+            self._failed.pop(_key(kind, name), None)
             self._stop.clear()
-            self._thread = threading.Thread(target=self._make, args=(name, asked), daemon=True)
+            self._thread = threading.Thread(target=self._make, args=(kind, name, asked), daemon=True)
             self._thread.start()
         self._tell()
 
@@ -128,38 +134,39 @@ class Taking:
     def file(self, name: str) -> Path:
         """Where the file of a thing lies; `InputError` where it was not made."""
         with self._lock:
-            known = self._made.get(name)
-        path = None if known is None else self._path(known["file"])
+            kind = kind_of(self._desk.project.settings)
+            known = self._made.get(_key(kind, name))
+        path = None if known is None else self._path(kind, known["file"])
         if path is None or not path.is_file():
             raise InputError("this was not made yet, or its file is gone: make it first")
         return path
 
-    def _make(self, name: str, asked: _Asked) -> None:
+    def _make(self, kind: Kind, name: str, asked: _Asked) -> None:
         """Make a thing, in a thread of its own; whatever is wrong with it is told."""
         from lightcube.studio import away
         from lightcube.viewer.label import Label
 
         try:
-            title = self._desk.project.settings.title or "Light cube"
-            folder = self._desk.project.path(MADE, _AWAY)
+            title = self._desk.project.settings.title or kind.title.removeprefix("A ").capitalize()
+            folder = self._desk.project.path(MADE, _AWAY, kind.stem)
             with system_errors(folder, "writing"):
-                folder.mkdir(exist_ok=True)
-            target = self._path(f"{_called(title)}-{name}.{away.THINGS[name].suffix}")
-            of, label = self._cube_as_of(), Label(title, asked.by, asked.note)
-            source = self._desk.project.path(MADE, CUBE)
-            said = away.make(name, source, target, label, self._told, captions=asked.captions)
+                folder.mkdir(parents=True, exist_ok=True)
+            target = self._path(kind, f"{_called(title)}-{name}.{away.things(kind.things)[name].suffix}")
+            of, label = self._made_at(kind), Label(title, asked.by, asked.note)
+            source = self._desk.project.path(MADE, kind.file)
+            said = away.make(kind.things, name, source, target, label, self._told, captions=asked.captions)
             known = {"file": target.name, "bytes": target.stat().st_size, "said": list(said), "of": of}
             with self._lock:
-                self._made[name] = known
+                self._made[_key(kind, name)] = known
                 self._desk.project.write(json.dumps(self._made).encode(), MADE, _KNOWN)
         except Interrupted:
             pass
         except InputError as error:
-            self._failed[name] = f"{error}"
+            self._failed[_key(kind, name)] = f"{error}"
         except MemoryError:
-            self._failed[name] = "this needs more memory than there is: make a smaller cube"
+            self._failed[_key(kind, name)] = "this needs more memory than there is: make it smaller"
         except OSError as error:
-            self._failed[name] = f"its file cannot be written ({error.strerror}): look whether the disk is full"
+            self._failed[_key(kind, name)] = f"its file cannot be written ({error.strerror}): is the disk full?"
         finally:
             with self._lock:
                 self._doing = None
@@ -179,13 +186,14 @@ class Taking:
     def _tell(self) -> None:
         self._desk.hub.tell("taking", self.state())
 
-    def _cube_as_of(self) -> float | None:
-        """When the cube was made; None where there is none."""
-        file = self._desk.project.path(MADE, CUBE) / "zarr.json"
+    def _made_at(self, kind: Kind | None = None) -> float | None:
+        """When what things are made of was made; None where there is nothing."""
+        kind = kind or kind_of(self._desk.project.settings)
+        file = self._desk.project.path(MADE, kind.file) / "zarr.json"
         return file.stat().st_mtime if file.is_file() else None
 
-    def _path(self, name: str) -> Path:
-        return self._desk.project.path(MADE, _AWAY, name)
+    def _path(self, kind: Kind, name: str) -> Path:
+        return self._desk.project.path(MADE, _AWAY, kind.stem, name)
 
     def _read(self) -> dict[str, dict[str, Any]]:
         """What was made before the studio was started; what is damaged was not made."""
@@ -202,6 +210,11 @@ class Taking:
             }
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return {}
+
+
+def _key(kind: Kind, name: str) -> str:
+    """What a thing is known by: what it is made of, and its name."""
+    return f"{kind.stem}/{name}"
 
 
 def _called(title: str) -> str:

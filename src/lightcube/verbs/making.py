@@ -18,7 +18,7 @@ from lightcube.verbs.hulls import Wanted
 from lightcube.wording import counted
 
 #: What is left out of silhouettes is worth a word above this part of one, and advice above that.
-_SOME, _MUCH = 0.0005, 0.05
+_SOME, _MUCH = 0.005, 0.05
 #: How thick a base is where nobody says so, in longest sides of the block.
 _BASE = 0.03
 

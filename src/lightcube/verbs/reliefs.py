@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from lightcube import io
 from lightcube.drawing.relief_sheet import as_seen, in_words
 from lightcube.errors import InputError
+from lightcube.events import Tell
 from lightcube.pictures.pictures import Pictures
 from lightcube.scoring.metrics import mark
 from lightcube.scoring.reliefs import score_relief
@@ -40,23 +41,36 @@ def read(sources: Sequence[str]) -> Pictures:
     return Pictures(images, tuple(name for pictures in each for name in pictures.names), transfer=each[0].transfer)
 
 
-def expected(pictures: Pictures, recipe: ReliefRecipe, *, colour: bool) -> dict[str, Any]:
-    """What a relief would be at least, and how long it takes: it is made and scored with a tenth of the sweeps.
+def rehearsed(
+    pictures: Pictures, recipe: ReliefRecipe, *, colour: bool, tell: Tell | None = None
+) -> tuple[Relief, float]:
+    """A relief made with a tenth of the sweeps, and how many seconds all of them take.
 
     Takes and raises what `lightcube.relief` does.
     """
     share = QUICK if recipe.method == "global" and recipe.sweeps >= QUICK else 1
     relief(pictures, replace(recipe, sweeps=1), colour=colour)  # what is to be compiled is, before the clock runs
     began = perf_counter()
-    made = relief(pictures, replace(recipe, sweeps=recipe.sweeps // share), colour=colour)
-    seconds, scores = share * (perf_counter() - began), score_relief(made, off=True)
+    made = relief(pictures, replace(recipe, sweeps=recipe.sweeps // share), colour=colour, tell=tell)
+    return made, share * (perf_counter() - began)
+
+
+def expected(pictures: Pictures, recipe: ReliefRecipe, *, colour: bool) -> dict[str, Any]:
+    """What a relief would be at least, and how long it takes: as its rehearsal is."""
+    made, seconds = rehearsed(pictures, recipe, colour=colour)
+    return facts_of(made, score_relief(made, off=True), seconds)
+
+
+def facts_of(made: Relief, scores: Mapping[str, Any], seconds: float) -> dict[str, Any]:
+    """What a rehearsal and its scores tell."""
+    recipe = made.recipe
     kept = ("psnr_mean", "psnr_min", "near_psnr_mean", "near_psnr_min", "black", "off")
     wide, deep, _ = made.size_mm
     size_mm = [wide, deep, recipe.base_mm + recipe.top_mm]
     return {
         "seconds": seconds,
         "size_mm": size_mm,
-        "sweeps": made.recipe.sweeps,
+        "sweeps": recipe.sweeps,
         **{each: scores[each] for each in kept},
     }
 

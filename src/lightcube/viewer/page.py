@@ -57,16 +57,25 @@ def page(cube: Cube | Relief, label: str | Label, *, full: bool = False, callbac
     return page_of(Label.of(label), *contents(cube, label, full=full, callback=callback))
 
 
+def parts_of(thing: Cube | Relief, label: str | Label) -> tuple[dict[str, Any], bytes]:
+    """What the page's modules read of a cube, films or a relief: its description, and its voxels or heights."""
+    if isinstance(thing, Relief):
+        return describe_relief(thing, label), heights_data(thing)
+    if isinstance(thing.grid, Stack):
+        return describe_films(thing, label), films_data(thing)
+    return contents(thing, label)
+
+
 def relief_page(relief: Relief, label: Label) -> str:
     """The page in which the lamp goes round a relief."""
-    description = describe_relief(relief, label)
+    description, heights = parts_of(relief, label)
     names = [picture["name"] for picture in description["pictures"]]
-    return _put_together(label, description, heights_data(relief), WHAT, names)
+    return _put_together(label, description, heights, WHAT, names)
 
 
 def films_page(cube: Cube, label: Label) -> str:
     """The page in which light falls through a stack of films, lamp by lamp."""
-    return _put_together(label, describe_films(cube, label), films_data(cube), WHAT_FILMS, cube.names)
+    return _put_together(label, *parts_of(cube, label), WHAT_FILMS, cube.names)
 
 
 def page_of(label: Label, description: dict[str, Any], voxels: bytes) -> str:

@@ -7,7 +7,7 @@ import { listenTo } from "./tools/listening.js";
 /**
  * What every part is given.
  *
- * `state` is how all stands, as /api/state tells it; `ask(path, given)` asks the API and says a sentence where that is
+ * `state` is how all stands, as /api/state tells it; `kinds` what can be made, `kind()` what is to be made; `ask(path, given)` asks the API and says a sentence where that is
  * refused (it then returns null); `on(name, heard)` hears events of the stream, "state" among them; `say(sentence, kind)`
  * says a sentence, kind "good" or "bad"; `open(door)` goes to a door, `goTo(part)` to a part.
  *
@@ -27,9 +27,9 @@ async function openStudio(root) {
     },
   };
   studio.ask = askOf(studio);
-  const [known, state] = await Promise.all([studio.ask("/api/parts"), studio.ask("/api/state")]);
-  if (known === null || state === null) return;
-  studio.state = state;
+  const [known, kinds, state] = await Promise.all(["parts", "kinds", "state"].map((asked) => studio.ask(`/api/${asked}`)));
+  if (known === null || kinds === null || state === null) return;
+  Object.assign(studio, { state, kinds, kind: () => kinds.find(({ name }) => name === studio.state.settings.kind) });
   const frame = createFrame(studio, known);
   Object.assign(studio, { say: frame.say, open: frame.open, goTo: frame.goTo });
   root.replaceChildren(...frame.elements);

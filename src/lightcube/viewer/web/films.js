@@ -26,21 +26,22 @@ const STAYS = 2;
  * @param {HTMLElement} root is emptied; keeps what is returned as `root.lightcube` too
  * @param {Object} scene
  * @param {{films: Float32Array, wanted: Float32Array|null}} given
+ * @param {{inside: boolean}} options as `mount` of a cube
  * @returns {{picture: number, off: number, resting: boolean, show: function(number, number): void,
  *   light: function(): Float32Array, dispose: function(): void}} the picture that is shown, and how far films lie off,
  *   mm; `show` sets both; `light` is what the paper shows, linear
  */
-export function mountFilms(root, scene, given) {
+export function mountFilms(root, scene, given, { inside = false } = {}) {
   const chosen = { picture: 0, off: 0, ...FIRST, details: false, big: false, dark: null, playing: false };
   const canvas = element("canvas", { class: "room", tabindex: 0, role: "img", "aria-label": "The films in their room" });
   const app = { root, scene, given, chosen, canvas, calm: matchMedia("(prefers-reduced-motion: reduce)").matches };
   app.does = actionsOf(app);
   app.parts = partsOf(app);
   app.loop = createLoop(...showing(app));
-  const theme = followTheme(root, false, (dark) => {
+  const theme = followTheme(root, inside, (dark) => {
     if (!app.ownTheme && chosen.dark !== dark) setTheme(app, dark);
   });
-  const ends = [theme, listenToKeys(document, app.does), listenTo(app)];
+  const ends = [theme, listenToKeys(inside ? root : document, app.does), listenTo(app, inside)];
   root.classList.add("lightcube");
   root.replaceChildren(...layoutOf(app.parts, canvas)); // its new size asks for the first drawing
   root.lightcube = {
@@ -136,13 +137,13 @@ function layoutOf(parts, canvas) {
   return [stage, dock, side, parts.said, parts.help.element];
 }
 
-function listenTo({ does, canvas, loop, parts }) {
+function listenTo({ does, canvas, loop, parts }, inside) {
   const nothing = () => {};
   listenToGestures(canvas, {
     begin: () => parts.hint.done(),
     turn: null,
     ...{ eye: does.eye, zoom: does.zoom, reset: does.reset, release: nothing, point: nothing, leave: nothing },
-  }, false);
+  }, inside);
   const resized = new ResizeObserver(loop.ask);
   resized.observe(canvas);
   return () => resized.disconnect();

@@ -26,12 +26,13 @@ const HERE = 0.05;
  * @param {HTMLElement} root is emptied; keeps what is returned as `root.lightcube` too
  * @param {Object} scene
  * @param {Float64Array} heights
- * @param {{compact: boolean}} options compact: the plate, the controls and the film strip alone, for notebooks
+ * @param {{compact: boolean, inside: boolean}} options compact: the plate, the controls and the film strip alone, for
+ *   notebooks; inside: as `mount` of a cube
  * @returns {{angle: number, resting: boolean, turnTo: function(number): void, onTurn: function(function(number): void): void,
  *   light: function(): Uint8ClampedArray, dispose: function(): void}} as `mount` of a cube; `light` is what is seen from
  *   above, as levels
  */
-export function mountRelief(root, scene, heights, { compact = false } = {}) {
+export function mountRelief(root, scene, heights, { compact = false, inside = compact } = {}) {
   const stops = [...new Set(scene.pictures.map(({ angle_deg }) => angle_deg))].sort((a, b) => a - b);
   const turning = new Turning(stops, matchMedia("(prefers-reduced-motion: reduce)").matches);
   const chosen = { elevation: scene.elevation_deg, blur: "near", details: false, big: false, dark: null };
@@ -42,10 +43,10 @@ export function mountRelief(root, scene, heights, { compact = false } = {}) {
   app.loop = createLoop(...showing(app));
   const beckoning = compact ? null : createBeckoning(root, turning, app.loop.ask);
   app.rested = () => beckoning?.drawn();
-  const theme = followTheme(root, compact, (dark) => {
+  const theme = followTheme(root, inside, (dark) => {
     if (!app.ownTheme && chosen.dark !== dark) setTheme(app, dark);
   });
-  const ends = [() => beckoning?.end(), theme, listenToKeys(compact ? root : document, app.does), listenTo(app)];
+  const ends = [() => beckoning?.end(), theme, listenToKeys(inside ? root : document, app.does), listenTo(app)];
   root.classList.add("lightcube");
   root.classList.toggle("compact", compact);
   root.replaceChildren(...layoutOf(app.parts, canvas, compact)); // its new size asks for the first drawing

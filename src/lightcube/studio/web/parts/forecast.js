@@ -2,21 +2,11 @@
 
 import { element } from "/viewer/tools/elements.js";
 import { sentenceOf } from "../tools/asking.js";
+import { createChoice, createCount, createSlider } from "../tools/controls.js";
+import { MAKINGS } from "../tools/makings.js";
 
-/** Milliseconds between two changes that a slider sends. */
-const EVERY = 90;
 const WORDS = { good: "good", fair: "fair", poor: "poor" };
 const per = (value) => `${Math.round(100 * value)} %`;
-
-const SLIDERS = [
-  { name: "width", label: "How wide", low: 0.2, high: 1, step: 0.05, ends: ["small pictures", "wide pictures"], text: (value) => `${per(value)} of the cube` },
-  { name: "lamp", label: "Lamp", low: 0, high: 6, step: 0.5, ends: ["a gentle lamp", "a strong lamp"], to: (value) => Math.log2(value), from: (value) => 2 ** value,
-    text: (value) => (value === 1 ? "as white as the wall" : `${Number(value.toPrecision(2))} times as strong`) },
-  { name: "hold_deg", label: "Hold", low: 0, high: 3, step: 0.25, ends: ["a blink", "long"], text: (value) => (value ? `stands for ± ${value}°` : "only at its stop") },
-  { name: "richness", label: "Glass", low: 0.02, high: 0.5, step: 0.02, ends: ["clear", "rich"], to: (value) => value || 0.5, from: (value) => (value >= 0.5 ? 0 : value),
-    text: (value) => (value ? `lets ${per(Math.exp(-10 * value))} through 1 cm of the darkest` : "as rich as can be") },
-  { name: "voxels", label: "How fine", low: 32, high: 128, step: 16, ends: ["quick", "fine"], text: (value) => `${value} voxels a side` },
-];
 
 /** Fill the section of the forecast. */
 export function mount(section, studio) {
@@ -25,16 +15,12 @@ export function mount(section, studio) {
   const bar = element("div", { class: "bar" }, element("i"));
   const costly = element("p", { class: "quiet costly" });
   const capacity = element("div", { class: "capacity", role: "img" }, element("span", { text: "Room in the glass" }), bar, costly);
-  const empty = element("p", { class: "quiet", text: "As soon as there are two pictures, you see here how they will look on the wall, before anything is made." });
-  const made = SLIDERS.map((slider) => sliderOf(slider, studio));
-  const count = countOf(studio);
-  const choices = element("div", { class: "row choices-of-making" },
-    choiceOf(studio, "mat", "Around the pictures", [["dark", "dark"], ["grey", "grey"], ["light", "light"], ["none", "anything"]]),
-    choiceOf(studio, "fit", "Other shapes", [["crop", "cut to fit"], ["pad", "keep all"]]),
-    choiceOf(studio, "order", "Order", [["given", "as given"], ["best", "the best one"]]),
-    choiceOf(studio, "quality", "Care", [["draft", "quick"], ["normal", "normal"], ["best", "best"]]));
-  const sliders = element("div", { class: "sliders" }, count.element, ...made.map((each) => each.element));
-  section.append(empty, element("div", { class: "looks" }, verdict, walls, capacity), sliders, choices);
+  const empty = element("p", { class: "quiet", text: "As soon as there are pictures enough, you see here how they will look, before anything is made." });
+  const notes = element("ul", { class: "notes" });
+  const sliders = element("div", { class: "sliders" });
+  const choices = element("div", { class: "row choices-of-making" });
+  section.append(empty, element("div", { class: "looks" }, verdict, walls, capacity, notes), sliders, choices);
+  let controls = [];
   const known = new Map();
 
   function show(facts) {
@@ -50,15 +36,40 @@ export function mount(section, studio) {
     bar.firstChild.style.width = `${100 * full}%`;
     bar.dataset.full = full < 0.55 ? "little" : full < 0.8 ? "much" : "all";
     capacity.setAttribute("aria-label", `${per(full)} of the room in the glass is taken`);
+    capacity.hidden = facts.full === undefined;
     costly.textContent = costsOf(facts);
+    notes.replaceChildren(...(facts.notes ?? []).map((note) => element("li", { text: sentenceOf(note) })));
+  }
+
+  /** Show what can be said of a kind of thing. */
+  function fill(kind) {
+    if (known.get("kind") === kind) return;
+    known.set("kind", kind);
+    walls.classList.toggle("on-paper", kind === "shape");
+    const { counted = false, sliders: each, choices: few } = MAKINGS[kind];
+    const field = studio.kind().settings;
+    const makes = [[sliders, createSlider, each], [choices, createChoice, few]];
+    controls = counted ? [createCount(studio)] : [];
+    sliders.replaceChildren(...controls.map((control) => control.element));
+    choices.replaceChildren();
+    for (const [place, create, rows] of makes) {
+      for (const row of rows) {
+        const { element: control, update } = create(row, field, studio);
+        place.append(control);
+        controls.push({ update(state) {
+          if (row.where) control.hidden = !row.where(state.settings[field]);
+          update(state);
+        } });
+      }
+    }
   }
 
   studio.on("forecast", show);
   return {
     update(state) {
-      for (const each of [...made, count]) each.update(state);
-      for (const each of choices.querySelectorAll("select")) each.value = state.settings.making[each.name];
-      sliders.hidden = choices.hidden = state.settings.pictures.length < 2;
+      fill(state.settings.kind);
+      for (const each of controls) each.update(state);
+      sliders.hidden = choices.hidden = state.settings.pictures.length === 0;
       show(state.forecast);
     },
   };
@@ -72,14 +83,14 @@ function said({ status, pictures, sentence, psnr }) {
   if (!pictures.length) return ["Looking …"];
   const counts = Object.keys(WORDS).map((word) => [word, pictures.filter((each) => each.mark === word).length]).filter(([, count]) => count);
   const all = counts.length === 1;
-  const words = counts.map(([word, count]) => element("b", { class: word, text: all ? `All ${count} pictures will be ${word}` : `${count} ${word}` }));
+  const words = counts.map(([word, count]) => element("b", { class: word, text: all ? `${count === 1 ? "The picture" : `All ${count} pictures`} will be ${word}` : `${count} ${word}` }));
   const mixed = words.flatMap((word, number) => (number ? [number + 1 === words.length ? " and " : ", ", word] : [word]));
   const first = status === "looking" || status === "first" ? element("span", { class: "quiet", text: " · looking closer …" }) : "";
   return all ? [...mixed, ".", first] : [...mixed, " are to be expected.", first];
 }
 
-function wallOf({ name, image, mark, reason, psnr }) {
-  return element("li", { title: `${psnr} dB` },
+function wallOf({ name, image, mark, reason, worth }) {
+  return element("li", { title: worth },
     element("img", { src: `data:image/png;base64,${image}`, alt: `${name} on its wall: ${mark}` }),
     element("span", { class: "name", text: name }),
     element("span", { class: `word ${mark}`, text: mark }),
@@ -87,72 +98,10 @@ function wallOf({ name, image, mark, reason, psnr }) {
 }
 
 function costsOf({ costs, pictures, full }) {
-  if (!pictures.length) return "";
+  if (!pictures.length || full === undefined) return "";
   if (!costs || costs.length !== pictures.length) return full > 0.8 ? "Nearly all is taken: fewer or smaller pictures become better." : "";
   if (full < 0.3) return "There is plenty of room: more or wider pictures would fit.";
   const most = costs.indexOf(Math.max(...costs));
   if (costs[most] < 0.7) return "All pictures take about as much.";
   return `“${pictures[most].name}” takes most: without it the others would come out clearer.`;
-}
-
-/** A slider that sends what it says while it moves, not more often than can be answered. */
-function sliderOf({ name, label, low, high, step, ends, text, to = (value) => value, from = (value) => value }, studio) {
-  const value = element("span", { class: "now", "aria-hidden": "true" });
-  const input = element("input", { type: "range", min: low, max: high, step, "aria-label": label });
-  let [waiting, sent] = [0, 0];
-  const send = () => {
-    clearTimeout(waiting);
-    const soon = sent + EVERY - performance.now();
-    if (soon > 0) {
-      waiting = setTimeout(send, soon);
-      return;
-    }
-    sent = performance.now();
-    studio.ask("/api/settings", { method: "PATCH", json: { making: { [name]: from(Number(input.value)) } } });
-  };
-  const show = (now) => {
-    value.textContent = text(now);
-    input.setAttribute("aria-valuetext", text(now));
-    input.style.setProperty("--part", (to(now) - low) / (high - low));
-  };
-  input.addEventListener("input", () => {
-    show(from(Number(input.value)));
-    send();
-  });
-  return {
-    element: element("label", { class: "setting" }, element("span", { class: "label" }, element("b", { text: label }), value), input,
-      element("span", { class: "ends quiet" }, ...ends.map((end) => element("span", { text: end })))),
-    update({ settings }) {
-      const now = settings.making[name];
-      if (document.activeElement !== input || !input.matches(":active")) input.value = to(now);
-      show(now);
-    },
-  };
-}
-
-/** How many of the pictures are used. */
-function countOf(studio) {
-  const slider = sliderOf({ name: "count", label: "How many", low: 2, high: 2, step: 1, ends: ["two", "all of them"], text: (value) => (value ? `the first ${value}` : "all of them") }, studio);
-  const input = slider.element.querySelector("input");
-  const value = slider.element.querySelector(".now");
-  let all = 2;
-  return {
-    element: slider.element,
-    update({ settings }) {
-      all = settings.pictures.length;
-      const count = Math.min(settings.making.count || all, all);
-      slider.element.hidden = all < 3;
-      input.max = all;
-      if (!input.matches(":active")) input.value = count;
-      value.textContent = count >= all ? `all ${all}` : `the first ${count}`;
-      input.setAttribute("aria-valuetext", value.textContent);
-      input.style.setProperty("--part", (count - 2) / Math.max(all - 2, 1));
-    },
-  };
-}
-
-function choiceOf(studio, name, label, options) {
-  const select = element("select", { name, change: () => studio.ask("/api/settings", { method: "PATCH", json: { making: { [name]: select.value } } }) },
-    ...options.map(([value, text]) => element("option", { value, text })));
-  return element("label", { class: "choice" }, element("span", { class: "quiet", text: label }), select);
 }

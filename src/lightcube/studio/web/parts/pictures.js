@@ -18,10 +18,11 @@ export function mount(section, studio) {
   const counted = element("p", { class: "quiet counted" });
   const progress = element("p", { class: "quiet taking-in", role: "status" });
   const samples = element("div", { class: "row samples" });
+  const wants = element("p", { class: "quiet" });
   const welcome = element("div", { class: "welcome" },
     glyph("drop"),
     element("p", { class: "big", text: "Drop pictures here" }),
-    element("p", { class: "quiet", text: "Photographs, drawings, an animation or a video. At each stop of the turning cube its shadow will be one of them." }));
+    wants);
   const tools = element("div", { class: "row tools-of-pictures" },
     element("button", { type: "button", class: "main choose", text: "Choose pictures", click: () => chooser.click() }),
     element("button", { type: "button", class: "switch", click: webcam }, glyph("camera"), element("span", { text: "Webcam" })),
@@ -36,7 +37,7 @@ export function mount(section, studio) {
   async function takeAll(files) {
     const room = studio.state.pictures.most - studio.state.settings.pictures.length;
     if (files.length > room) {
-      studio.say(`These are ${files.length} files, and there is room for ${room}: a cube shows at most ${studio.state.pictures.most} pictures. Drop fewer.`, "bad");
+      studio.say(`These are ${files.length} files, and there is room for ${room}: a project has at most ${studio.state.pictures.most} pictures. Drop fewer.`, "bad");
       return;
     }
     const notes = [];
@@ -66,12 +67,13 @@ export function mount(section, studio) {
 
   return {
     update({ settings, pictures }) {
-      const asked = JSON.stringify([settings.pictures, pictures.missing, settings.making.count]);
+      const asked = JSON.stringify([settings.pictures, pictures, settings.kind]);
       if (asked === known) return;
       known = asked;
       const count = settings.pictures.length;
       section.toggleAttribute("data-empty", count === 0);
-      counted.textContent = count === 1 ? "1 picture: one more at least is needed" : `${count} pictures, in the order of the turn`;
+      counted.textContent = countedOf(count, pictures, settings);
+      wants.textContent = studio.kind().wants;
       clear.hidden = count < 2;
       samples.replaceChildren(element("span", { class: "quiet", text: "To try:" }), ...pictures.samples.map(({ name, title }) =>
         element("button", { type: "button", class: "switch", text: title, click: () => studio.ask(`/api/samples/${name}`, { method: "POST" }) })));
@@ -80,27 +82,35 @@ export function mount(section, studio) {
   };
 }
 
+/** What is said of how many pictures there are. */
+function countedOf(count, { used, least, takes }, { kind }) {
+  const pictures = count === 1 ? "1 picture" : `${count} pictures`;
+  const more = least - count;
+  if (more > 0) return `${pictures}: ${more === 1 ? "one more at least is" : `${more} more at least are`} needed`;
+  if (used < count && takes < count) return `${pictures}, of which the first ${used === 1 ? "is" : `${used} are`} used`;
+  return kind === "cube" ? `${pictures}, in the order of the turn` : pictures;
+}
+
 /** Make the strip anew, and keep the focus where it was. */
-function fill(strip, settings, { missing }, studio) {
+function fill(strip, settings, known, studio) {
   const at = document.activeElement?.closest?.("[data-key]")?.dataset.key;
   const what = document.activeElement?.dataset?.does;
-  strip.replaceChildren(...settings.pictures.map((picture, number) => itemOf(picture, number, settings, missing, studio)));
+  strip.replaceChildren(...settings.pictures.map((picture, number) => itemOf(picture, number, known, studio)));
   if (at !== undefined) strip.querySelector(`[data-key="${at}"] [data-does="${what}"]`)?.focus({ preventScroll: true });
 }
 
-function itemOf(picture, number, { making }, missing, studio) {
+function itemOf(picture, number, { used, missing, places }, studio) {
   const { key, name, crop } = picture;
   const change = (json) => studio.ask(`/api/pictures/${key}`, { method: "PATCH", json });
   const gone = missing.includes(key);
-  const used = making.count === 0 || number < making.count;
   const image = element("img", { src: `/api/pictures/${key}?small=true`, alt: "", draggable: "false" });
   const shown = element("div", { class: "cropped" }, image);
   placeCrop(image, crop);
   const named = element("input", { type: "text", maxlength: "80", value: name, "aria-label": `Name of picture ${number + 1}`, "data-does": "name",
     change: () => (named.value.trim() ? change({ name: named.value.trim() }) : (named.value = name)) });
-  return element("li", { "data-key": key, "data-unused": !used, tabindex: "0", "data-does": "item",
+  return element("li", { "data-key": key, "data-unused": number >= used, tabindex: "0", "data-does": "item",
     "aria-label": `Picture ${number + 1}, ${name}. Alt with the arrow keys moves it.` },
-    element("span", { class: "number", text: number + 1 }),
+    element("span", { class: "number", text: (number < used && places[number]) || number + 1 }),
     gone ? element("p", { class: "gone", text: "This picture vanished from the folder: remove it." }) : shown,
     named,
     element("div", { class: "deeds" },

@@ -36,8 +36,7 @@ export function mount(section, studio) {
     now.room.stops_deg = spread(count);
     moved();
   } });
-  const keep = element("button", { type: "button", class: "main", text: "Keep this room", click: save });
-  const where = element("p", { class: "quiet", hidden: true });
+  const keep = element("button", { type: "button", class: "main", text: "Make a cube for this room", click: save });
   section.append(
     element("p", { class: "quiet", text: "Drag lamps and screens, or choose one and move it with the arrow keys. What cannot be is red, and says why." }),
     element("div", { class: "row presets" }, element("span", { class: "quiet", text: "Begin with" }), ...PRESETS.map(([text, preset]) =>
@@ -45,7 +44,7 @@ export function mount(section, studio) {
     element("div", { class: "plans" }, ...plans.map((plan) => plan.element)),
     things, about,
     element("div", { class: "row" }, element("label", { for: "rooms-stops", text: "Stops of the turntable" }), stops),
-    list, element("div", { class: "row" }, keep), where);
+    list, element("div", { class: "row" }, keep));
 
   function take(room) {
     Object.assign(now, { room, chosen: room.screens[0].name });
@@ -91,11 +90,9 @@ export function mount(section, studio) {
   }
 
   async function save() {
-    const kept = await studio.ask("/api/rooms/keep", { json: now.room });
-    if (kept === null) return;
-    studio.say("The room is kept in the project.", "good");
-    where.hidden = false;
-    where.replaceChildren("A cube for it is made in a terminal: ", element("code", { text: kept.command }));
+    if ((await studio.ask("/api/rooms/keep", { json: now.room })) === null) return;
+    studio.open("make");
+    studio.say("This is a project for your room now. Drop a picture for each wall at each stop.", "good");
   }
 
   function draw() {

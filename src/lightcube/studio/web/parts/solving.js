@@ -4,7 +4,8 @@ import { element } from "/viewer/tools/elements.js";
 import { sentenceOf } from "../tools/asking.js";
 
 const BUTTONS = [
-  ["start", "Make the cube", "main"],
+  ["start", "Make it", "main"],
+  ["stop", "Stop", "switch"],
   ["pause", "Pause", "switch"],
   ["resume", "Go on", "main"],
   ["keep", "Stop and keep", "switch"],
@@ -16,29 +17,33 @@ export function mount(section, studio) {
   const does = Object.fromEntries(BUTTONS.map(([deed, text, kind]) => [deed, element("button", { type: "button", class: kind, text, "data-deed": deed,
     click: () => studio.ask(`/api/solving/${deed}`, { method: "POST" }) })]));
   const said = element("p", { class: "state", role: "status" });
-  const bar = element("progress", { max: "1", value: "0", "aria-label": "How far the cube is" });
+  const found = element("ul", { class: "notes" });
+  const bar = element("progress", { max: "1", value: "0", "aria-label": "How far it is" });
   const walls = element("ol", { class: "walls live", "aria-label": "What the wall shows now" });
   const curve = element("canvas", { width: "600", height: "120", "aria-hidden": "true" });
   const more = element("details", { class: "curve" }, element("summary", { text: "How it went" }), curve,
     element("p", { class: "quiet", text: "The higher, the nearer the pictures come to what is wanted (decibels)." }));
   const turn = element("button", { type: "button", class: "switch", text: "Turn it", click: () => studio.goTo("turning") });
-  section.append(element("div", { class: "row" }, ...Object.values(does), turn), bar, said, walls, more);
-  let points = [];
+  section.append(element("div", { class: "row" }, ...Object.values(does), turn), bar, said, found, walls, more);
+  let [points, kind] = [[], ""];
 
   function show(facts) {
-    const { status, can, done, of, sentence, changed } = facts;
+    const { status, can, done, of, changed } = facts;
     section.dataset.status = status;
     for (const [deed, button] of Object.entries(does)) button.hidden = !can.includes(deed);
-    const enough = studio.state.settings.pictures.length > 1;
+    const { called, are } = studio.kind();
+    const { used, least } = studio.state.pictures;
+    const enough = used >= least;
     does.start.disabled = !enough;
-    does.start.textContent = status === "idle" ? "Make the cube" : "Make it anew";
+    does.start.textContent = status === "idle" ? `Make ${called}` : are === "are" ? "Make them anew" : "Make it anew";
     does.start.className = ["done", "kept", "paused", "failed"].includes(status) && !changed ? "switch" : "main";
     does.resume.className = does.start.className === "main" ? "switch" : "main";
     turn.hidden = facts.version === 0 || document.getElementById("part-turning") === null;
     bar.hidden = !["running", "stopping", "paused"].includes(status);
     if (status === "running" && of === 0) bar.removeAttribute("value");
     else bar.value = of ? done / of : 0;
-    said.textContent = stateOf(facts, enough);
+    said.textContent = stateOf(facts, enough, studio.kind());
+    found.replaceChildren(...(facts.said ?? []).map((line) => element("li", { text: sentenceOf(line) })));
     section.toggleAttribute("data-bad", status === "failed");
     if (facts.psnr !== null && of) {
       if (points.at(-1)?.[0] > done / of) points = [];
@@ -47,7 +52,11 @@ export function mount(section, studio) {
     }
     more.hidden = points.length < 2;
     if (status === "idle") walls.replaceChildren();
-    void sentence;
+    if (kind !== facts.kind) {
+      kind = facts.kind;
+      walls.classList.toggle("on-paper", kind === "shape");
+      begin();
+    }
   }
 
   function look({ pictures, voxels }) {
@@ -67,26 +76,33 @@ export function mount(section, studio) {
   studio.on("solving", (facts) => {
     if (!facts.wall) studio.state.solving = facts;
   });
-  studio.ask("/api/solving").then((facts) => {
-    if (facts === null) return;
+  /** Show how it stands where nothing was heard of it yet. */
+  async function begin() {
+    const facts = await studio.ask("/api/solving");
+    if (facts === null || facts.kind !== kind) return;
     points = facts.curve;
-    if (facts.wall.pictures.length) look(facts.wall);
+    look(facts.wall);
     show(facts);
     if (points.length > 1) draw(curve, points);
-  });
+  }
+
   return { update: (state) => show(state.solving) };
 }
 
 /** What is said of how it stands. */
-function stateOf({ status, sentence, left_s, psnr, pictures, changed, done, of }, enough) {
+function stateOf({ status, sentence, left_s, psnr, changed, done, of }, enough, { called, are, can_pause: canPause }) {
+  const name = `${called[0].toUpperCase()}${called.slice(1)}`;
+  const were = are === "are" ? "were" : "was";
   if (status === "running" && sentence) return `${sentenceOf(sentence).replace(/\.$/, "")} …`;
-  if (status === "running") return left_s === null ? "Begun …" : `${leftOf(left_s)}${qualityOf(psnr)}`;
+  const part = `${Math.round((100 * done) / Math.max(of, 1))} %`;
+  if (status === "running") return left_s === null ? (of ? `${part} …` : "Begun …") : `${leftOf(left_s)}${qualityOf(psnr)}`;
   if (status === "stopping") return "Stopping after this pass …";
-  if (status === "paused") return sentence ? sentenceOf(sentence) : `Paused at ${Math.round((100 * done) / Math.max(of, 1))} %. Nothing is lost.`;
+  if (status === "paused") return sentence ? sentenceOf(sentence) : `Paused at ${part}. Nothing is lost.`;
   if (status === "failed") return sentenceOf(sentence);
-  if (status === "kept") return "Stopped and kept: the cube is as far as it was. You can still go on.";
-  if (status === "done") return changed ? "The cube is finished, and was made before your last changes." : `The cube is finished${qualityOf(psnr)}`;
-  return enough ? "It takes a minute or so. You can watch, pause, and come back later." : "Two pictures at least are needed.";
+  if (status === "kept") return `Stopped and kept: ${called} ${are} as far as ${are === "are" ? "they were" : "it was"}. You can still go on.`;
+  if (status === "done") return changed ? `${name} ${are} finished, and ${were} made before your last changes.` : `${name} ${are} finished${qualityOf(psnr)}`;
+  if (!enough) return "More pictures are needed.";
+  return `It takes a minute or so. You can watch, ${canPause ? "pause" : "stop"}, and come back later.`;
 }
 
 function leftOf(seconds) {

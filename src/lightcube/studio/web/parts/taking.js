@@ -12,13 +12,14 @@ export function mount(section, studio) {
   const field = (label, most, given = {}) => element("input", { type: "text", maxlength: most, "aria-label": label, placeholder: label, ...given });
   const [by, note] = [field("By whom it is", 200), field("A word on it, or for whom it is", 600)];
   const captions = element("input", { type: "checkbox", id: "taking-captions" });
+  const named = element("label", { for: "taking-captions" }, captions, element("span", { text: "Names below the pictures of movies" }));
   const said = element("div", { class: "row labelled" }, by, note,
-    element("label", { for: "taking-captions" }, captions, element("span", { text: "Names below the pictures of movies" })));
-  const empty = element("p", { class: "quiet", text: "Here the cube is taken away once it is made: as a page, a movie, or something to be printed." });
+    named);
+  const empty = element("p", { class: "quiet", text: "Here it is taken away once it is made: as a page, a movie, or something to be printed." });
   const cards = new Map();
   const groups = element("div", { class: "groups" });
   section.append(empty, said, groups);
-  let known = null;
+  let [known, shown] = [null, ""];
 
   function make(name) {
     studio.ask(`/api/taking/${name}`, { json: { by: by.value, note: note.value, captions: captions.checked } }).then((state) => state && show(state));
@@ -41,13 +42,18 @@ export function mount(section, studio) {
     const { things, doing, has_cube } = known;
     empty.hidden = has_cube;
     [said.hidden, groups.hidden] = [!has_cube, !has_cube];
-    if (cards.size === 0) {
-      for (const [group, title] of GROUPS) {
+    if (known.kind !== shown) {
+      shown = known.kind;
+      cards.clear();
+      named.hidden = things.every(({ name }) => name !== "square");
+      groups.replaceChildren();
+      const first = (group) => things.findIndex((thing) => thing.group === group);
+      for (const [group, title] of GROUPS.toSorted(([one], [other]) => first(one) - first(other))) {
         const made = things.filter((thing) => thing.group === group).map((thing) => {
           cards.set(thing.name, cardOf(thing));
           return cards.get(thing.name).card;
         });
-        groups.append(element("section", {}, element("h3", { text: title }), element("div", { class: "things" }, ...made)));
+        if (made.length) groups.append(element("section", {}, element("h3", { text: title }), element("div", { class: "things" }, ...made)));
       }
     }
     for (const { name, title, made, failed, suffix } of things) {

@@ -2,7 +2,7 @@
 
 import { element, icon } from "/viewer/tools/elements.js";
 
-const DOORS = [["make", "Make a cube"], ["lessons", "Lessons"], ["room", "Room"]];
+const DOORS = [["make", "Make"], ["lessons", "Lessons"], ["room", "Room"]];
 /** Milliseconds that a good sentence stays. */
 const STAYS = 6000;
 
