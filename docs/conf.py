@@ -11,11 +11,21 @@ author = "The lightcube developers"
 project_copyright = f"{author}. BSD-3-Clause"
 release = version = version_of("lightcube")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton", "formulas"]
-exclude_patterns = ["_ext", "_static", "pictures"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
+extensions += ["formulas", "docstrings", "made_pages"]  # our own, in _ext
+exclude_patterns = ["_ext", "_static", "pictures", "reference/made/*.md"]  # which other pages include
 
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline"]
 myst_heading_anchors = 4
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+autodoc_typehints = "description"
+napoleon_attr_annotations = False
+default_role = "py:obj"
+python_maximum_signature_line_length = 90
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+
 html_math_renderer = "mathml"
 highlight_language = "text"
 copybutton_prompt_text = r">>> |\.\.\. |\$ "
