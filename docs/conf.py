@@ -12,10 +12,10 @@ project_copyright = f"{author}. BSD-3-Clause"
 release = version = version_of("lightcube")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-extensions += ["formulas", "docstrings", "made_pages"]  # our own, in _ext
+extensions += ["formulas", "docstrings", "made_pages", "made_things"]  # our own, in _ext
 exclude_patterns = ["_ext", "_static", "pictures", "reference/made/*.md"]  # which other pages include
 
-myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline"]
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_block", "attrs_inline"]
 myst_heading_anchors = 4
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
