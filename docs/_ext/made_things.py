@@ -1,4 +1,4 @@
-"""Makes what pages show and takes a while: the cube on the first page, and the notebook; each once, until it changes."""
+"""Makes what pages show and takes a while: the cube on the first page, and the notebook; each once."""
 
 import shutil
 import subprocess
