@@ -1,15 +1,16 @@
 """How the site is built: `make docs` writes it to out/site."""
 
 import sys
-from importlib.metadata import version as version_of
+import tomllib
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "_ext"))
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_ext"))
 
 project = "lightcube"
 author = "The lightcube developers"
 project_copyright = f"{author}. BSD-3-Clause"
-release = version = version_of("lightcube")
+release = version = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]["version"]
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 extensions += ["formulas", "docstrings", "made_pages", "made_things"]  # our own, in _ext
