@@ -7,7 +7,7 @@ from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 
-import notebook
+import notebook_page
 from sphinx.application import Sphinx
 
 ROOT = Path(__file__).parents[2]
@@ -18,7 +18,7 @@ FOLDER = ROOT / "docs" / "_static" / "made"
 def make_all(_app: Sphinx) -> None:
     """Make each of the two, unless it is of this very source."""
     once("home", ROOT / "examples" / "home.py", _home)
-    once("notebook", ROOT / "examples" / "light-cube.ipynb", notebook.write)
+    once("notebook", ROOT / "examples" / "light-cube.ipynb", notebook_page.write)
 
 
 def once(name: str, source: Path, make: Callable[[Path, Path], None]) -> None:
