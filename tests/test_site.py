@@ -121,7 +121,8 @@ raise InputError(str(error)) from error
 raise PydanticCustomError("colour", "must be red")
 raise InputError("no " + kind + ": give one")
 """
-    assert list(sentences.of_source(source)) == ["‹path› has ‹…› parts: give ‹most›", "must be red", "no ‹kind›: give one"]
+    said = ["‹path› has ‹…› parts: give ‹most›", "must be red", "no ‹kind›: give one"]
+    assert list(sentences.of_source(source)) == said
 
 
 def test_plain_words_stay_plain() -> None:
