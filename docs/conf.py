@@ -14,7 +14,7 @@ release = version = tomllib.loads((HERE.parent / "pyproject.toml").read_text())[
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 extensions += ["formulas", "docstrings", "made_pages", "made_things"]  # our own, in _ext
-exclude_patterns = ["_ext", "_static", "pictures", "reference/made/*.md"]  # which other pages include
+exclude_patterns = ["_ext", "_static", "pictures"]
 
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_block", "attrs_inline"]
 myst_heading_anchors = 4

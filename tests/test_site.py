@@ -41,10 +41,10 @@ def test_every_public_name_stands_in_one_room_with_a_purpose() -> None:
     assert set(by_room) <= set(names.purposes())
     pages = names.pages()
     for room, of_room in by_room.items():
-        entries = re.findall(r"^\.\. auto\w+:: (\w+)$", pages[f"python/{room}"], re.MULTILINE)
+        entries = re.findall(r"^\.\. auto\w+:: (\w+)$", pages[f"python/{room}.md"], re.MULTILINE)
         assert entries == of_room
         for name in of_room:
-            assert f"`~lightcube.{name}`" in pages["python"]
+            assert f"`~lightcube.{name}`" in pages["python.txt"]
 
 
 @pytest.mark.parametrize("name", main.COMMANDS)
@@ -55,7 +55,7 @@ def test_a_commands_page_has_what_its_help_has(name: str, run: Any) -> None:
     assert options == set(re.findall(r"^:::\{option\} .*?(--[\w-]+)", page, re.MULTILINE))
     for typed in re.findall(r"^  (lightcube .*)$", said, re.MULTILINE):
         assert typed in page
-    assert f"[{name}]" in commands.pages()["commands"]
+    assert f"[{name}]" in commands.pages()["commands.txt"]
 
 
 def keys(value: Any) -> Iterator[str]:

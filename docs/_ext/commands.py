@@ -14,8 +14,8 @@ _OWN = "Options"
 
 
 def pages() -> dict[str, str]:
-    """The pages by their names below the folder of the reference."""
-    return {**{f"commands/{name}": page(name) for name in COMMANDS}, "commands": _index()}
+    """The pages, and what the page of all includes, by the names of their files."""
+    return {**{f"commands/{name}.md": page(name) for name in COMMANDS}, "commands.txt": _index()}
 
 
 def page(name: str) -> str:

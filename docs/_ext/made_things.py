@@ -34,8 +34,8 @@ def once(name: str, source: Path, make: Callable[[Path, Path], None]) -> None:
 
 
 def fingerprint(source: Path) -> str:
-    """What a thing depends on, as a digest: its source, and all of the package."""
-    digest = sha256(source.read_bytes())
+    """What a thing depends on, as a digest: its source, what makes it, and all of the package."""
+    digest = sha256(source.read_bytes() + Path(notebook_page.__file__).read_bytes())
     for file in sorted((ROOT / "src" / "lightcube").rglob("*")):
         if file.is_file() and "__pycache__" not in file.parts:
             digest.update(file.read_bytes())
