@@ -1,4 +1,4 @@
-"""Looks whether every link of a finished site leads somewhere, those in plain HTML too, which Sphinx does not follow."""
+"""Looks whether every link of a finished site leads somewhere, in plain HTML too, which Sphinx does not follow."""
 
 import re
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from sphinx.application import Sphinx
-from sphinx.errors import ExtensionError
+from sphinx.errors import SphinxError
 
 #: What stands in pages of their own, which are not the site's.
 _APART = {"_static", "_gallery", "_downloads"}
@@ -34,7 +34,7 @@ def look(app: Sphinx, failed: Exception | None) -> None:
     """Let a build fail that has dead links."""
     found = list(dead(Path(app.outdir))) if failed is None and app.builder.format == "html" else []
     if found:
-        raise ExtensionError("links that lead nowhere: " + ", ".join(found))
+        raise SphinxError("links that lead nowhere: " + ", ".join(found))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
