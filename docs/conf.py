@@ -9,8 +9,8 @@ sys.path.insert(0, str(HERE / "_ext"))
 
 project = "lightcube"
 author = "The lightcube developers"
-project_copyright = f"{author}. BSD-3-Clause"
 release = version = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]["version"]
+project_copyright = f"{author}. BSD-3-Clause. This is lightcube {release}."
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 extensions += ["formulas", "docstrings", "made_pages", "made_things", "dead_links"]  # our own, in _ext
