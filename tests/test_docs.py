@@ -13,7 +13,7 @@ from lightcube.io import scene_names
 from tests.cli.test_cli import run
 
 ROOT = Path(__file__).parent.parent
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md"]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), ROOT / "CONTRIBUTING.md"]
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 
 __all__ = ["run"]
