@@ -3,6 +3,8 @@
 #             (one thread for each of the processes that run side by side; tests of threads take more)
 # make check  lint, format and types
 # make docs   build the site, into out/site (open out/site/index.html)
+# make release
+#             wheel, source and site, into dist, tried in a fresh environment of each Python that is there
 # make test-lowest, make test-newest
 #             the tests with the lowest versions that pyproject.toml allows, and with the newest that there are
 # make fuzz   28,000 harmed files of all kinds, of which the tests take a few hundred
@@ -15,7 +17,7 @@ EXTRAS ?= dev,docs,heif,plot,notebook,remote,cluster,studio
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 
-.PHONY: demo test test-lowest test-newest check docs coverage fuzz kills clean
+.PHONY: demo test test-lowest test-newest check docs release coverage fuzz kills clean
 
 demo: .venv/.ready
 	$(BIN)/lightcube demo
@@ -34,6 +36,9 @@ check: .venv/.ready-$(EXTRAS)
 
 docs: .venv/.ready-$(EXTRAS)
 	$(BIN)/python -m sphinx -q -W --keep-going -d out/.doctrees $(SITE) docs out/site
+
+release: docs
+	.ci/release $(BIN)/python
 
 kills: .venv/.ready-$(EXTRAS)
 	LIGHTCUBE_KILLS=all $(BIN)/python -m pytest -q -n auto tests/hostile/test_kills.py

@@ -1,21 +1,32 @@
 """How the site is built: `make docs` writes it to out/site."""
 
 import sys
-from importlib.metadata import version as version_of
+import tomllib
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent / "_ext"))
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_ext"))
 
 project = "lightcube"
 author = "The lightcube developers"
 project_copyright = f"{author}. BSD-3-Clause"
-release = version = version_of("lightcube")
+release = version = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]["version"]
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton", "formulas"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
+extensions += ["formulas", "docstrings", "made_pages", "made_things"]  # our own, in _ext
 exclude_patterns = ["_ext", "_static", "pictures"]
 
-myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_inline"]
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_block", "attrs_inline"]
 myst_heading_anchors = 4
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+autodoc_typehints = "description"
+napoleon_attr_annotations = False
+default_role = "py:obj"
+python_maximum_signature_line_length = 90
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+
 html_math_renderer = "mathml"
 highlight_language = "text"
 copybutton_prompt_text = r">>> |\.\.\. |\$ "
