@@ -160,6 +160,18 @@ def test_a_page_asks_nothing_of_a_network(tmp_path: Path) -> None:
     assert re.findall(r"(?:url\(|@import)\s*['\"]?(?:https?:)?//", styles) == []
 
 
+def test_dead_links_are_found(tmp_path: Path) -> None:
+    pytest.importorskip("sphinx")
+    dead = pytest.importorskip("dead_links").dead
+    (tmp_path / "below").mkdir()
+    (tmp_path / "a.html").write_text(
+        '<p id="here"><a href="#here"></a><a href="below/b.html?x#there"></a><a href="https://a.b/c"></a>'
+        '<img src="below/no.png"><a href="#nowhere"></a>'
+    )
+    (tmp_path / "below" / "b.html").write_text('<p id="there"><a href="../a.html#there"></a><iframe src="b.html">')
+    assert list(dead(tmp_path)) == ["a.html: below/no.png", "a.html: #nowhere", "below/b.html: ../a.html#there"]
+
+
 def test_what_is_promised_of_files_is_what_is_read() -> None:
     promised = (DOCS / "reference" / "promises.md").read_text()
     assert f"| {_metadata.FORMAT_VERSION} | {_older.FIRST} to {_metadata.FORMAT_VERSION} |" in promised
