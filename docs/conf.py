@@ -13,10 +13,10 @@ project_copyright = f"{author}. BSD-3-Clause"
 release = version = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]["version"]
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-extensions += ["formulas", "docstrings", "made_pages", "made_things", "gallery"]  # our own, in _ext
-exclude_patterns = ["_ext", "_static", "pictures", "reference/made/*.md"]  # which other pages include
+extensions += ["formulas", "docstrings", "made_pages", "made_things", "dead_links", "gallery"]  # our own, in _ext
+exclude_patterns = ["_ext", "_static", "pictures"]
 
-myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_block", "attrs_inline"]
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_block", "attrs_inline", "html_image"]
 myst_heading_anchors = 4
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True

@@ -1,6 +1,5 @@
 """The pages of the command line: a page for each command, with all that its help says."""
 
-import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,8 +14,8 @@ _OWN = "Options"
 
 
 def pages() -> dict[str, str]:
-    """The pages by their names below the folder of the reference."""
-    return {**{f"commands/{name}": page(name) for name in COMMANDS}, "commands": _index()}
+    """The pages, and what the page of all includes, by the names of their files."""
+    return {**{f"commands/{name}.md": page(name) for name in COMMANDS}, "commands.txt": _index()}
 
 
 def page(name: str) -> str:
@@ -56,8 +55,3 @@ def _index() -> str:
     rows = [(f"[{name}](made/commands/{name}.md)", plain(said)) for name, said in COMMANDS.items()]
     listed = hidden([f"made/commands/{name}" for name in COMMANDS])
     return f"{table(('command', 'does'), rows)}\n\n{listed}\n"
-
-
-def named(text: str) -> set[str]:
-    """Every option that a page has, by its long name."""
-    return set(re.findall(r"^:::\{option\} .*?(--[\w-]+)", text, re.MULTILINE))

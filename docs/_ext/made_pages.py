@@ -15,14 +15,13 @@ FOLDER = Path("reference", "made")
 def write(app: Sphinx) -> None:
     """Write those that have changed, and take away those that are no more: what is as it was is not read again."""
     folder = Path(app.srcdir) / FOLDER
-    made = (each.pages() for each in (names, commands, schemas, sentences))
-    pages = {f"{name}.md": text for pages in made for name, text in pages.items()}
+    pages = {**names.pages(), **commands.pages(), **schemas.pages(), **sentences.pages()}
     for name, text in pages.items():
         file = folder / name
         if not file.is_file() or file.read_text() != text:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text)
-    for file in folder.rglob("*.md"):
+    for file in folder.rglob("*.*"):
         if file.relative_to(folder).as_posix() not in pages:
             file.unlink()
 

@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import notebook
+import notebook_page
 from kept import once
 from sphinx.application import Sphinx
 
@@ -17,7 +17,11 @@ def make_all(_app: Sphinx) -> None:
     """Make each of the two, unless it is of this very source."""
     cube, shown = ROOT / "examples" / "home.py", ROOT / "examples" / "light-cube.ipynb"
     once(FOLDER / "home", [cube], lambda folder: _run(cube, folder / "page.html"))
-    once(FOLDER / "notebook", [shown], lambda folder: notebook.write(shown, folder))
+    once(
+        FOLDER / "notebook",
+        [shown, Path(notebook_page.__file__)],
+        lambda folder: notebook_page.write(shown, folder),
+    )
 
 
 def _run(script: Path, page: Path) -> None:

@@ -38,11 +38,11 @@ def purposes() -> dict[str, str]:
 
 
 def pages() -> dict[str, str]:
-    """The pages by their names below the folder of the reference."""
+    """The pages, and what the page of all includes, by the names of their files."""
     by_room, of_room = rooms(), purposes()
     return {
-        **{f"python/{room}": _page(room, of_room[room], names) for room, names in by_room.items()},
-        "python": _index(by_room),
+        **{f"python/{room}.md": _page(room, of_room[room], names) for room, names in by_room.items()},
+        "python.txt": _index(by_room),
     }
 
 

@@ -56,8 +56,8 @@ FILES = (
 
 
 def pages() -> dict[str, str]:
-    """The pages by their names below the folder of the reference."""
-    return {**{f"files/{each.name}": page(each) for each in FILES}, "files": _index()}
+    """The pages, and what the page of all includes, by the names of their files."""
+    return {**{f"files/{each.name}.md": page(each) for each in FILES}, "files.txt": _index()}
 
 
 def page(described: Described) -> str:

@@ -15,12 +15,12 @@ _SAYS = {"InputError": 0, "PydanticCustomError": 1}
 
 
 def pages() -> dict[str, str]:
-    """What the page of sentences includes."""
+    """What the page of sentences includes, by the name of its file."""
     parts = []
     for room, said in by_room().items():
         rows = [tuple(plain(part) for part in _parted(sentence)) for sentence in said]
         parts += [f"## {room}", table(("what is wrong", "what to do"), rows)]
-    return {"sentences": "\n\n".join(parts) + "\n"}
+    return {"sentences.txt": "\n\n".join(parts) + "\n"}
 
 
 def by_room() -> dict[str, list[str]]:

@@ -15,10 +15,10 @@ _PATIENCE = 600
 
 
 def write(source: Path, folder: Path) -> None:
-    """Run a notebook, and write `notebook.md` and its pictures into a folder."""
+    """Run a notebook, and write `notebook.txt` and its pictures into a folder."""
     run = nbformat.read(source, as_version=4)
     NotebookClient(run, timeout=_PATIENCE, resources={"metadata": {"path": str(folder)}}).execute()
-    (folder / "notebook.md").write_text(markdown(run.cells, folder))
+    (folder / "notebook.txt").write_text(markdown(run.cells, folder))
 
 
 def markdown(cells: list[Any], folder: Path) -> str:
