@@ -2,7 +2,7 @@
 # make test   set everything up and run the tests, compiled, and those of the rooms that compute interpreted too
 #             (one thread for each of the processes that run side by side; tests of threads take more)
 # make check  lint, format and types
-# make docs   build the site, into out/site (open out/site/index.html)
+# make docs   build the site, into out/site (open out/site/index.html); the first time all of the gallery is made
 # make release
 #             wheel, source and site, into dist, tried in a fresh environment of each Python that is there
 # make test-lowest, make test-newest

@@ -1,13 +1,11 @@
-"""Makes what pages show and takes a while: the cube on the first page, and the notebook; each once."""
+"""Makes the cube on the first page, and the notebook, before pages are read; each once, until it changes."""
 
-import shutil
 import subprocess
 import sys
-from collections.abc import Callable
-from hashlib import sha256
 from pathlib import Path
 
 import notebook_page
+from kept import once
 from sphinx.application import Sphinx
 
 ROOT = Path(__file__).parents[2]
@@ -17,33 +15,17 @@ FOLDER = ROOT / "docs" / "_static" / "made"
 
 def make_all(_app: Sphinx) -> None:
     """Make each of the two, unless it is of this very source."""
-    once("home", ROOT / "examples" / "home.py", _home)
-    once("notebook", ROOT / "examples" / "light-cube.ipynb", notebook_page.write)
+    cube, shown = ROOT / "examples" / "home.py", ROOT / "examples" / "light-cube.ipynb"
+    once(FOLDER / "home", [cube], lambda folder: _run(cube, folder / "page.html"))
+    once(
+        FOLDER / "notebook",
+        [shown, Path(notebook_page.__file__)],
+        lambda folder: notebook_page.write(shown, folder),
+    )
 
 
-def once(name: str, source: Path, make: Callable[[Path, Path], None]) -> None:
-    """Make a thing of `source`, into a folder, unless that holds it; what it was made of stands beside it."""
-    folder = FOLDER / name
-    note, now = folder / "made-of.txt", fingerprint(source)
-    if note.is_file() and note.read_text() == now:
-        return
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    make(source, folder)
-    note.write_text(now)
-
-
-def fingerprint(source: Path) -> str:
-    """What a thing depends on, as a digest: its source, what makes it, and all of the package."""
-    digest = sha256(source.read_bytes() + Path(notebook_page.__file__).read_bytes())
-    for file in sorted((ROOT / "src" / "lightcube").rglob("*")):
-        if file.is_file() and "__pycache__" not in file.parts:
-            digest.update(file.read_bytes())
-    return digest.hexdigest()
-
-
-def _home(script: Path, folder: Path) -> None:
-    subprocess.run([sys.executable, script, folder / "page.html"], check=True)  # noqa: S603
+def _run(script: Path, page: Path) -> None:
+    subprocess.run([sys.executable, script, page], check=True)  # noqa: S603
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
