@@ -36,6 +36,7 @@ check: .venv/.ready-$(EXTRAS)
 
 docs: .venv/.ready-$(EXTRAS)
 	$(BIN)/python -m sphinx -q -W --keep-going -d out/.doctrees $(SITE) docs out/site
+	$(BIN)/python examples/slides.py out/site/slides
 
 release: docs
 	.ci/release $(BIN)/python

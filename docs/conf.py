@@ -9,8 +9,8 @@ sys.path.insert(0, str(HERE / "_ext"))
 
 project = "lightcube"
 author = "The lightcube developers"
-project_copyright = f"{author}. BSD-3-Clause"
 release = version = tomllib.loads((HERE.parent / "pyproject.toml").read_text())["project"]["version"]
+project_copyright = f"{author}. BSD-3-Clause. This is lightcube {release}."
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 extensions += ["formulas", "docstrings", "made_pages", "made_things", "gallery", "dead_links"]  # our own, in _ext
@@ -36,6 +36,7 @@ html_theme = "furo"
 html_title = f"lightcube {release}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
 html_copy_source = False
 html_show_sourcelink = False
 html_theme_options = {"navigation_with_keys": True}

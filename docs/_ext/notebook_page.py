@@ -2,6 +2,7 @@
 
 import base64
 from collections.abc import Iterator, Mapping
+from logging import WARNING, getLogger
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,9 @@ _PATIENCE = 600
 def write(source: Path, folder: Path) -> None:
     """Run a notebook, and write `notebook.txt` and its pictures into a folder."""
     run = nbformat.read(source, as_version=4)
-    NotebookClient(run, timeout=_PATIENCE, resources={"metadata": {"path": str(folder)}}).execute()
+    place, log = {"metadata": {"path": str(folder)}}, getLogger(__name__)
+    log.setLevel(WARNING)
+    NotebookClient(run, timeout=_PATIENCE, resources=place, log=log).execute()
     (folder / "notebook.txt").write_text(markdown(run.cells, folder))
 
 

@@ -17,6 +17,7 @@ from lightcube.scoring.films import absorbance, coverage, disturbed
 from lightcube.scoring.metrics import score
 from lightcube.scoring.robust import robust
 from tests.helpers import films as plain
+from tests.helpers.made import some_dyes
 
 NAMES = ["one", "two", "three"]
 
@@ -45,6 +46,14 @@ def test_films_that_are_not_off_cast_what_they_cast(cube: lc.Cube) -> None:
 def test_ink_of_another_strength_is_another_cube(cube: lc.Cube) -> None:
     weak = replace(cube, extinction=(0.9 * cube.extinction).astype(np.float32))
     np.testing.assert_allclose(shown(cube, ink=-0.1), np.stack(list(lc.cast(weak))), atol=1e-6)
+
+
+def test_films_of_inks_are_off_as_films_of_the_same_colours_are(cube: lc.Cube) -> None:
+    dyes = some_dyes()
+    amounts = np.random.default_rng(1).uniform(0, 0.1, cube.extinction.shape).astype(np.float32)
+    plainly = replace(cube, extinction=dyes.mixed(amounts))
+    inked = replace(plainly, amounts=amounts, dyes=dyes)
+    np.testing.assert_array_equal(shown(inked, seed=5, ink_each=0.05), shown(plainly, seed=5, ink_each=0.05))
 
 
 def test_ghosts_are_light_that_is_spread_evenly(cube: lc.Cube) -> None:

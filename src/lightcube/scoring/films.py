@@ -72,7 +72,7 @@ def disturbed(cube: Cube, off: FilmsOff, seed: int = 0) -> Iterator[Images]:
     """
     random = np.random.default_rng(seed)
     rig = _assembled(cube, off, random)
-    wrong = replace(cube, extinction=_printed(cube, off, random))
+    wrong = replace(cube, extinction=_printed(cube, off, random), amounts=None, dyes=None)
     for picture in cast(wrong, rig):
         yield picture + np.float32(off.ghosts) * picture.mean(axis=(0, 1))
 
