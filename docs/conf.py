@@ -13,7 +13,7 @@ release = version = tomllib.loads((HERE.parent / "pyproject.toml").read_text())[
 project_copyright = f"{author}. BSD-3-Clause. This is lightcube {release}."
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-extensions += ["formulas", "docstrings", "made_pages", "made_things", "dead_links", "gallery"]  # our own, in _ext
+extensions += ["formulas", "docstrings", "made_pages", "made_things", "gallery", "dead_links"]  # our own, in _ext
 exclude_patterns = ["_ext", "_static", "pictures"]
 
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist", "attrs_block", "attrs_inline", "html_image"]
