@@ -3,6 +3,9 @@
 #             (one thread for each of the processes that run side by side; tests of threads take more; each process takes
 #             tests that stand together, for what is made or compiled once for many, and in the end some of another's)
 # make check  lint, format and types
+# make docs   build the site, into out/site (open out/site/index.html); the first time all of the gallery is made
+# make release
+#             wheel, source and site, into dist, tried in a fresh environment of each Python that is there
 # make test-lowest, make test-newest
 #             the tests with the lowest versions that pyproject.toml allows, and with the newest that there are
 # make fuzz   28,000 harmed files of all kinds, of which the tests take a few hundred
@@ -11,7 +14,7 @@
 
 PYTHON ?= python3
 COMPUTING := backward forward kernels laws optics planning projection scene scoring solids solvers
-EXTRAS ?= dev,heif,plot,notebook,remote,cluster,studio
+EXTRAS ?= dev,docs,heif,plot,notebook,remote,cluster,studio
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 PYTEST := -m pytest -q -n auto --dist worksteal
@@ -19,7 +22,7 @@ PYTEST := -m pytest -q -n auto --dist worksteal
 # Tests start hundreds of programs: each would compile the package anew, and each worker of the suite all tests.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-lowest test-newest check coverage fuzz kills clean
+.PHONY: demo test test-lowest test-newest check docs release coverage fuzz kills clean
 
 demo: .venv/.ready
 	$(BIN)/lightcube demo
@@ -35,6 +38,13 @@ check: .venv/.ready-$(EXTRAS)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: .venv/.ready-$(EXTRAS)
+	$(BIN)/python -m sphinx -q -W --keep-going -d out/.doctrees $(SITE) docs out/site
+	$(BIN)/python examples/slides.py out/site/slides
+
+release: docs
+	.ci/release $(BIN)/python
 
 kills: .venv/.ready-$(EXTRAS)
 	LIGHTCUBE_KILLS=all $(BIN)/python $(PYTEST) tests/hostile/test_kills.py

@@ -112,13 +112,20 @@ def by_lightcube(given: Slice, passes: int, method: str, least: float = 0.0, sli
     return found.x[:, 0].reshape(given.phantom.shape)
 
 
-def by_astra(given: Slice, passes: int, method: str, **options: float) -> Array:
-    """By its line projector. ASTRA's angles turn the other way from another axis, and its rows run downwards."""
+def geometry(given: Slice) -> tuple[Any, Any]:
+    """Screen and volume for ASTRA, whose angles turn the other way from another axis."""
     import astra
 
     n = len(given.phantom)
     screen = astra.create_proj_geom("parallel", 1.0, n, np.radians(90 - given.matrix.views.angles_deg))
-    volume = astra.create_vol_geom(n, n)
+    return screen, astra.create_vol_geom(n, n)
+
+
+def by_astra(given: Slice, passes: int, method: str, **options: float) -> Array:
+    """By its line projector; its rows run downwards."""
+    import astra
+
+    screen, volume = geometry(given)
     try:
         settings = astra.astra_dict(method)
         settings["ProjectorId"] = astra.create_projector("line", screen, volume)

@@ -96,8 +96,8 @@ def picture(shape: lc.Shape) -> NDArray[np.uint8]:
     return np.asarray(levels.resize((SIZE, SIZE), Image.Resampling.BOX))
 
 
-def body(mesh: lc.Mesh) -> tuple[Array, Array]:
-    """Points all over a mesh, and their colours under a lamp over the right shoulder."""
+def body(mesh: lc.Mesh, colour: Array = COLOUR) -> tuple[Array, Array]:
+    """Points all over a mesh of one colour, and theirs under a lamp over the right shoulder."""
     weights = np.array([(a, b, 3 - a - b) for a in range(4) for b in range(4 - a)]) / 3
     points = np.einsum("pk,fkc->fpc", weights, mesh.triangles).reshape(-1, 3)
     a, b, c = mesh.triangles.transpose(1, 0, 2)
@@ -106,7 +106,7 @@ def body(mesh: lc.Mesh) -> tuple[Array, Array]:
     normals = np.einsum("pk,fkc->fpc", weights, around[mesh.faces]).reshape(-1, 3)
     lit = normals @ np.array([0.45, -0.5, 0.74]) / np.linalg.norm(normals, axis=1)
     bright = DARKEST + (1 - DARKEST) * np.clip(lit, 0, 1)
-    return points, bright[:, None] * COLOUR
+    return points, bright[:, None] * colour
 
 
 def walls(shape: lc.Shape) -> list[tuple[Array, Array]]:

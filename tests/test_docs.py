@@ -13,7 +13,12 @@ from lightcube.io import scene_names
 from tests.cli.test_cli import run
 
 ROOT = Path(__file__).parent.parent
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "CONTRIBUTING.md"]
+MADE = ROOT / "docs" / "reference" / "made"
+#: All pages but those that the site's build makes of the program.
+WRITTEN = sorted(page for page in (ROOT / "docs").rglob("*.md") if MADE not in page.parents)
+PAGES = [ROOT / "README.md", *WRITTEN, ROOT / "CONTRIBUTING.md"]
+#: Pages whose blocks stand each for itself: those of guides are followed in order (`test_guides`).
+APART = [page for page in PAGES if not {"tutorials", "how-to", "teach"} & set(page.relative_to(ROOT).parts)]
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 
 __all__ = ["run"]
@@ -39,7 +44,7 @@ def small(code: str) -> str:
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+@pytest.mark.parametrize("page", APART, ids=lambda p: p.name)
 def test_python_blocks_run(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     for code in blocks(page, "python"):

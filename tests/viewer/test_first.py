@@ -30,6 +30,7 @@ from tests.helpers.visiting import (
     rested,
     right,
     stands,
+    turned_to,
     turning,
     until,
     visit,
@@ -146,6 +147,14 @@ def test_untouched_it_turns_once_to_the_next_stop(visit: Open) -> None:
     stands(tab, STOPS[1])
     tab.wait_for_timeout(4500)
     assert angle_deg(tab) == STOPS[1]
+
+
+def test_where_its_address_says_so_it_plays(visit: Open) -> None:
+    tab = visit(untouched=True)
+    tab.evaluate("location.hash = '#play'")
+    for where in STOPS[1:3]:
+        until(tab, f"Math.abs({CUBE}.angle - {where}) < 1e-6")
+    turned_to(tab, STOPS[0])
 
 
 def test_touched_or_calm_it_stays(visit: Open) -> None:

@@ -91,6 +91,13 @@ class Recipe:
     ------
     InputError
         For what cannot be: an unknown method, numbers out of their range, a method that cannot do what is asked for.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> recipe = lc.Recipe.of_quality("draft", material=lc.Material(0.12))
+    >>> recipe.method, recipe.passes, recipe.material.max_extinction
+    ('display', 30, 0.12)
     """
 
     method: str | Solver | Method = "display"

@@ -75,6 +75,18 @@ def solve(
     ------
     InputError
         For targets that do not belong to the grid, a recipe that cannot be followed there, or a start of another shape.
+
+    Examples
+    --------
+    >>> import numpy as np, lightcube as lc
+    >>> grid = lc.Grid((6, 8, 8))
+    >>> rig = lc.turntable(grid, [45, 225], elevation_deg=35, picture_shape=(4, 4))
+    >>> wanted = np.random.default_rng(1).uniform(0.1, 1, (2, 4, 4, 3)).astype(np.float32)
+    >>> solution = lc.solve(lc.Targets(wanted, rig), grid, lc.Recipe(passes=100))
+    >>> solution.cube
+    <light cube of 6 x 8 x 8 voxels for 2 pictures, complete>
+    >>> lc.score(solution.cube)["psnr_mean"] > 30
+    True
     """
     made = make_job(targets, grid, recipe, units=units, memory=memory, start=start, provenance=provenance)
     return solve_job(made, store, callback)

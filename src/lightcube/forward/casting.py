@@ -38,6 +38,17 @@ def cast(
         that one sees what varies inside pixels; their mean is the pixel, but for what its points miss.
     light
         ``"thin"``: the beam through each pixel's or part's middle alone, as in the paper.
+
+    Examples
+    --------
+    >>> import numpy as np, lightcube as lc
+    >>> grid = lc.Grid((3, 5, 7))
+    >>> cube = lc.Cube(np.full((3, 3, 5, 7), 0.1), grid, lc.turntable(grid, [0, 90], picture_shape=(3, 3)))
+    >>> [picture.shape for picture in lc.cast(cube)]
+    [(3, 3, 3), (3, 3, 3)]
+    >>> along_x, along_y = lc.cast(cube, light="thin")
+    >>> np.allclose(along_x, np.exp(-0.7)), np.allclose(along_y, np.exp(-0.5))
+    (True, True)
     """
     powers = cube.powers if lamp_powers is None else np.asarray(lamp_powers, np.float64)
     shape = len((rig or cube.rig).pairs), len(cube.extinction)

@@ -195,6 +195,17 @@ def save(thing: Thing, path: Given, *, overwrite: bool = False, **options: Unpac
     -----
     All arrays and numbers of a cube come back bit for bit. Its `scores` and `provenance` come back as JSON's types:
     tuples as lists, NaN and infinities as None, anything that JSON does not know as its text.
+
+    Examples
+    --------
+    >>> import numpy as np, lightcube as lc, os, tempfile
+    >>> grid = lc.Grid((3, 5, 7))
+    >>> cube = lc.Cube(np.full((3, 3, 5, 7), 0.1), grid, lc.turntable(grid, [0, 90]))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     kept = lc.save(cube, os.path.join(folder, "cube.npz"))
+    ...     page = lc.save(lc.page(cube, "Grey"), os.path.join(folder, "cube.html"))
+    ...     os.path.basename(page), np.array_equal(lc.load(kept).extinction, cube.extinction)
+    ('cube.html', True)
     """
     _write(Output(path, _kind(thing, place(path)), overwrite), thing, options)
     return path

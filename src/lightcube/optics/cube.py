@@ -63,6 +63,13 @@ class Cube:
     ------
     InputError
         Where shapes disagree, or a number is negative, NaN or infinite.
+
+    Examples
+    --------
+    >>> import numpy as np, lightcube as lc
+    >>> grid = lc.Grid((3, 5, 7), voxel_mm=2)
+    >>> lc.Cube(np.zeros((3, 3, 5, 7)), grid, lc.turntable(grid, [0, 90]), names=("front", "side"))
+    <light cube of 3 x 5 x 7 voxels for 2 pictures, complete>
     """
 
     extinction: Volume

@@ -43,6 +43,12 @@ class Material:
     ------
     InputError
         Where a bound is out of range, or counted along anything else; where dyes have a second one.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> lc.Material(0.12)  # stained glass: no voxel of it is black
+    Material(max_extinction=0.12, per='mm', dyes=None, clear=0.0)
     """
 
     max_extinction: float = math.inf

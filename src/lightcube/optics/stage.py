@@ -207,6 +207,15 @@ class Stage:
     ------
     InputError
         Where a name is unknown or used twice, or the turntable's stops or axis are none.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> sun = lc.Lamp("sun", direction=(1, 0, -0.5))
+    >>> wall = lc.Screen("wall", (9, 0, -3), (5, 5), 1)
+    >>> shots = lc.Shot("a", "wall", ("sun",)), lc.Shot("b", "wall", ("sun",), stop=1)
+    >>> lc.Stage(lc.Grid((6, 8, 8)), (sun,), (wall,), shots, stops_deg=(20, 80)).rig()
+    <rig of 2 pictures of 5 x 5 pixels, 2 views>
     """
 
     grid: Grid

@@ -56,6 +56,13 @@ def fit(pictures: Pictures, rig: Rig, ways: Fit | Sequence[Fit] = "crop") -> Tar
     ------
     InputError
         Where there is not one picture, and one way to fit it, for each picture of the rig.
+
+    Examples
+    --------
+    >>> import numpy as np, lightcube as lc
+    >>> rig = lc.turntable(lc.Grid((6, 8, 8)), [45, 225], elevation_deg=35, picture_shape=(4, 4))
+    >>> lc.fit(lc.Pictures([np.full((4, 6, 3), level) for level in (0.2, 0.8)], ("dark", "pale")), rig)
+    <2 pictures wanted on <rig of 2 pictures of 4 x 4 pixels, 2 views>>
     """
     fits = [ways] * len(pictures) if isinstance(ways, str) else list(ways)
     if not len(pictures) == len(fits) == len(rig):

@@ -37,6 +37,12 @@ class Pictures:
     opacities
         How opaque each was before it was put on white, ``(row, column)`` from 0 to 1, None of those that are all
         opaque; () where nothing is known of it.
+
+    Examples
+    --------
+    >>> import numpy as np, lightcube as lc
+    >>> lc.Pictures([np.full((4, 6, 3), level) for level in (0.2, 0.8)], ("dark", "pale"))
+    <2 pictures of 4 x 6 pixels>
     """
 
     images: tuple[Images, ...]

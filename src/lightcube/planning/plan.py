@@ -180,6 +180,14 @@ def plan(
     ------
     InputError
         As `lightcube.fit` and `lightcube.solve`.
+
+    Examples
+    --------
+    >>> import numpy as np, lightcube as lc
+    >>> pictures = lc.Pictures([np.full((4, 6, 3), level) for level in (0.2, 0.8)], ("dark", "pale"))
+    >>> plan = lc.plan(pictures, 12, picture_width=0.5, told=False)
+    >>> plan.grid.shape, plan.targets
+    ((8, 12, 12), <2 pictures wanted on <rig of 2 pictures of 4 x 6 pixels, 2 views>>)
     """
     if not pictures.images:
         raise InputError("there are no pictures: give at least two")

@@ -170,7 +170,16 @@ def scene_rig(
 
 @checked
 def scene_targets(scene: Scene, rig: Rig, grid: Grid, *, callback: Callback | None = None) -> Targets:
-    """Pictures of a scene for a turntable with the cube `grid`, one per stop: by its camera, or its `shadows`."""
+    """Pictures of a scene for a turntable with the cube `grid`, one per stop: by its camera, or its `shadows`.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> grid = lc.Grid((6, 8, 8))
+    >>> rig = lc.turntable(grid, lc.spread_angles(4), picture_shape=(6, 8))
+    >>> lc.scene_targets(lc.read_scene("gems"), rig, grid)
+    <4 pictures wanted on <rig of 4 pictures of 6 x 8 pixels, 4 views>>
+    """
     if casts_shadows(scene):
         pictures = shadows(scene, rig.views, grid, callback=callback)
     else:

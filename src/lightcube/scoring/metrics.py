@@ -105,11 +105,13 @@ def score(cube: Cube, targets: Targets | None = None) -> dict[str, Any]:
 
     Returns
     -------
-    ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``pictures``, a list with ``name, angle_deg, psnr, ssim,
-    delta_e`` of each; ``thin_psnr_mean, thin_psnr_min`` of the thin beams; ``grain_rms``, how far a pixel's beams are
-    off the pixel's value (root of the mean square, display values), and ``grain_db``, how much lower the PSNR of all
-    beams one by one is than that of their means; and where the pictures have mats ``mat_rms``, how far those are off
-    their tone (root of the mean square, display values), and ``beyond_rms``, how far the rest of the shadow is.
+    figures by name
+        ``psnr_mean, psnr_min, ssim_mean, delta_e_mean`` and ``pictures``, a list with ``name, angle_deg, psnr, ssim,
+        delta_e`` of each; ``thin_psnr_mean, thin_psnr_min`` of the thin beams; ``grain_rms``, how far a pixel's beams
+        are off the pixel's value (root of the mean square, display values), and ``grain_db``, how much lower the PSNR
+        of all beams one by one is than that of their means; and where the pictures have mats ``mat_rms``, how far those
+        are off their tone (root of the mean square, display values), and ``beyond_rms``, how far the rest of the shadow
+        is.
 
     Raises
     ------

@@ -30,6 +30,12 @@ class Label:
     ------
     InputError
         Where one of them is longer than 200 letters, or the note than 600.
+
+    Examples
+    --------
+    >>> import lightcube as lc
+    >>> lc.Label("Eight summers", by="Ada", note="for Bob").title
+    'Eight summers'
     """
 
     title: str

@@ -1,12 +1,14 @@
-// Turns to the next stop, once, so that one sees what this is.
+// Turns to the next stop, once, so that one sees what this is; or on and on, where the page's address says so.
 
+/** What a page's address ends in that is to turn on and on, as one does that is shown in a frame of another page. */
+const PLAYS = "#play";
 /** Milliseconds after which it turns, if nobody has touched anything. */
 const AFTER = 3500;
 /** Seconds that it takes for it. */
 const LASTS = 2.4;
 
 /**
- * Turn to the next stop, once, some time after all was drawn; whoever touches anything before is not disturbed.
+ * Turn to the next stop, once, or begin to play, some time after all was drawn; whoever touches anything before is not disturbed.
  * @param {HTMLElement} root
  * @param {Turning} turning
  * @param {function(): void} ask for a new drawing
@@ -18,7 +20,8 @@ export function createBeckoning(root, turning, ask) {
   const go = () => {
     end();
     if (turning.calm || turning.moving || turning.stops.length < 2 || turning.angle !== turning.stops[0]) return;
-    turning.glideTo(turning.stops[1], LASTS);
+    if (location.hash === PLAYS) turning.play();
+    else turning.glideTo(turning.stops[1], LASTS);
     ask();
   };
   function end() {
