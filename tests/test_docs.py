@@ -13,7 +13,10 @@ from lightcube.io import scene_names
 from tests.cli.test_cli import run
 
 ROOT = Path(__file__).parent.parent
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), ROOT / "CONTRIBUTING.md"]
+MADE = ROOT / "docs" / "reference" / "made"
+#: All pages but those that the site's build makes of the program.
+WRITTEN = sorted(page for page in (ROOT / "docs").rglob("*.md") if MADE not in page.parents)
+PAGES = [ROOT / "README.md", *WRITTEN, ROOT / "CONTRIBUTING.md"]
 #: Pages whose blocks stand each for itself: those of guides are followed in order (`test_guides`).
 APART = [page for page in PAGES if not {"tutorials", "how-to", "teach"} & set(page.relative_to(ROOT).parts)]
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"

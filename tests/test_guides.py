@@ -36,7 +36,7 @@ def small(line: str) -> str:
         return re.sub(r"--assembly-mm \S+", "", line) + " --n 12 --iterations 4"
     if verb in VOXELS and ".toml" not in line:
         line = re.sub(r" --n \d+", "", line) + f" --n {VOXELS[verb]}"
-    return line + " --fps 2" if verb == "play" and ".mp4" in line else line
+    return line + " --fps 1" if verb == "play" and ".mp4" in line else line
 
 
 def smaller(text: str) -> str:
