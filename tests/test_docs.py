@@ -13,9 +13,12 @@ from lightcube.io import scene_names
 from tests.cli.test_cli import run
 
 ROOT = Path(__file__).parent.parent
-MADE = ROOT / "docs" / "reference" / "made"
-#: All pages but those that the site's build makes of the program.
-WRITTEN = sorted(page for page in (ROOT / "docs").rglob("*.md") if MADE not in page.parents)
+#: All pages but those that the site's build makes: of the program, of the notebook, and of the gallery's scripts.
+WRITTEN = sorted(
+    page
+    for page in (ROOT / "docs").rglob("*.md")
+    if "made" not in page.parts and (page.parent.name != "gallery" or page.stem == "index")
+)
 PAGES = [ROOT / "README.md", *WRITTEN, ROOT / "CONTRIBUTING.md"]
 #: Pages whose blocks stand each for itself: those of guides are followed in order (`test_guides`).
 APART = [page for page in PAGES if not {"tutorials", "how-to", "teach"} & set(page.relative_to(ROOT).parts)]
