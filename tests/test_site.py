@@ -92,6 +92,12 @@ def test_what_stands_beside_arrays_is_on_the_page_as_the_model_has_it(kind: str)
     assert "`0` | `(c, z, y, x)` | `float32`" in arrays
 
 
+@cache
+def listed() -> list[str]:
+    """Every sentence that the page has."""
+    return [each for room in sentences.by_room().values() for each in room]
+
+
 def as_pattern(sentence: str) -> str:
     """What a sentence of the page stands for."""
     return "".join(".*" if part.startswith("‹") else re.escape(part) for part in re.split(r"(‹[^›]*›)", sentence))
@@ -110,8 +116,7 @@ def as_pattern(sentence: str) -> str:
 def test_what_is_said_is_on_the_page_of_sentences(wrong: Any) -> None:
     with pytest.raises(lc.InputError) as told:
         wrong()
-    listed = [each for room in sentences.by_room().values() for each in room]
-    assert any(re.fullmatch(as_pattern(each), str(told.value), re.DOTALL) for each in listed), str(told.value)
+    assert any(re.fullmatch(as_pattern(each), str(told.value), re.DOTALL) for each in listed()), str(told.value)
 
 
 def test_sentences_are_read_as_they_are_written() -> None:
