@@ -108,7 +108,9 @@ def test_a_solve_that_is_killed_goes_on(client: TestClient) -> None:
     client.post("/api/solving/start")
     until(lambda: begun(client))
     solving: Any = client.app
-    process = next(each.__self__._process for each in solving.state.desk.closing if hasattr(each.__self__, "curve"))
+    process = next(
+        each.__self__._worker.process for each in solving.state.desk.closing if hasattr(each.__self__, "curve")
+    )
     os.kill(process.pid, signal.SIGKILL)
     until(lambda: status(client) == "paused")
     assert "nothing is lost" in client.get("/api/solving").json()["sentence"]

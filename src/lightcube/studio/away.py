@@ -1,20 +1,25 @@
-"""What can be made of a cube to be taken away: a table from a name to what makes the file and says how good it is."""
+"""What can be made of a cube to be taken away: a table from a name to what makes the file and says how good it is.
+
+It is made in a process of its own, which `run` is the whole of.
+"""
 
 from __future__ import annotations
 
 import shutil
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Literal
+from zipfile import ZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.drawing import films
-from lightcube.events import Tell, counting
+from lightcube.events import Progress, Said, Tell, counting
 from lightcube.fabrication import exporting as fabrication
 from lightcube.fabrication.sidecar import Kind
 from lightcube.fabrication.thinning import as_films
@@ -23,6 +28,7 @@ from lightcube.jobs.reading import load
 from lightcube.optics.cube import Cube
 from lightcube.optics.stack import Stack
 from lightcube.scoring.metrics import mark
+from lightcube.studio.worker import telling
 from lightcube.verbs import exporting, reporting, scoring, viewing
 from lightcube.verbs.refitting import wanted_of
 from lightcube.viewer.label import Label
@@ -164,20 +170,30 @@ def _films(order: Order) -> list[str]:
 def _slices(order: Order) -> list[str]:
     """A folder of slices, in one file."""
     folder = order.target.with_suffix("")
-    try:
-        said = _export(order, order.cube, "polyjet", {"resins": io.read_dyes("polyjet")}, folder)
-        shutil.make_archive(str(folder), "zip", folder)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    said = _export(order, order.cube, "polyjet", {"resins": io.read_dyes("polyjet")}, folder)
+    order.tell(Said("packing", "packing"))
+    files, advance = sorted(folder.iterdir()), counting(order.tell)
+    with ZipFile(order.target, "w") as packed:  # as they are: pictures do not become smaller
+        for number, file in enumerate(files):
+            packed.write(file, file.name)
+            advance(number + 1, len(files))
+    shutil.rmtree(folder)
     return said
 
 
 def _export(order: Order, cube: Cube, kind: Kind, options: Mapping[str, Any], target: Path) -> list[str]:
     """Write a file, and say what it casts."""
+
+    def tell(event: Progress | Said) -> bool | None:
+        stopping = order.tell(event)
+        if isinstance(event, Progress) and event.done == event.of:
+            order.tell(Said("looking at what it casts", "looking"))
+        return stopping
+
     at = place(target)
     fabrication.check(at, kind, overwrite=True)
     planned = fabrication.plan(cube, at, kind, options)
-    document = fabrication.write(cube, at, kind, planned, True, order.tell, is_scored=True, made_from=None)
+    document = fabrication.write(cube, at, kind, planned, True, tell, is_scored=True, made_from=None)
     return exporting.told(document)
 
 
@@ -206,9 +222,10 @@ THINGS: Mapping[str, Thing] = {
 }
 
 
-def make(name: str, source: Path, target: Path, label: Label, tell: Tell, *, captions: bool) -> Sequence[str]:
-    """Make a thing's file of a cube's file; returns what is to be said of it. `InputError` where it cannot be."""
-    with warnings.catch_warnings(record=True) as warned:
-        warnings.simplefilter("always")
-        said = THINGS[name].make(Order(load(str(source)), source, target, label, captions, tell))
-    return [*said, *(f"{each.message}" for each in warned if issubclass(each.category, UserWarning))]
+def run(pipe: Connection, name: str, source: Path, target: Path, label: Label, captions: bool) -> None:
+    """Make a thing's file of a cube's file, and tell what is to be said of it."""
+    with telling(pipe) as told, warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always", UserWarning)
+        said = THINGS[name].make(Order(load(str(source)), source, target, label, captions, told.pass_on))
+        notes = (f"{each.message}" for each in warned if issubclass(each.category, UserWarning))
+        told("made", file=target.name, said=[*said, *notes])

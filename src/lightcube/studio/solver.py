@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import signal
-import threading
 import time
-import warnings
 from base64 import b64encode
-from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Literal
 
-from lightcube.errors import InputError
-from lightcube.events import Progress, Said
+from lightcube.studio.worker import Told, telling
 
 #: Seconds between two looks at the wall at least, and so many times as long as one takes.
 _LOOK_S, _PATIENCE = 0.7, 6.0
@@ -31,92 +26,45 @@ def run(pipe: Connection, deed: Deed, pictures: str, out: str, options: Any, tit
     deed
         Start anew, go on with what is in the unfinished cube of `out`, or make a cube of what is there.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever began this says when it ends
-    warnings.simplefilter("ignore")
-    told = _Told(pipe, title)
-    try:
+    with telling(pipe) as told:
+        show = _Show(told, title)
         if deed == "keep":
-            _keep(told, out)
+            _keep(told, show, out)
         else:
-            _solve(told, deed, pictures, out, options)
-    except InputError as error:
-        told("failed", sentence=f"{error}")
-    except MemoryError:
-        told("failed", sentence="the machine has not enough memory for this: make the cube smaller")
-    except OSError as error:
-        told("failed", sentence=f"the system refused it ({error.strerror or error}): make room, and go on")
+            _solve(told, show, deed, pictures, out, options)
 
 
-class _Told:
-    """What is told through the pipe; nobody at its other end is as good as being told to stop."""
-
-    def __init__(self, pipe: Connection, title: str) -> None:
-        self._pipe, self.title, self._lock = pipe, title, threading.Lock()
-        self.stopping = threading.Event()
-        threading.Thread(target=self._listen, daemon=True).start()
-
-    def __call__(self, what: str, **facts: Any) -> None:
-        try:
-            with self._lock:
-                self._pipe.send((what, facts))
-        except OSError:
-            self.stopping.set()
-
-    def _listen(self) -> None:
-        with suppress(EOFError, OSError):
-            self._pipe.recv()
-        self.stopping.set()
-
-
-def _solve(told: _Told, deed: Deed, pictures: str, out: str, options: Any) -> None:
+def _solve(told: Told, show: _Show, deed: Deed, pictures: str, out: str, options: Any) -> None:
     """Solve from the beginning, or from where it was."""
-    told("said", sentence="getting ready", compiling=False)
-    from lightcube.kernels.compiled import when_compiling  # here: the compiler comes with it
+    from lightcube.backward.needs import job_memory
+    from lightcube.jobs import publishing, running
+    from lightcube.jobs.partial import DiskStore, load_job, open_partial, partial_path
+    from lightcube.verbs import solving
 
-    def compiling() -> None:
-        told("said", sentence="compiling, once: about half a minute", compiling=True)
-
-    with when_compiling(compiling):
-        from lightcube.backward.needs import job_memory
-        from lightcube.jobs import publishing, running
-        from lightcube.jobs.partial import DiskStore, load_job, open_partial, partial_path
-        from lightcube.verbs import solving
-
-        if deed == "resume":
-            job, store = load_job(partial_path(out)), DiskStore(partial_path(out))
-        else:
-            planned = solving.read(pictures, options, told=False)(solving.rehearsals())
-            job = solving.job(planned)
-            solving.check_memory(job_memory(job))
-            store = open_partial(out, job, overwrite=True)
-        show = _Show(told)
-
-        def tell(event: Progress | Said) -> bool:
-            if isinstance(event, Progress):
-                figures = dict(event.figures)
-                told("progress", done=event.done, of=event.of, psnr=figures.get("PSNR"), left_s=event.left_s)
-            else:
-                told("said", sentence=event.sentence, compiling=False)
-            return told.stopping.is_set()
-
-        if not running.run(job, job.pieces, store, tell, show):
-            told("stopped")
-            return
-        told("said", sentence="looking at what it shows", compiling=False)
-        cube = publishing.finish(job, store, out, overwrite=True).solution.cube
+    if deed == "resume":
+        job, store = load_job(partial_path(out)), DiskStore(partial_path(out))
+    else:
+        planned = solving.read(pictures, options, told=False)(solving.rehearsals())
+        job = solving.job(planned)
+        solving.check_memory(job_memory(job))
+        store = open_partial(out, job, overwrite=True)
+    if not running.run(job, job.pieces, store, told.pass_on, show):
+        told("stopped")
+        return
+    told("said", sentence="looking at what it shows")
+    cube = publishing.finish(job, store, out, overwrite=True).solution.cube
     show.wall(cube)
     show.turn(cube)
     told("done", **_facts(cube))
 
 
-def _keep(told: _Told, out: str) -> None:
+def _keep(told: Told, show: _Show, out: str) -> None:
     """Make a cube of what is there."""
     from lightcube.jobs import publishing
     from lightcube.jobs.partial import partial_path
     from lightcube.scoring import metrics
 
     cube = publishing.publish(partial_path(out), overwrite=True).solution.cube
-    show = _Show(told)
     show.wall(cube)
     show.turn(cube)
     told("kept", **_facts(cube, metrics.score(cube) if cube.targets is not None else None))
@@ -135,8 +83,9 @@ def _facts(cube: Any, scores: Any = None) -> dict[str, Any]:
 class _Show:
     """Watches a solve: what the wall shows now, and the cube to be turned, as often as it costs little."""
 
-    def __init__(self, told: _Told) -> None:
-        self._told, self._next_wall, self._next_turn, self._done = told, 0.0, 0.0, 0.0
+    def __init__(self, told: Told, title: str) -> None:
+        self._told, self._title = told, title or "Light cube"
+        self._next_wall, self._next_turn = 0.0, 0.0
 
     def __call__(self, step: Any) -> None:
         """Look, where it is time."""
@@ -167,7 +116,7 @@ class _Show:
         from lightcube.viewer.description import zipped
         from lightcube.viewer.page import contents
 
-        description, voxels = contents(cube, self._told.title or "Light cube")
+        description, voxels = contents(cube, self._title)
         self._told("cube", scene=zipped(description), voxels=voxels)
 
 

@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 import threading
-from contextlib import suppress
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
 from typing import Any, Literal
 
 from fastapi import APIRouter
@@ -21,6 +17,7 @@ from lightcube.studio.desk import Desk
 from lightcube.studio.making import command_of, options_of
 from lightcube.studio.pictures import check_there
 from lightcube.studio.project import MADE
+from lightcube.studio.worker import Worker
 
 Status = Literal["idle", "running", "stopping", "paused", "done", "kept", "failed"]
 #: What can be done in which state.
@@ -72,8 +69,7 @@ class Solving:
 
     def __init__(self, desk: Desk) -> None:
         self._desk, self._lock = desk, threading.RLock()
-        self._process: SpawnProcess | None = None
-        self._pipe: Connection | None = None
+        self._worker: Worker | None = None
         self._after = ""
         self._parts: dict[str, bytes] = {}
         self.wall: dict[str, Any] = {"pictures": [], "voxels": 0}
@@ -107,12 +103,12 @@ class Solving:
             elif deed == "discard":
                 discard_partial(self._out)
                 self._set(status="idle", **_nothing())
-            elif self._process is None:
+            elif self._worker is None:
                 self._begin("keep")
             else:
                 self._after = "keep" if deed == "keep" else ""
                 self._set(status="stopping")
-                self._stop()
+                self._worker.stop()
             return self.described()
 
     def go_on(self) -> None:
@@ -135,47 +131,19 @@ class Solving:
     def close(self) -> None:
         """End the process; what it has reached is kept, and gone on with when the studio starts again."""
         with self._lock:
-            process, self._process = self._process, None
-            self._stop()
-        if process is not None:
-            process.join(_GRACE_S)
-            if process.is_alive():
-                process.kill()
-                process.join()
+            worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.close(_GRACE_S)
 
     def _begin(self, deed: solver.Deed) -> None:
         """Start a process that does it."""
         project = self._desk.project
-        context = multiprocessing.get_context("spawn")
-        ours, theirs = context.Pipe()
-        options, title = options_of(project.settings.making), project.settings.title
-        asked = (theirs, deed, self._pictures, self._out, options, title)
-        process = context.Process(target=solver.run, args=asked, daemon=True, name="lightcube-solver")
-        process.start()
-        theirs.close()
-        self._process, self._pipe = process, ours
+        given = (deed, self._pictures, self._out, options_of(project.settings.making), project.settings.title)
+        self._worker = Worker(self._lock, solver.run, given, self._heard, self._ended)
         if deed == "start":
             self.curve, self.wall, self._parts = [], {"pictures": [], "voxels": 0}, {}
             self._facts |= _nothing() | {"made_of": self._of(), "pictures": []}
         self._set(status="stopping" if deed == "keep" else "running", sentence="")
-        threading.Thread(target=self._hear, args=(process, ours), daemon=True).start()
-
-    def _hear(self, process: SpawnProcess, pipe: Connection) -> None:
-        """Hear what a process tells until it ends."""
-        last = ""
-        try:
-            while True:
-                last, facts = pipe.recv()
-                with self._lock:
-                    if process is self._process:
-                        self._heard(last, facts)
-        except (EOFError, OSError):
-            process.join()
-        with self._lock:
-            pipe.close()
-            if process is self._process:
-                self._process = self._pipe = None
-                self._ended(last)
 
     def _heard(self, what: str, facts: dict[str, Any]) -> None:
         """Take up one thing that was told."""
@@ -194,14 +162,22 @@ class Solving:
         elif what == "said":
             self._set(sentence=facts["sentence"])
         elif what in ("done", "kept"):
-            for name, data in self._parts.items():
-                self._desk.project.write(data, MADE, f"{name}.gz")
-            self._set(status=what, left_s=None, sentence="", **facts)
+            self._set(status=what, left_s=None, sentence=self._kept_for_later(), **facts)
         elif what == "failed":
             self._set(status="failed", left_s=None, sentence=facts["sentence"])
 
+    def _kept_for_later(self) -> str:
+        """Keep what is turned for when the studio is started again; says why where it cannot be."""
+        try:
+            for name, data in self._parts.items():
+                self._desk.project.write(data, MADE, f"{name}.gz")
+        except InputError as error:
+            return f"{error}"
+        return ""
+
     def _ended(self, last: str) -> None:
         """The process is gone: as it was told to, or not."""
+        self._worker = None
         if last == "stopped" and self._after == "keep":
             self._after = ""
             self._begin("keep")
@@ -223,12 +199,6 @@ class Solving:
             except InputError as error:
                 self._facts["sentence"] = f"{error}"
         self._desk.hub.tell("solving", self.described())
-
-    def _stop(self) -> None:
-        """Tell the process to stop."""
-        if self._pipe is not None:
-            with suppress(OSError):  # it is gone already
-                self._pipe.send("stop")
 
     def _is_begun(self) -> bool:
         """Whether there is something of an unfinished cube."""

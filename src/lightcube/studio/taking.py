@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import threading
 from pathlib import Path
 from typing import Any
@@ -13,13 +14,16 @@ from fastapi.responses import FileResponse, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from lightcube.errors import InputError
-from lightcube.events import Interrupted, Progress, Said
 from lightcube.io._files import system_errors
 from lightcube.studio.desk import Desk
 from lightcube.studio.project import MADE
+from lightcube.studio.worker import Worker
+from lightcube.viewer.label import Label
 
 #: The cube of a project, where things made of it lie, and what is known of these.
 CUBE, _AWAY, _KNOWN = "cube.zarr", "away", "taking.json"
+#: Where a thing is while it is made; seconds that it is given to stop by itself.
+_MAKING, _PATIENCE_S = ".making", 3.0
 #: Letters of a file's name at most.
 _MOST_LETTERS = 60
 
@@ -68,15 +72,15 @@ def router(desk: Desk) -> APIRouter:
 
 
 class Taking:
-    """Makes one thing at a time, beside all else that goes on."""
+    """Makes one thing at a time, in a process of its own, beside all else that goes on."""
 
     def __init__(self, desk: Desk) -> None:
         self._desk, self._lock = desk, threading.RLock()
         self._made: dict[str, dict[str, Any]] = self._read()
+        self._worker: Worker | None = None
         self._doing: dict[str, Any] | None = None
+        self._of: float | None = None
         self._failed: dict[str, str] = {}
-        self._stop = threading.Event()
-        self._thread: threading.Thread | None = None
 
     def state(self) -> dict[str, Any]:
         """How it stands, as plain JSON."""
@@ -86,44 +90,48 @@ class Taking:
         with self._lock:
             things = []
             for name, thing in THINGS.items():
-                known = self._made.get(name)
-                if known is not None and not self._path(known["file"]).is_file():
-                    known = None
                 told: dict[str, Any] = {"name": name, "title": thing.title, "said": thing.said, "suffix": thing.suffix}
                 told |= {"group": thing.group, "made": None, "failed": self._failed.get(name, "")}
-                if known is not None:
+                known = self._made.get(name)
+                if known is not None and self._path(known["file"]).is_file():
                     told["made"] = {**known, "is_old": known["of"] != cube}
                 things.append(told)
             return {"has_cube": cube is not None, "things": things, "doing": self._doing}
 
     def begin(self, name: str, asked: _Asked) -> None:
         """Begin to make a thing; `InputError` where there is none of the name, nothing to make it of, or no time."""
-        from lightcube.studio.away import THINGS
+        from lightcube.studio import away
 
-        if name not in THINGS:
-            raise InputError(f"nothing that can be taken away has this name: ask for one of {', '.join(THINGS)}")
-        if self._cube_as_of() is None:
-            raise InputError("there is no cube yet: make one first")
+        if name not in away.THINGS:
+            raise InputError(f"nothing that can be taken away has this name: ask for one of {', '.join(away.THINGS)}")
         with self._lock:
             if self._doing is not None:
-                busy = THINGS[self._doing["name"]].title.lower()
+                busy = away.THINGS[self._doing["name"]].title.lower()
                 raise InputError(f"{busy} is being made: wait for it, or stop it")
-            self._doing = {"name": name, "done": 0, "of": 0}
+            self._of = self._cube_as_of()
+            if self._of is None:
+                raise InputError("there is no cube yet: make one first")
+            title = self._desk.project.settings.title or "Light cube"
+            target = self._emptied() / f"{_called(title)}-{name}.{away.THINGS[name].suffix}"
+            source, label = self._desk.project.path(MADE, CUBE), Label(title, asked.by, asked.note)
             self._failed.pop(name, None)
-            self._stop.clear()
-            self._thread = threading.Thread(target=self._make, args=(name, asked), daemon=True)
-            self._thread.start()
+            self._doing = {"name": name, "done": 0, "of": 0, "sentence": ""}
+            given = (name, source, target, label, asked.captions)
+            self._worker = Worker(self._lock, away.run, given, self._heard, self._ended)
         self._tell()
 
     def stop(self) -> None:
-        """Stop what is being made, at its next step."""
-        self._stop.set()
+        """Stop what is being made; at once where its next step is far."""
+        with self._lock:
+            if self._worker is not None:
+                self._worker.stop(_PATIENCE_S)
 
     def close(self) -> None:
-        """Stop, and wait a little for it."""
-        self.stop()
-        if self._thread is not None:
-            self._thread.join(5)
+        """Stop what is being made, at once."""
+        with self._lock:
+            worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.close()
 
     def file(self, name: str) -> Path:
         """Where the file of a thing lies; `InputError` where it was not made."""
@@ -134,47 +142,49 @@ class Taking:
             raise InputError("this was not made yet, or its file is gone: make it first")
         return path
 
-    def _make(self, name: str, asked: _Asked) -> None:
-        """Make a thing, in a thread of its own; whatever is wrong with it is told."""
-        from lightcube.studio import away
-        from lightcube.viewer.label import Label
-
-        try:
-            title = self._desk.project.settings.title or "Light cube"
-            folder = self._desk.project.path(MADE, _AWAY)
-            with system_errors(folder, "writing"):
-                folder.mkdir(exist_ok=True)
-            target = self._path(f"{_called(title)}-{name}.{away.THINGS[name].suffix}")
-            of, label = self._cube_as_of(), Label(title, asked.by, asked.note)
-            source = self._desk.project.path(MADE, CUBE)
-            said = away.make(name, source, target, label, self._told, captions=asked.captions)
-            known = {"file": target.name, "bytes": target.stat().st_size, "said": list(said), "of": of}
-            with self._lock:
-                self._made[name] = known
-                self._desk.project.write(json.dumps(self._made).encode(), MADE, _KNOWN)
-        except Interrupted:
-            pass
-        except InputError as error:
-            self._failed[name] = f"{error}"
-        except MemoryError:
-            self._failed[name] = "this needs more memory than there is: make a smaller cube"
-        except OSError as error:
-            self._failed[name] = f"its file cannot be written ({error.strerror}): look whether the disk is full"
-        finally:
-            with self._lock:
-                self._doing = None
-            self._tell()
-
-    def _told(self, event: Progress | Said) -> bool:
-        """Pass on how far it is; True where it is to stop."""
-        if isinstance(event, Progress) and self._doing is not None:
-            before = self._doing
-            self._doing = {**before, "done": event.done, "of": event.of}
-            if before["of"] != event.of or 50 * event.done // max(1, event.of) != 50 * before["done"] // max(
-                1, event.of
-            ):
+    def _heard(self, what: str, facts: dict[str, Any]) -> None:
+        """Take up one thing that was told."""
+        assert self._doing is not None  # noqa: S101 - by whom would it be told
+        name, before = self._doing["name"], self._doing
+        if what == "progress":
+            self._doing = {**before, "done": facts["done"], "of": facts["of"], "sentence": ""}
+            if _step_of(self._doing) != _step_of(before):
                 self._desk.hub.tell("taking", {"doing": self._doing})
-        return self._stop.is_set()
+        elif what == "said":
+            self._doing = {**before, "done": 0, "of": 0, "sentence": facts["sentence"]}
+            self._desk.hub.tell("taking", {"doing": self._doing})
+        elif what == "failed":
+            self._failed[name] = facts["sentence"]
+        elif what == "made":
+            try:
+                self._keep(name, **facts)
+            except (InputError, OSError) as error:
+                self._failed[name] = f"its file cannot be kept ({error}): make room on the disk, and make it again"
+
+    def _keep(self, name: str, file: str, said: list[str]) -> None:
+        """Give what was made its place, and know of it."""
+        for each in self._path(_MAKING).iterdir():
+            each.replace(self._path(each.name))
+        self._made[name] = {"file": file, "bytes": self._path(file).stat().st_size, "said": said, "of": self._of}
+        self._desk.project.write(json.dumps(self._made).encode(), MADE, _KNOWN)
+
+    def _ended(self, last: str) -> None:
+        """The process is gone: it is done, was stopped, or was killed."""
+        assert self._doing is not None  # noqa: S101 - it was doing something
+        assert self._worker is not None  # noqa: S101 - by it
+        if last not in ("made", "failed", "stopped") and not self._worker.is_stopping:
+            self._failed[self._doing["name"]] = "this was ended from outside, perhaps for want of memory: make it again"
+        self._worker = self._doing = None
+        shutil.rmtree(self._path(_MAKING), ignore_errors=True)
+        self._tell()
+
+    def _emptied(self) -> Path:
+        """The folder in which things are made: nothing of it counts before it is whole."""
+        folder = self._path(_MAKING)
+        with system_errors(folder, "writing"):
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+        return folder
 
     def _tell(self) -> None:
         self._desk.hub.tell("taking", self.state())
@@ -202,6 +212,11 @@ class Taking:
             }
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return {}
+
+
+def _step_of(doing: dict[str, Any]) -> tuple[int, int]:
+    """What is worth telling of how far a thing is."""
+    return doing["of"], 50 * doing["done"] // max(1, doing["of"])
 
 
 def _called(title: str) -> str:
