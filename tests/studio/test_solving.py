@@ -64,7 +64,7 @@ def client(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClie
 
 def test_a_cube_is_made_that_is_the_commands_cube_and_can_be_turned(client: TestClient) -> None:
     client.patch("/api/settings", json={"making": SMALL})
-    assert client.get("/api/cube/scene").status_code == 404
+    assert client.get("/api/cube/scene").status_code == 204
     assert client.post("/api/solving/start").json()["status"] == "running"
     assert client.post("/api/solving/start").status_code == 400
     until(lambda: status(client) == "done")

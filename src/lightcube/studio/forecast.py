@@ -40,7 +40,7 @@ class Forecast:
         self._worker: Worker | None = None
         self._number, self._asked = 0, ""
         self._parts: dict[str, bytes] = {}
-        self._facts: dict[str, Any] = {"status": "none", "pictures": []}
+        self._facts: dict[str, Any] = {"status": "none", "pictures": [], "cube": 0}
 
     def described(self) -> dict[str, Any]:
         """What is told, as plain JSON."""
@@ -111,7 +111,8 @@ class Forecast:
             self._set(status="looking" if self._asked else "none")
         elif what == "cube":
             self._parts = facts
-            self._desk.hub.tell("forecast", {"cube": True})
+            self._facts["cube"] += 1
+            self._desk.hub.tell("forecast", {"cube": self._facts["cube"]})
         elif what == "forecast" and facts["number"] == self._number:
             stage = facts.pop("stage")
             self._set(status=stage, sentence=facts.pop("sentence", ""), **facts)

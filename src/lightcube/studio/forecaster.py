@@ -83,7 +83,8 @@ class _Looking:
 
     pipe: Connection
     kept: Any = None
-    _known: dict[str, Any] = field(default_factory=dict)
+    #: The order that was found best for pictures, by their keys and crops: it is looked for by the whole look only.
+    _orders: dict[tuple[Any, ...], Any] = field(default_factory=dict)
 
     def warm(self) -> None:
         """Load, and compile where that was never done, before anything is asked."""
@@ -105,18 +106,24 @@ class _Looking:
     def _answers(self, asked: Asked) -> Iterator[dict[str, Any]]:
         began = time.monotonic()
         images = tuple(_read(file, crop) for file, crop in zip(asked.files, asked.crops, strict=True))
-        quick = self._plan(images, asked.names, replace(asked.options, grain=0.0, order="given"))
+        quick = self._ordered(asked, self._plan(images, asked.names, replace(asked.options, grain=0.0, order="given")))
         small, self.kept = self._look(quick, _FIRST, self.kept)
         yield self._told(asked, quick, small, self.kept, began, "first")
         planned = quick
         if asked.options.order == "best":
             planned = self._plan(images, asked.names, replace(asked.options, grain=0.0))
+            self._orders = {(asked.keys, asked.crops): planned.order}
         small, cube = self._look(planned)
         told = self._told(asked, planned, small, cube, began, "whole")
         yield told
-        yield from self._turned(asked, cube)
+        self._turn(asked, cube)
         if 2 < len(asked.keys) <= _MOST_LACKING:
             yield told | {"stage": "costs", "costs": self._costs(planned)}
+
+    def _ordered(self, asked: Asked, planned: Any) -> Any:
+        """A plan in the order that was found best for its pictures before, where they are to be in the best one."""
+        order = self._orders.get((asked.keys, asked.crops)) if asked.options.order == "best" else None
+        return planned if order is None else replace(planned, targets=order(planned.targets), order=order)
 
     def _plan(self, images: tuple[NDArray[np.float32], ...], names: tuple[str, ...], options: Options) -> Any:
         from lightcube.pictures.pictures import Pictures
@@ -158,15 +165,15 @@ class _Looking:
         across = max(cube.grid.shape[1:])
         ratio = max(planned.grid.shape[1:]) / across
         told = law(reached(small, cube), ratio, rehearsal_of(planned.recipe))
-        keys = dict(zip(asked.names, asked.keys, strict=True)) if planned.order is not None else {}
+        keys = asked.keys if planned.order is None else [asked.keys[number] for number in planned.order.pictures]
         pictures = []
-        for number, (name, psnr, wall, wanted) in enumerate(
-            zip(planned.targets.names, told, _walls(cube), small.pictures, strict=True)
+        for key, name, psnr, wall, wanted in zip(
+            keys, planned.targets.names, told, _walls(cube), small.pictures, strict=True
         ):
             word = mark(float(psnr))
             pictures.append(
                 {
-                    "key": keys.get(name, asked.keys[number]),
+                    "key": key,
                     "name": name,
                     "image": b64encode(png(wall)).decode(),
                     "psnr": round(float(psnr), 1),
@@ -185,8 +192,8 @@ class _Looking:
             "seconds": round(time.monotonic() - began, 3),
         }
 
-    def _turned(self, asked: Asked, cube: Any) -> Iterator[dict[str, Any]]:
-        """The small cube itself, to be turned until there is a better one."""
+    def _turn(self, asked: Asked, cube: Any) -> None:
+        """Tell the small cube itself, to be turned until there is a better one."""
         from lightcube.viewer.description import zipped
         from lightcube.viewer.page import contents
 
@@ -194,7 +201,6 @@ class _Looking:
             raise _Newer
         description, voxels = contents(cube, asked.title or "A first idea")
         self.pipe.send(("cube", {"scene": zipped(description), "voxels": voxels}))
-        yield from ()
 
     def _costs(self, planned: Any) -> list[float]:
         """By how many dB the others become better without each picture."""

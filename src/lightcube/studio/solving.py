@@ -8,7 +8,6 @@ from typing import Any, Literal
 
 from fastapi import APIRouter
 from fastapi.responses import Response
-from starlette.exceptions import HTTPException
 
 from lightcube.errors import InputError
 from lightcube.jobs.partial import discard_partial, is_partial, partial_path
@@ -55,10 +54,10 @@ def router(desk: Desk) -> APIRouter:
 
     @routes.get("/cube/{part}", response_class=Response)
     def cube(part: Literal["scene", "voxels"]) -> Response:
-        """The newest cube that there is, as the viewer reads it: its scene or its voxels, gzipped."""
+        """The newest cube that there is, as the viewer reads it: its scene or its voxels, gzipped; nothing before."""
         data = solving.part(part)
         if data is None:
-            raise HTTPException(404)
+            return Response(status_code=204)
         return Response(data, media_type="application/octet-stream")
 
     return routes
@@ -125,7 +124,7 @@ class Solving:
             if name in self._parts:
                 return self._parts[name]
         file = self._desk.project.path(MADE, f"{name}.gz")
-        is_newest = self._facts["status"] != "running" and not self._has_changed()
+        is_newest = self._facts["status"] != "running"
         return file.read_bytes() if file.is_file() and is_newest else self._desk.first_cube(name)
 
     def close(self) -> None:
