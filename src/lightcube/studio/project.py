@@ -181,18 +181,16 @@ class Project:
             begun = self._steps[: self._at + 1]
             if self._is_moving(moving):
                 begun.pop()
-            if after != begun[-1].settings:
-                begun.append(_Step.of(after))
-            steps = begun[-_MOST_STEPS:]
+            is_back = after == begun[-1].settings
+            steps = begun if is_back else [*begun, _Step.of(after)][-_MOST_STEPS:]
             self._keep(steps, len(steps) - 1)
-            self._moved = moving, time.monotonic()
+            self._moved = "" if is_back else moving, time.monotonic()
             return after
 
     def _is_moving(self, moving: str) -> bool:
         """Whether a change goes on with the one before."""
         what, when = self._moved
-        is_last = 0 < self._at == len(self._steps) - 1
-        return bool(moving) and moving == what and is_last and time.monotonic() - when < _ONE_MOVE_S
+        return "" != moving == what and time.monotonic() - when < _ONE_MOVE_S
 
     def step(self, way: Literal[-1, 1]) -> Settings:
         """Undo a change, or do it again; `InputError` where there is none."""
