@@ -99,21 +99,22 @@ function costsOf({ costs, pictures, full }) {
 function sliderOf({ name, label, low, high, step, ends, text, to = (value) => value, from = (value) => value }, studio) {
   const value = element("span", { class: "now", "aria-hidden": "true" });
   const input = element("input", { type: "range", min: low, max: high, step, "aria-label": label });
-  let [waiting, sent] = [0, 0];
-  const send = () => {
+  let [waiting, sent, asked] = [0, 0, 0];
+  const send = async () => {
     clearTimeout(waiting);
     const soon = sent + EVERY - performance.now();
-    if (soon > 0) {
-      waiting = setTimeout(send, soon);
-      return;
-    }
+    waiting = soon > 0 ? setTimeout(send, soon) : 0;
+    if (waiting) return;
     sent = performance.now();
-    studio.ask("/api/settings", { method: "PATCH", json: { making: { [name]: from(Number(input.value)) } } });
+    asked += 1;
+    const state = await studio.ask("/api/settings", { method: "PATCH", json: { making: { [name]: from(Number(input.value)) } } });
+    asked -= 1;
+    update(state ?? studio.state); // what was refused goes back
   };
   const show = (now) => {
     value.textContent = text(now);
     input.setAttribute("aria-valuetext", text(now));
-    input.style.setProperty("--part", (to(now) - low) / (high - low));
+    input.style.setProperty("--part", (to(now) - input.min) / (input.max - input.min || 1));
   };
   input.addEventListener("input", () => {
     show(from(Number(input.value)));
@@ -122,31 +123,34 @@ function sliderOf({ name, label, low, high, step, ends, text, to = (value) => va
   return {
     element: element("label", { class: "setting" }, element("span", { class: "label" }, element("b", { text: label }), value), input,
       element("span", { class: "ends quiet" }, ...ends.map((end) => element("span", { text: end })))),
-    update({ settings }) {
-      const now = settings.making[name];
-      if (document.activeElement !== input || !input.matches(":active")) input.value = to(now);
-      show(now);
-    },
+    update,
   };
+
+  /** While it is moved nothing that was true before comes in between. */
+  function isMoving() {
+    return waiting !== 0 || asked > 0 || input.matches(":active");
+  }
+
+  function update({ settings }) {
+    if (isMoving()) return;
+    input.value = to(settings.making[name]);
+    show(settings.making[name]);
+  }
 }
 
-/** How many of the pictures are used. */
+/** How many of the pictures are used; all of them, also when there are more. */
 function countOf(studio) {
-  const slider = sliderOf({ name: "count", label: "How many", low: 2, high: 2, step: 1, ends: ["two", "all of them"], text: (value) => (value ? `the first ${value}` : "all of them") }, studio);
-  const input = slider.element.querySelector("input");
-  const value = slider.element.querySelector(".now");
   let all = 2;
+  const slider = sliderOf({ name: "count", label: "How many", low: 2, high: 2, step: 1, ends: ["two", "all of them"],
+    text: (value) => (value && value < all ? `the first ${value}` : `all ${all}`),
+    to: (value) => Math.min(value || all, all), from: (value) => (value < all ? value : 0) }, studio);
   return {
     element: slider.element,
-    update({ settings }) {
-      all = settings.pictures.length;
-      const count = Math.min(settings.making.count || all, all);
+    update(state) {
+      all = state.settings.pictures.length;
       slider.element.hidden = all < 3;
-      input.max = all;
-      if (!input.matches(":active")) input.value = count;
-      value.textContent = count >= all ? `all ${all}` : `the first ${count}`;
-      input.setAttribute("aria-valuetext", value.textContent);
-      input.style.setProperty("--part", (count - 2) / Math.max(all - 2, 1));
+      slider.element.querySelector("input").max = all;
+      slider.update(state);
     },
   };
 }

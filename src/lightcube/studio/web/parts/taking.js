@@ -72,6 +72,9 @@ export function mount(section, studio) {
   }
 
   studio.on("taking", (state) => known !== null && show(state));
+  studio.on("solving", ({ status }) => {
+    if (["done", "kept"].includes(status)) studio.ask("/api/taking").then((state) => state && show(state));
+  });
   return { update: (state) => state.taking && show(state.taking) };
 }
 
