@@ -1,6 +1,5 @@
 // The lesson of three silhouettes: what solid they make, where they contradict each other, and the repair.
 
-import { mount } from "/viewer/app.js";
 import { fromBase64, readScene, readVoxels } from "/viewer/model/data.js";
 import { element } from "/viewer/tools/elements.js";
 import { createBox, letterOf, rowsOf } from "./boxes.js";
@@ -123,7 +122,7 @@ export function createSolidLesson(studio, said) {
   async function turn({ scene, voxels }) {
     if (now.scene === scene + voxels) return;
     now.scene = scene + voxels;
-    const described = await readScene(fromBase64(scene));
+    const [{ mount }, described] = await Promise.all([import("/viewer/app.js"), readScene(fromBase64(scene))]);
     const cube = await readVoxels(fromBase64(voxels), described);
     if (now.scene !== scene + voxels) return;
     now.shown?.dispose();

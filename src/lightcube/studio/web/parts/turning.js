@@ -1,6 +1,5 @@
 // Turn: the newest cube in the viewer, its wall large; also while it is still becoming.
 
-import { mount as mountViewer } from "/viewer/app.js";
 import { readScene, readVoxels } from "/viewer/model/data.js";
 import { element } from "/viewer/tools/elements.js";
 import { wear } from "../tools/wearing.js";
@@ -11,7 +10,7 @@ export function mount(section, studio) {
   const empty = element("p", { class: "quiet", text: "Here the cube is turned, as soon as there is something of it." });
   const area = element("div", { class: "turned", hidden: true });
   section.append(empty, area);
-  const now = { shown: null, wanted: "", got: "", busy: false };
+  const now = { shown: null, wanted: "", got: "", busy: false, touched: false };
 
   /** A made cube counts more than the forecast's, which is shown while there is none. */
   function want({ solving, forecast }) {
@@ -21,7 +20,7 @@ export function mount(section, studio) {
     follow();
   }
 
-  /** Show the newest cube, at the angle of the one before; one at a time, and none that is not seen or is being held. */
+  /** Show the newest cube, at the angle to which the one before was turned; one at a time, and none that is not seen or is being held. */
   async function follow() {
     if (now.busy || section.hidden || now.wanted === now.got || area.matches(":active")) return;
     now.busy = true;
@@ -37,7 +36,7 @@ export function mount(section, studio) {
   }
 
   async function show(scene, voxels) {
-    const described = await readScene(scene);
+    const [described, { mount: mountViewer }] = await Promise.all([readScene(scene), import("/viewer/app.js")]);
     const cube = await readVoxels(voxels, described);
     const before = now.shown;
     const angle = before?.angle;
@@ -47,7 +46,7 @@ export function mount(section, studio) {
     area.replaceChildren(root);
     [area.hidden, empty.hidden] = [false, true];
     now.shown = mountViewer(root, described, cube, { inside: true });
-    if (angle !== undefined) now.shown.turnTo(angle);
+    if (angle !== undefined && now.touched) now.shown.turnTo(angle);
     places()[focused]?.focus({ preventScroll: true });
   }
 
@@ -56,6 +55,7 @@ export function mount(section, studio) {
     return [...area.querySelectorAll("button, input, select, [tabindex]")];
   }
 
+  for (const name of ["pointerdown", "keydown", "wheel"]) area.addEventListener(name, () => (now.touched = true), { passive: true });
   for (const name of ["pointerup", "pointercancel"]) addEventListener(name, () => setTimeout(follow));
   studio.on("solving", (facts) => facts.version !== undefined && want({ solving: facts }));
   studio.on("forecast", ({ cube }) => {
