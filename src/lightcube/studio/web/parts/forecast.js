@@ -5,7 +5,7 @@ import { sentenceOf } from "../tools/asking.js";
 
 /** Milliseconds between two changes that a slider sends. */
 const EVERY = 90;
-const WORDS = { good: "good", fair: "fair", poor: "poor" };
+const MARKS = ["good", "fair", "poor"];
 const per = (value) => `${Math.round(100 * value)} %`;
 
 const SLIDERS = [
@@ -70,7 +70,7 @@ function said({ status, pictures, sentence, psnr }) {
   if (status === "compiling") return ["Compiling, once: about half a minute, then never again."];
   if (status === "none") return [];
   if (!pictures.length) return ["Looking …"];
-  const counts = Object.keys(WORDS).map((word) => [word, pictures.filter((each) => each.mark === word).length]).filter(([, count]) => count);
+  const counts = MARKS.map((word) => [word, pictures.filter((each) => each.mark === word).length]).filter(([, count]) => count);
   const all = counts.length === 1;
   const words = counts.map(([word, count]) => element("b", { class: word, text: all ? `All ${count} pictures will be ${word}` : `${count} ${word}` }));
   const mixed = words.flatMap((word, number) => (number ? [number + 1 === words.length ? " and " : ", ", word] : [word]));

@@ -26,7 +26,7 @@ export function mount(section, studio) {
   let points = [];
 
   function show(facts) {
-    const { status, can, done, of, sentence, changed } = facts;
+    const { status, can, done, of, changed } = facts;
     section.dataset.status = status;
     for (const [deed, button] of Object.entries(does)) button.hidden = !can.includes(deed);
     const enough = studio.state.settings.pictures.length > 1;
@@ -47,7 +47,6 @@ export function mount(section, studio) {
     }
     more.hidden = points.length < 2;
     if (status === "idle") walls.replaceChildren();
-    void sentence;
   }
 
   function look({ pictures, voxels }) {
