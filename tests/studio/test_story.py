@@ -243,6 +243,21 @@ def test_what_is_no_picture_is_said_in_the_page(enter: Callable[..., Any], tmp_p
     assert "there is room for 64" in tab.locator(".said").inner_text()
 
 
+def test_a_studio_that_is_gone_is_told_of_and_a_door_begins_at_its_top(browser: Any, tmp_path: Path) -> None:
+    with started(tmp_path / "project") as (process, address):
+        tab = browser.new_page(viewport={"width": 390, "height": 500})
+        tab.goto(address)
+        tab.wait_for_selector("[data-ready]")
+        tab.get_by_role("button", name="Room").click()
+        tab.wait_for_selector(".troubles li")
+        tab.evaluate("scrollTo(0, 400)")
+        tab.get_by_role("button", name="Lessons").click()
+        until(tab, "scrollY === 0")
+        process.kill()
+        tab.get_by_text("The studio does not answer").wait_for(timeout=PATIENCE_MS)
+        tab.close()
+
+
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_everybody_can_use_it(theme: str, enter: Callable[..., Any]) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not installed")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import shutil
 import sys
 import threading
 import time
@@ -312,8 +311,3 @@ def _locked(folder: Path) -> int:
             f"{folder} is open in another studio already: go on there, or close it, or name another folder"
         ) from error
     return owner
-
-
-def free_bytes(folder: Path) -> int:
-    """Bytes that are free on the disk of a folder."""
-    return shutil.disk_usage(folder).free

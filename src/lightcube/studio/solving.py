@@ -117,7 +117,7 @@ class Solving:
             elif deed == "discard":
                 discard_partial(self._out)
                 self._set(status="idle", **_nothing())
-            elif self._worker is None:
+            elif self._worker is None or self._facts["status"] != "running":
                 self._begin("keep")
             else:
                 self._after = deed
@@ -156,6 +156,8 @@ class Solving:
         """Start a process that does it."""
         settings, source = self._settings, str(self._desk.project.folder / self._kind.source)
         task = solver.Task(source, self._out, self._kind.how(settings), self._kind.called_in(settings))
+        if self._worker is not None:  # it has told its last already, and is about to end
+            self._worker.close()
         self._worker = Worker(self._lock, solver.run, (self._kind.make, deed, task), self._heard, self._ended)
         if deed == "start":
             self._before = dict(self._facts), self.wall
