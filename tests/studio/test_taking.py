@@ -91,6 +91,18 @@ def test_it_is_made_in_a_process_told_of_and_saved_under_its_title(client: TestC
     }
 
 
+def test_what_is_made_of_another_kind_of_thing_goes_on_without_a_name(client: TestClient, desk: Desk) -> None:
+    with_cube(desk)
+    client.post("/api/taking/page", json={})
+    desk.project.change(lambda before: before.model_copy(update={"kind": "films"}))
+    told: list[Any] = []
+    desk.hub.tell = lambda name, facts: told.append(facts["doing"])  # type: ignore[method-assign]
+    assert finished(client, "page")["made"] is None  # of films there is a page, too
+    assert {doing["name"] for doing in told if doing} == {""}
+    desk.project.change(lambda before: before.model_copy(update={"kind": "cube"}))
+    assert finished(client, "page")["made"]["said"]
+
+
 @pytest.mark.skipif(os.name != "posix", reason="processes are killed by signals")
 def test_a_process_that_is_killed_is_told_of_and_leaves_nothing(client: TestClient, desk: Desk) -> None:
     with_cube(desk)
