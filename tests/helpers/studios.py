@@ -1,5 +1,9 @@
-"""The studio's application, asked without a network."""
+"""The studio's application, asked without a network, and a studio that runs as people start it."""
 
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from fastapi.testclient import TestClient
@@ -15,3 +19,13 @@ def opened(folder: Path) -> TestClient:
     """A client of the studio of a folder, who has the token."""
     app = make_app(Project(folder), TOKEN)
     return TestClient(app, base_url="http://127.0.0.1", headers={HEADER: TOKEN})
+
+
+@contextmanager
+def started(folder: Path) -> Iterator[tuple["subprocess.Popen[str]", str]]:
+    """The process of a studio, and its address; it is ended as by Ctrl-C in the end."""
+    command = [sys.executable, "-m", "lightcube", "studio", str(folder), "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+        assert process.stdout is not None
+        yield process, process.stdout.readline().strip()
+        process.terminate()

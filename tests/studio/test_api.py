@@ -30,7 +30,7 @@ def test_whatever_is_asked_is_answered_by_more_than_an_error(tmp_path: Path, mon
         @settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
         @given(case=operation.as_strategy())
         def ask(case: Any) -> None:
-            answer = case.call(headers={HEADER: TOKEN, "host": "127.0.0.1"}, base_url="http://127.0.0.1")
+            answer = case.call(headers={HEADER: TOKEN, "host": "127.0.0.1"}, base_url="http://127.0.0.1", timeout=300)
             assert answer.status_code < 500, answer.content
             if answer.status_code >= 400:
                 assert answer.json()["sentence"]

@@ -1,5 +1,7 @@
 """Every kind of thing is foretold, made as its command makes it, stopped, and taken away, in words of its own."""
 
+import gzip
+import json
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -55,26 +57,20 @@ class Told:
     def __call__(self, what: str, **facts: Any) -> None:
         self.heard.append((what, facts))
 
-    def compiling(self) -> None:
-        """Nothing is told of that."""
-
-    def event(self, _: Any) -> bool:
+    def pass_on(self, _: Any) -> bool:
         self._left -= 1
         if self._left < 0:
             self.stopping.set()
         return self.stopping.is_set()
-
-    def wall(self, names: Any, shown: Any, fine: int) -> None:
-        self("wall", names=list(names), shown=list(shown), fine=fine)
-
-    def turn(self, thing: Any, title: str) -> None:
-        self("turn", thing=thing, title=title)
 
 
 class Looking:
     """Whom nobody asks for anything newer."""
 
     kept = None
+
+    def __init__(self) -> None:
+        self.orders: dict[Any, Any] = {}
 
     def give_way(self) -> None:
         """Nothing newer is asked for."""
@@ -229,7 +225,8 @@ def test_it_is_made_as_its_command_makes_it_and_taken_away(
     kind.make(told, "start", Task(str(project.folder / kind.source), str(out), kind.how(settings), "mine"))  # type: ignore[arg-type]
     done = next(facts for what, facts in told.heard if what == "done")
     assert [each["name"] for each in done["pictures"]] == [picture.name for picture in used(settings)]
-    assert any(what == "turn" and facts["title"] == "mine" for what, facts in told.heard)
+    scene = [facts["scene"] for what, facts in told.heard if what == "cube"][-1]
+    assert json.loads(gzip.decompress(scene))["title"] == "mine"
     words = command_of(project.folder, settings).split()[1:]
     other = tmp_path / f"other{kind.file[kind.file.index('.') :]}"
     words[words.index("-o") + 1] = str(other)

@@ -173,6 +173,39 @@ def test_the_sets_to_try_are_pictures_of_different_content(client: TestClient) -
         assert len(set(images)) == count
 
 
+def test_what_nobody_can_come_back_to_is_cleared_and_undo_still_works(client: TestClient) -> None:
+    folder = Path(drop(client, picture(), "0.png").json()["folder"])
+    for number in range(1, 4):
+        drop(client, picture(), f"{number}.png")
+    client.post("/api/undo")
+    client.post("/api/undo")
+    drop(client, picture(), "other.png")  # the last two cannot come back
+    (folder / ".incoming-abc").mkdir()
+    (folder / ".incoming-abc" / "file.png").write_bytes(b"half")
+    for name in (f".{'0' * 16}.png.7", "mine.png", f"{'1' * 16}.jpg"):
+        (folder / "dropped" / name).write_bytes(b"x")
+    kept = client.get("/api/state").json()["settings"]["pictures"]
+    client.put("/api/pictures", json={"keys": []})
+    client.app.state.desk.close()  # type: ignore[attr-defined]
+    with opened(folder) as again:
+        left = {each.name for each in (folder / "dropped").iterdir()}
+        assert left == {*(f"{each['key']}.png" for each in kept), "mine.png", f"{'1' * 16}.jpg"}
+        assert not (folder / ".incoming-abc").exists()
+        assert again.post("/api/undo").json()["pictures"]["missing"] == []
+        assert len(read(again)) == 3
+
+
+def test_dropped_pictures_do_not_pile_up_while_the_studio_runs(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("lightcube.studio.pictures._MANY", 2)
+    monkeypatch.setattr("lightcube.studio.pictures._FRESH_S", -1.0)
+    for number in range(5):
+        state = drop(client, picture(), f"{number}.png").json()
+        client.post("/api/undo")
+    assert len(list((Path(state["folder"]) / "dropped").iterdir())) == 3
+
+
 def test_a_crop_that_cannot_be_is_one_sentence(client: TestClient) -> None:
     key = drop(client, picture(), "a.png").json()["settings"]["pictures"][0]["key"]
     for crop in ({"left": 0.9, "width": 0.5}, {"width": 0}, {"left": -1}, {"left": 1e308}, {"magic": 1}):

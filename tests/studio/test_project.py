@@ -63,6 +63,65 @@ def test_what_changes_nothing_is_no_step(tmp_path: Path) -> None:
     assert not project.described()["can_undo"]
 
 
+def showing(*keys: str) -> Any:
+    pictures = tuple(Picture(key=key, name="a") for key in keys)
+    return lambda before: before.model_copy(update={"pictures": pictures})
+
+
+def keeping(parts: dict[str, Any]) -> Any:
+    return lambda before: before.model_copy(update={"parts": parts})
+
+
+def test_what_is_moved_along_is_undone_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [0.0]
+    monkeypatch.setattr("lightcube.studio.project.time.monotonic", lambda: now[0])
+    project = Project(tmp_path)
+    for when, title, moving in (
+        (0, "a", "x"),
+        (1, "b", "x"),
+        (2, "c", "x"),
+        (3, "d", "y"),
+        (5, "e", "y"),
+        (5, "f", ""),
+    ):
+        now[0] = when
+        project.change(titled(title), moving)
+    assert [project.step(-1).title for _ in range(4)] == ["e", "d", "c", ""]
+    project.step(1)
+    project.change(titled("g"), "x")
+    project.change(titled("c"), "x")  # moved back it was never moved
+    project.change(titled("h"), "x")
+    project.change(titled("c"), "x")
+    project.change(titled("i"), "x")
+    project.step(-1)
+    project.change(titled("k"), "x")  # and nobody moves on from where an undo led
+    assert [project.step(-1).title for _ in range(2)] == ["c", ""]
+    project.change(titled("l"), "x")
+    project.change(titled(""), "x")
+    project.change(titled("m"), "x")
+    assert project.step(-1).title == ""
+
+
+def test_all_pictures_that_can_come_back_are_known(tmp_path: Path) -> None:
+    project = Project(tmp_path)
+    keys = [f"{number:016x}" for number in range(3)]
+    for key in keys:
+        project.change(showing(key))
+    project.step(-1)
+    assert project.keys == set(keys)
+    project.change(titled("other"))
+    assert project.keys == set(keys[:2])
+    project.close()
+    assert Project(tmp_path).keys == set(keys[:2])
+
+
+def test_numbers_that_are_none_are_not_kept(tmp_path: Path) -> None:
+    project = Project(tmp_path)
+    for number in (float("nan"), float("inf")):
+        with pytest.raises(InputError, match="not JSON compliant"):
+            project.change(keeping({"rooms": [number]}))
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_hostile_names_come_back_as_they_are(name: str) -> None:
     picture = Picture(key="0123456789abcdef", name=name, crop=Crop(left=0.125, width=0.5))

@@ -1,7 +1,11 @@
 """Take away: what is made of a cube is whole, says what it is worth, and is told of; what cannot be is a sentence."""
 
+import os
+import signal
 import time
+from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import pytest
 
@@ -9,9 +13,14 @@ pytest.importorskip("fastapi", reason="the studio's extra is not installed")
 from fastapi.testclient import TestClient
 
 import lightcube as lc
-from lightcube.studio import away, taking
+from lightcube.events import Progress, Said
+from lightcube.fabrication.resins import ConvertedCube
+from lightcube.studio import taking
+from lightcube.studio.away_cubes import CUBES
 from lightcube.studio.desk import Desk
+from lightcube.studio.offered import Order
 from lightcube.studio.project import MADE
+from lightcube.viewer.label import Label
 from tests.helpers.made import a_cube
 
 #: What the `client` asks.
@@ -36,31 +45,79 @@ def finished(client: TestClient, name: str) -> dict[str, Any]:
 def test_without_a_cube_nothing_is_made(client: TestClient) -> None:
     assert client.get("/api/taking").json()["has_cube"] is False
     refused = client.post("/api/taking/page", json={})
-    assert (refused.status_code, refused.json()["sentence"]) == (400, "there is none of the cube yet: make it first")
+    assert (refused.status_code, refused.json()["sentence"]) == (400, "the cube is not made yet: make it first")
 
 
-@pytest.mark.parametrize("name", ["page", "sheet", "cube", "shell", "points", "volume", "schedule"])
-def test_what_is_made_says_what_it_is_worth_and_is_saved(client: TestClient, desk: Desk, name: str) -> None:
+@pytest.mark.parametrize("name", ["page", "sheet", "shell", "points", "volume", "schedule"])
+def test_what_is_made_says_what_it_is_worth(tmp_path: Path, name: str) -> None:
+    source, target = tmp_path / "cube.npz", tmp_path / f"thing.{CUBES[name].suffix}"
+    lc.save(a_cube((8, 8, 8)), source)
+    said = CUBES[name].make(Order(lc.load(source), source, target, Label("Sea"), False, lambda _: False))
+    assert all(said)
+    assert target.stat().st_size > 0
+
+
+def test_slices_are_packed_whole_and_tell_of_every_step(tmp_path: Path) -> None:
+    heard: list[Progress | Said] = []
+    cube, target = a_cube((4, 5, 6)), tmp_path / "sea.zip"
+    with pytest.warns(ConvertedCube):
+        CUBES["slices"].make(Order(cube, tmp_path, target, Label("Sea"), False, heard.append))
+    with ZipFile(target) as packed:
+        slices = [name for name in packed.namelist() if name.endswith(".png")]
+    steps = [event.done / event.of for event in heard if isinstance(event, Progress)]
+    assert steps[: len(slices)] == [(number + 1) / len(slices) for number in range(len(slices))]
+    assert [event.sentence for event in heard if isinstance(event, Said)] == ["looking at what it casts", "packing"]
+    assert {path.name for path in tmp_path.iterdir()} == {"sea.zip"}
+
+
+def test_it_is_made_in_a_process_told_of_and_saved_under_its_title(client: TestClient, desk: Desk) -> None:
     with_cube(desk)
+    told: list[Any] = []
+    desk.hub.tell = lambda name, facts: told.append(facts)  # type: ignore[method-assign]
     desk.project.change(lambda before: before.model_copy(update={"title": '../Zoë & "we"'}))
-    assert client.post(f"/api/taking/{name}", json={"by": "me"}).status_code == 200
-    thing = finished(client, name)
+    assert client.post("/api/taking/schedule", json={"by": "me"}).status_code == 200
+    thing = finished(client, "schedule")
     assert thing["failed"] == ""
     assert thing["made"]["said"]
-    saved = client.get(f"/api/taking/{name}/file")
+    saved = client.get("/api/taking/schedule/file")
     assert len(saved.content) == thing["made"]["bytes"] > 0
-    assert thing["made"]["file"] == f"Zoë-we-{name}.{away.things('cubes')[name].suffix}"
+    assert thing["made"]["file"] == "Zoë-we-schedule.csv"
+    assert [path.name for path in desk.project.path(MADE, "away").iterdir()] == ["cube"]
+    left = {path.name for path in desk.project.path(MADE, "away", "cube").iterdir()}
+    assert left == {"Zoë-we-schedule.csv", "Zoë-we-schedule.json"}
+    assert "getting ready" in [facts["doing"]["sentence"] for facts in told if facts["doing"]]
     assert {path.name for path in desk.project.folder.iterdir() if not path.name.startswith(".")} <= {
         *("dropped", "pictures", "made", "project.toml", "history.json")
     }
 
 
-def test_what_was_made_is_known_when_the_studio_is_started_again_and_when_it_is_old(desk: Desk) -> None:
+def test_what_is_made_of_another_kind_of_thing_goes_on_without_a_name(client: TestClient, desk: Desk) -> None:
     with_cube(desk)
-    first = taking.Taking(desk)
-    first.begin("cube", taking._Asked(by="", note=""))
-    assert first._thread is not None
-    first._thread.join(60)
+    client.post("/api/taking/page", json={})
+    desk.project.change(lambda before: before.model_copy(update={"kind": "films"}))
+    told: list[Any] = []
+    desk.hub.tell = lambda name, facts: told.append(facts["doing"])  # type: ignore[method-assign]
+    assert finished(client, "page")["made"] is None  # of films there is a page, too
+    assert {doing["name"] for doing in told if doing} == {""}
+    desk.project.change(lambda before: before.model_copy(update={"kind": "cube"}))
+    assert finished(client, "page")["made"]["said"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="processes are killed by signals")
+def test_a_process_that_is_killed_is_told_of_and_leaves_nothing(client: TestClient, desk: Desk) -> None:
+    with_cube(desk)
+    client.post("/api/taking/page", json={})
+    os.kill(desk.closing[0].__self__._worker.process.pid, signal.SIGKILL)  # type: ignore[attr-defined]
+    assert "ended from outside" in finished(client, "page")["failed"]
+    assert not list(desk.project.path(MADE, "away").iterdir())
+
+
+def test_what_was_made_is_known_when_the_studio_is_started_again_and_when_it_is_old(
+    client: TestClient, desk: Desk
+) -> None:
+    with_cube(desk)
+    client.post("/api/taking/cube", json={})
+    finished(client, "cube")
     again = taking.Taking(desk)
     (thing,) = (each for each in again.state()["things"] if each["name"] == "cube")
     assert thing["made"]["is_old"] is False
@@ -76,7 +133,7 @@ def test_what_is_stopped_leaves_nothing(client: TestClient, desk: Desk) -> None:
     client.post("/api/taking/stop")
     thing = finished(client, "wide")
     assert (thing["made"], thing["failed"]) == (None, "")
-    assert not list(desk.project.path(MADE, "away").rglob("*.*"))
+    assert not list(desk.project.path(MADE, "away").iterdir())
 
 
 @pytest.mark.parametrize("name", ["nothing", "..", "page.html", "%2e%2e"])

@@ -109,7 +109,8 @@ def _own(desk: Desk) -> APIRouter:
                 update["parts"] = before.parts | {asked["part"]: asked.get("kept")}
             return before.model_copy(update=update)
 
-        return desk.change(changed)
+        names = {name: sorted(value) if isinstance(value, dict) else name for name, value in asked.items()}
+        return desk.change(changed, moving=f"{names} {change.part}")
 
     @router.post("/undo")
     def undo() -> dict[str, Any]:

@@ -1,9 +1,13 @@
-"""What can be taken away of each kind of thing, and what makes its file and says how good it is."""
+"""What can be taken away of each kind of thing, and what makes its file and says how good it is.
+
+It is made in a process of its own, which `run` is the whole of.
+"""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +18,7 @@ from lightcube.studio.away_cubes import CUBES, FILMS
 from lightcube.studio.away_solids import PLATES, SOLIDS
 from lightcube.studio.makers import without_commands
 from lightcube.studio.offered import Order, Thing
+from lightcube.studio.worker import telling
 from lightcube.viewer.label import Label
 
 #: What is offered, in the page's order, and what reads the thing that it is made of.
@@ -36,7 +41,14 @@ def make(
     """Make a thing's file of another one; returns what is to be said of it. `InputError` where it cannot be."""
     offered, read = OFFERS[offer]
     with warnings.catch_warnings(record=True) as warned:
-        warnings.simplefilter("always")
+        warnings.simplefilter("always", UserWarning)
         said = offered[name].make(Order(read(str(source)), source, target, label, captions, tell))
     noticed = (f"{each.message}" for each in warned if issubclass(each.category, UserWarning))
     return without_commands([*said, *noticed])
+
+
+def run(pipe: Connection, offer: str, name: str, source: Path, target: Path, label: Label, captions: bool) -> None:
+    """The whole of a process that makes a thing's file, and tells what is to be said of it."""
+    with telling(pipe) as told:
+        said = make(offer, name, source, target, label, told.pass_on, captions=captions)
+        told("made", file=target.name, said=said)

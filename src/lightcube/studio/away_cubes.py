@@ -6,13 +6,14 @@ import shutil
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal
+from zipfile import ZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightcube import io
 from lightcube.drawing import films
-from lightcube.events import Tell, counting
+from lightcube.events import Progress, Said, Tell, counting
 from lightcube.fabrication import exporting as fabrication
 from lightcube.fabrication.sidecar import Kind
 from lightcube.fabrication.thinning import as_films
@@ -132,20 +133,30 @@ def _assembly(order: Order[Cube]) -> list[str]:
 def _slices(order: Order[Cube]) -> list[str]:
     """A folder of slices, in one file."""
     folder = order.target.with_suffix("")
-    try:
-        said = _export(order, order.thing, "polyjet", {"resins": io.read_dyes("polyjet")}, folder)
-        shutil.make_archive(str(folder), "zip", folder)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    said = _export(order, order.thing, "polyjet", {"resins": io.read_dyes("polyjet")}, folder)
+    order.tell(Said("packing", "packing"))
+    files, advance = sorted(folder.iterdir()), counting(order.tell)
+    with ZipFile(order.target, "w") as packed:  # as they are: pictures do not become smaller
+        for number, file in enumerate(files):
+            packed.write(file, file.name)
+            advance(number + 1, len(files))
+    shutil.rmtree(folder)
     return said
 
 
 def _export(order: Order[Cube], cube: Cube, kind: Kind, options: Mapping[str, Any], target: Path) -> list[str]:
     """Write a file, and say what it casts."""
+
+    def tell(event: Progress | Said) -> bool | None:
+        stopping = order.tell(event)
+        if isinstance(event, Progress) and event.done == event.of:
+            order.tell(Said("looking at what it casts", "looking"))
+        return stopping
+
     at = place(target)
     fabrication.check(at, kind, overwrite=True)
     planned = fabrication.plan(cube, at, kind, options)
-    document = fabrication.write(cube, at, kind, planned, True, order.tell, is_scored=True, made_from=None)
+    document = fabrication.write(cube, at, kind, planned, True, tell, is_scored=True, made_from=None)
     return exporting.told(document)
 
 

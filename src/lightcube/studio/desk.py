@@ -43,9 +43,9 @@ class Desk:
         with self._lock:
             return self.project.described() | {name: part() for name, part in self.parts.items()}
 
-    def change(self, change: Callable[[Settings], Settings]) -> dict[str, Any]:
-        """Change the settings, keep them, and tell everybody."""
-        self.project.change(change)
+    def change(self, change: Callable[[Settings], Settings], moving: str = "") -> dict[str, Any]:
+        """Change the settings, keep them, and tell everybody; as `Project.change`."""
+        self.project.change(change, moving)
         return self.changed()
 
     def start(self) -> None:

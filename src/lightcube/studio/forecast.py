@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import threading
-from contextlib import suppress
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
 from typing import Any
 
 from fastapi import APIRouter
@@ -15,6 +11,7 @@ from lightcube.studio import forecaster
 from lightcube.studio.desk import Desk
 from lightcube.studio.kept import dropped
 from lightcube.studio.kinds import kind_of, made_of, used
+from lightcube.studio.worker import Worker
 
 
 def router(desk: Desk) -> APIRouter:
@@ -44,11 +41,10 @@ class Forecast:
 
     def __init__(self, desk: Desk) -> None:
         self._desk, self._lock = desk, threading.RLock()
-        self._process: SpawnProcess | None = None
-        self._pipe: Connection | None = None
+        self._worker: Worker | None = None
         self._number, self._asked, self._kind = 0, "", ""
         self._parts: dict[str, bytes] = {}
-        self._facts: dict[str, Any] = {"status": "none", "pictures": [], "notes": []}
+        self._facts: dict[str, Any] = {"status": "none", "pictures": [], "notes": [], "cube": 0}
 
     def described(self) -> dict[str, Any]:
         """What is told, as plain JSON."""
@@ -58,13 +54,7 @@ class Forecast:
     def begin(self) -> None:
         """Start the process that looks."""
         with self._lock:
-            context = multiprocessing.get_context("spawn")
-            self._pipe, theirs = context.Pipe()
-            process = context.Process(target=forecaster.run, args=(theirs,), daemon=True, name="lightcube-forecaster")
-            process.start()
-            theirs.close()
-            self._process = process
-            threading.Thread(target=self._hear, args=(process, self._pipe), daemon=True).start()
+            self._worker = Worker(self._lock, forecaster.run, (), self._heard, self._ended)
 
     def ask(self) -> None:
         """Ask for a forecast of how the project stands, unless it is that one already."""
@@ -101,11 +91,10 @@ class Forecast:
             self._asked = about
             self._number = question.number
             self._set(status="compiling" if self._facts["status"] == "compiling" else "looking")
-            if self._process is None:
+            if self._worker is None:
                 self.begin()
-            with suppress(OSError):
-                assert self._pipe is not None  # noqa: S101 - it has begun
-                self._pipe.send(question)
+            assert self._worker is not None  # noqa: S101 - it has begun
+            self._worker.send(question)
 
     def part(self, name: str) -> bytes | None:
         """Scene or voxels of the small cube, to be turned while there is none other."""
@@ -115,23 +104,14 @@ class Forecast:
     def close(self) -> None:
         """End the process; nothing of it is needed."""
         with self._lock:
-            process, self._process = self._process, None
-        if process is not None:
-            process.kill()
-            process.join()
+            worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.close()
 
-    def _hear(self, process: SpawnProcess, pipe: Connection) -> None:
-        with suppress(EOFError, OSError):
-            while True:
-                what, facts = pipe.recv()
-                with self._lock:
-                    self._heard(what, facts)
-        with self._lock:
-            pipe.close()
-            if process is self._process:  # it was killed: the next question starts it again
-                self._process, self._asked = None, ""
-                said = "the forecast was ended from outside: change anything to see it again"
-                self._set(status="failed", sentence=said)
+    def _ended(self, _: str) -> None:
+        """It was killed: the next question starts it again."""
+        self._worker, self._asked = None, ""
+        self._set(status="failed", sentence="the forecast was ended from outside: change anything to see it again")
 
     def _heard(self, what: str, facts: dict[str, Any]) -> None:
         """Take up what was told; answers to what is not asked any more are left out."""
@@ -141,7 +121,8 @@ class Forecast:
             self._set(status="looking" if self._asked else "none")
         elif what == "cube" and facts.pop("number") == self._number:
             self._parts = facts
-            self._desk.hub.tell("forecast", {"cube": True})
+            self._facts["cube"] += 1
+            self._desk.hub.tell("forecast", {"cube": self._facts["cube"]})
         elif what == "forecast" and facts["number"] == self._number:
             stage = facts.pop("stage")
             self._set(status=stage, sentence=facts.pop("sentence", ""), **facts)

@@ -12,7 +12,7 @@ import warnings
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -37,6 +37,8 @@ _AROUND = 0.16
 _EMPTY_DB, _FULL_DB = 52.0, 26.0
 #: Of more pictures than this it is not asked which costs most.
 _MOST_LACKING = 16
+#: What a question has of each picture.
+_OF_PICTURES = ("keys", "names", "files", "crops")
 #: Seconds without another question before what takes long is begun.
 _PAUSE_S = 0.8
 
@@ -68,6 +70,15 @@ class Asked:
     crops: tuple[Crop, ...]
     source: Path
     title: str
+
+    def in_order(self, order: Any) -> Asked:
+        """The same of the pictures in another order, where there is one."""
+        if order is None:
+            return self
+        moved: dict[str, Any] = {
+            name: tuple(getattr(self, name)[each] for each in order.pictures) for name in _OF_PICTURES
+        }
+        return replace(self, **moved)
 
 
 @dataclass(frozen=True)
@@ -112,6 +123,8 @@ class Looking:
 
     pipe: Connection
     kept: Any = None
+    #: The order that was found best for pictures, by their keys and crops: it is looked for by the whole look only.
+    orders: dict[tuple[Any, ...], Any] = field(default_factory=dict)
 
     def warm(self) -> None:
         """Load, and compile where that was never done, before anything is asked."""
@@ -179,15 +192,23 @@ def of_a_turntable(looking: Looking, asked: Asked) -> Iterator[dict[str, Any]]:
     began = time.monotonic()
     images = tuple(_read(file, crop) for file, crop in zip(asked.files, asked.crops, strict=True))
     planned = _planned(images, asked.names, replace(asked.how, grain=0.0, order="given"))
-    yield told_of_cube(asked, planned, *looking.look(planned, FIRST), began, "first")
+    quick = _ordered(looking, asked, planned)
+    yield told_of_cube(asked, quick, *looking.look(quick, FIRST), began, "first")
     if asked.how.order == "best":
         planned = _planned(images, asked.names, replace(asked.how, grain=0.0))
+        looking.orders = {(asked.keys, asked.crops): planned.order}
     small, cube = looking.look(planned)
     told = told_of_cube(asked, planned, small, cube, began, "whole") | {"notes": planned.doubtful}
     yield told
     looking.show(asked, cube)
     if 2 < len(asked.keys) <= _MOST_LACKING:
         yield told | {"stage": "costs", "costs": _costs(looking, planned)}
+
+
+def _ordered(looking: Looking, asked: Asked, planned: Any) -> Any:
+    """A plan in the order that was found best for its pictures before, where they are to be in the best one."""
+    order = looking.orders.get((asked.keys, asked.crops)) if asked.how.order == "best" else None
+    return planned if order is None else replace(planned, targets=order(planned.targets), order=order)
 
 
 def _planned(images: tuple[NDArray[np.float32], ...], names: tuple[str, ...], options: Options) -> Any:
@@ -207,7 +228,7 @@ def told_of_cube(asked: Asked, planned: Any, small: Any, cube: Any, began: float
     told = law(reached(small, cube), ratio, rehearsal_of(planned.recipe))
     reasons = [_reason(mark_of(psnr), wanted) for psnr, wanted in zip(told, small.pictures, strict=True)]
     mean = float(np.mean(told))
-    return facts(asked, looks_of(cube, told, reasons), began, stage) | {
+    return facts(asked.in_order(planned.order), looks_of(cube, told, reasons), began, stage) | {
         "psnr": round(mean, 1),
         "full": round(min(max((_EMPTY_DB - mean) / (_EMPTY_DB - _FULL_DB), 0.03), 1.0), 3),
         "angles_deg": [round(float(each), 2) for each in planned.targets.rig.stops.angle_deg],

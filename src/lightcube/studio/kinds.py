@@ -80,6 +80,10 @@ class Kind:
         """What the names of all that belongs to it begin with."""
         return self.file.partition(".")[0]
 
+    def called_in(self, settings: Settings) -> str:
+        """What a project calls it; what it is where nothing is said."""
+        return settings.title or self.title.removeprefix("A ").capitalize()
+
 
 def _of_shape(settings: Settings) -> tuple[int, int]:
     """Three walls take a picture each."""

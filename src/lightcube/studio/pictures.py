@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
 import secrets
+import shutil
 import tempfile
 import threading
+import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -40,6 +43,11 @@ from lightcube.studio.samples import SAMPLES
 _STRIP = 260
 #: Letters of a name that are kept.
 _NAME = 60
+
+#: Files of dropped pictures; where there are so many, those that nobody can come back to go, unless they are as fresh.
+_OWN, _MANY, _FRESH_S = re.compile("[0-9a-f]{16}[.]png"), 4 * MOST_PICTURES, 3600.0
+#: What the folders are called in which files arrive.
+_INCOMING = ".incoming-"
 
 _Key = Annotated[str, Field(pattern="^[0-9a-f]{16}$")]
 #: One file at a time is read: each may take much memory.
@@ -78,7 +86,7 @@ def router(desk: Desk) -> APIRouter:
     strip = Strip(desk)
     desk.parts["pictures"] = strip.described
     desk.minding.append(strip.write)
-    desk.starting.append(strip.write)
+    desk.starting += [strip.write, strip.tidy]
 
     @routes.post("/uploads")
     async def upload(
@@ -144,7 +152,7 @@ class Strip:
     """The pictures of a desk's project."""
 
     def __init__(self, desk: Desk) -> None:
-        self._desk, self._written = desk, dict[str, Picture]()
+        self._desk, self._written, self._names = desk, dict[str, Picture](), b""
         self._lock = threading.Lock()
 
     def room(self) -> int:
@@ -177,6 +185,8 @@ class Strip:
     def add(self, images: Sequence[tuple[NDArray[np.uint8], str]]) -> dict[str, Any]:
         """Add pictures, as many as there is room for."""
         added = []
+        if sum(1 for _ in self._desk.project.path(DROPPED).iterdir()) > _MANY:
+            self.tidy(_FRESH_S)
         for levels, title in images[: self.room()]:
             key = secrets.token_hex(8)
             self._desk.project.write(png(levels), DROPPED, f"{key}.png")
@@ -225,7 +235,23 @@ class Strip:
                     project.path(PICTURES, stale).unlink()
                 self._written.pop(stale, None)
             names = views_text(None, [picture.name for picture in wanted.values()]).encode()
-            project.write(names, PICTURES, VIEWS_FILE)
+            if names != self._names:
+                project.write(names, PICTURES, VIEWS_FILE)
+                self._names = names
+
+    def tidy(self, older_s: float = 0.0) -> None:
+        """Remove what was dropped and cannot come back by undoing, and what a killed studio left half taken."""
+        project = self._desk.project
+        needed, since = project.keys, time.time() - older_s
+        for file in project.path(DROPPED).iterdir():
+            is_needed = file.stem in needed or not (_OWN.fullmatch(file.name) or file.name.startswith("."))
+            with suppress(OSError):
+                if not is_needed and file.stat().st_mtime <= since:
+                    file.unlink()
+        for folder in project.folder.glob(f"{_INCOMING}*"):
+            with suppress(OSError):
+                if folder.stat().st_mtime <= since:
+                    shutil.rmtree(folder)
 
 
 def _names_in(project: Project) -> set[str]:
@@ -263,7 +289,7 @@ def _incoming(project: Project, name: str) -> Iterator[Path]:
     if not suffix.isascii() or not suffix[1:].isalnum() or len(suffix) > 6 or not is_pictures(Path(f"x{suffix}")):
         raise InputError(f"{shown(name)} is no picture, animation or video that is known here: drop another file")
     with system_errors(project.folder, "writing"):
-        made = tempfile.TemporaryDirectory(prefix=".incoming-", dir=project.folder)
+        made = tempfile.TemporaryDirectory(prefix=_INCOMING, dir=project.folder)
     with made as folder:
         yield Path(folder) / f"file{suffix}"
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import math
 import os
-import shutil
 import sys
 import threading
+import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -27,8 +29,8 @@ else:
 
 #: Of the file of settings; another one is not read.
 FORMAT = 1
-#: Changes that can be undone.
-_MOST_STEPS = 200
+#: Changes that can be undone; seconds within which one thing that is changed again and again, as by a slider, is one.
+_MOST_STEPS, _ONE_MOVE_S = 200, 1.5
 _FILE, _HISTORY, _LOCK = "project.toml", "history.json", ".studio.lock"
 #: Folders: what was dropped, what is solved for, and what was made.
 DROPPED, PICTURES, MADE = "dropped", "pictures", "made"
@@ -83,9 +85,21 @@ class Settings(Strict):
     def _each_once(self) -> Settings:
         if len({picture.key for picture in self.pictures}) < len(self.pictures):
             raise ValueError("a picture stands in the strip twice")
-        if len(json.dumps(self.parts)) > 100_000:
+        if len(json.dumps(self.parts, allow_nan=False)) > 100_000:
             raise ValueError("more is said of the other parts than is kept")
         return self
+
+
+@dataclass(frozen=True)
+class _Step:
+    """Settings, and how the history has them."""
+
+    settings: Settings
+    text: str
+
+    @classmethod
+    def of(cls, settings: Settings) -> _Step:
+        return cls(settings, json.dumps(settings.model_dump(mode="json")))
 
 
 class Project:
@@ -105,6 +119,7 @@ class Project:
     def __init__(self, folder: Path) -> None:
         self.folder = Path(folder).absolute()
         self._lock = threading.RLock()
+        self._moved = ("", -math.inf)
         with system_errors(self.folder, "writing"):
             self.folder.mkdir(parents=True, exist_ok=True)
         self._owner = _locked(self.folder)
@@ -126,18 +141,37 @@ class Project:
     @property
     def settings(self) -> Settings:
         """How it stands now."""
-        return self._steps[self._at]
+        return self._steps[self._at].settings
 
-    def change(self, change: Callable[[Settings], Settings]) -> Settings:
-        """Change the settings and keep them; `InputError` where they cannot be, or not be written."""
+    @property
+    def keys(self) -> frozenset[str]:
+        """The pictures of all settings that one can come back to."""
+        with self._lock:
+            return frozenset(picture.key for step in self._steps for picture in step.settings.pictures)
+
+    def change(self, change: Callable[[Settings], Settings], moving: str = "") -> Settings:
+        """Change the settings and keep them; `InputError` where they cannot be, or not be written.
+
+        Changes of the same thing, named by `moving`, that follow each other closely are undone as one.
+        """
         with self._lock:
             before = self.settings
             after = _checked(change(before))
             if after == before:
                 return before
-            steps = [*self._steps[: self._at + 1], after][-_MOST_STEPS:]
+            begun = self._steps[: self._at + 1]
+            if self._is_moving(moving):
+                begun.pop()
+            is_back = after == begun[-1].settings
+            steps = begun if is_back else [*begun, _Step.of(after)][-_MOST_STEPS:]
             self._keep(steps, len(steps) - 1)
+            self._moved = "" if is_back else moving, time.monotonic()
             return after
+
+    def _is_moving(self, moving: str) -> bool:
+        """Whether a change goes on with the one before."""
+        what, when = self._moved
+        return "" != moving == what and time.monotonic() - when < _ONE_MOVE_S
 
     def step(self, way: Literal[-1, 1]) -> Settings:
         """Undo a change, or do it again; `InputError` where there is none."""
@@ -145,6 +179,7 @@ class Project:
             if not 0 <= self._at + way < len(self._steps):
                 raise InputError("there is nothing to undo" if way < 0 else "there is nothing to do again")
             self._keep(self._steps, self._at + way)
+            self._moved = ("", -math.inf)
             return self.settings
 
     def described(self) -> dict[str, Any]:
@@ -166,43 +201,45 @@ class Project:
             raise InputError("this leads out of the project's folder: only what is in it is read and written")
         return found
 
-    def write(self, data: bytes, *parts: str) -> Path:
-        """Write a file of the folder, whole or not at all."""
+    def write(self, data: bytes, *parts: str, is_vital: bool = True) -> Path:
+        """Write a file of the folder, whole or not at all; what is not vital may be lost when the power is."""
         target = self.path(*parts)
         begun = target.with_name(f".{target.name}.{threading.get_ident()}")
         with system_errors(target, "writing"):
             try:
                 with begun.open("wb") as opened:
                     opened.write(data)
-                    opened.flush()
-                    os.fsync(opened.fileno())
+                    if is_vital:
+                        opened.flush()
+                        os.fsync(opened.fileno())
                 begun.replace(target)
             finally:
                 begun.unlink(missing_ok=True)
         return target
 
-    def _keep(self, steps: list[Settings], at: int) -> None:
+    def _keep(self, steps: list[_Step], at: int) -> None:
         """Write settings and history, and only then believe them."""
-        self.write(toml_text(steps[at]).encode(), _FILE)
-        history = {"format": FORMAT, "at": at, "steps": [step.model_dump(mode="json") for step in steps]}
-        self.write(json.dumps(history).encode(), _HISTORY)
+        self.write(toml_text(steps[at].settings).encode(), _FILE)
+        texts = ", ".join(step.text for step in steps)
+        history = f'{{"format": {FORMAT}, "at": {at}, "steps": [{texts}]}}'
+        self.write(history.encode(), _HISTORY, is_vital=False)
         self._steps, self._at = steps, at
 
-    def _read(self) -> tuple[list[Settings], int]:
+    def _read(self) -> tuple[list[_Step], int]:
         """What was kept; the settings count, and a history that ends elsewhere is none."""
         file = self.path(_FILE)
         if not file.exists():
             self.write(toml_text(Settings()).encode(), _FILE)
-            return [Settings()], 0
+            return [_Step.of(Settings())], 0
         settings = _of_tables(read_tables(file, str(file)), str(file))
         try:
             history = json.loads(self.path(_HISTORY).read_bytes())
-            steps, at = [Settings.model_validate(step) for step in history["steps"]], int(history["at"])
-            if 0 <= at < len(steps) and steps[at] == settings:
+            steps, at = [_Step.of(Settings.model_validate(step)) for step in history["steps"]], int(history["at"])
+            if 0 <= at < len(steps) and steps[at].settings == settings:
                 return steps, at
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass  # it was not written yet, or is damaged: what was changed can then not be undone
-        return [settings], 0
+        return [_Step.of(settings)], 0
 
 
 def _checked(settings: Settings) -> Settings:
@@ -274,8 +311,3 @@ def _locked(folder: Path) -> int:
             f"{folder} is open in another studio already: go on there, or close it, or name another folder"
         ) from error
     return owner
-
-
-def free_bytes(folder: Path) -> int:
-    """Bytes that are free on the disk of a folder."""
-    return shutil.disk_usage(folder).free

@@ -57,7 +57,8 @@ def serve(folder: Path, port: int, ready: Callable[[str], None]) -> None:
 
 def _listening(port: int) -> socket.socket:
     """A socket on a port of this machine; `InputError` where somebody has it."""
-    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    # said by name: asyncio lets answers go at once (no Nagle) only where a socket says that it is of TCP
+    listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listening.bind((_HOST, port))

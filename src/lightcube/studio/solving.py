@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 import threading
-from contextlib import suppress
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
 from typing import Any, Literal
 
 from fastapi import APIRouter
 from fastapi.responses import Response
-from starlette.exceptions import HTTPException
 
 from lightcube.errors import InputError
 from lightcube.jobs.partial import discard_partial, is_partial, partial_path
@@ -20,6 +15,7 @@ from lightcube.studio import solver
 from lightcube.studio.desk import Desk
 from lightcube.studio.kinds import KINDS, check_there, command_of, made_of, used
 from lightcube.studio.project import MADE, KindName, Settings
+from lightcube.studio.worker import Worker
 
 Status = Literal["idle", "running", "stopping", "paused", "done", "kept", "failed"]
 #: What can be done in which state.
@@ -64,10 +60,10 @@ def router(desk: Desk) -> APIRouter:
 
     @routes.get("/cube/{part}", response_class=Response)
     def cube(part: Literal["scene", "voxels"]) -> Response:
-        """The newest thing that there is, as the viewer reads it: its scene or its voxels, gzipped."""
+        """The newest thing that there is, as the viewer reads it: its scene or its voxels, gzipped; nothing before."""
         data = now().part(part)
         if data is None:
-            raise HTTPException(404)
+            return Response(status_code=204)
         return Response(data, media_type="application/octet-stream")
 
     return routes
@@ -78,8 +74,7 @@ class Solving:
 
     def __init__(self, desk: Desk, name: KindName) -> None:
         self._desk, self._lock, self._name, self._kind = desk, threading.RLock(), name, KINDS[name]
-        self._process: SpawnProcess | None = None
-        self._pipe: Connection | None = None
+        self._worker: Worker | None = None
         self._after = ""
         self._parts: dict[str, bytes] = {}
         self.wall: dict[str, Any] = {"pictures": [], "voxels": 0}
@@ -122,12 +117,12 @@ class Solving:
             elif deed == "discard":
                 discard_partial(self._out)
                 self._set(status="idle", **_nothing())
-            elif self._process is None:
+            elif self._worker is None or self._facts["status"] != "running":
                 self._begin("keep")
             else:
                 self._after = deed
                 self._set(status="stopping")
-                self._stop()
+                self._worker.stop()
             return self.described()
 
     def go_on(self) -> None:
@@ -145,59 +140,30 @@ class Solving:
         with self._lock:
             if name in self._parts:
                 return self._parts[name]
+            is_newest = self._facts["status"] != "running"
         file = self._desk.project.path(MADE, f"{self._kind.stem}.{name}.gz")
-        is_newest = self._facts["status"] != "running" and not self._has_changed()
         first = None if is_newest and file.is_file() else self._desk.first_cube(name)
         return file.read_bytes() if first is None and file.is_file() else first
 
     def close(self) -> None:
         """End the process; what it has reached is kept, and gone on with when the studio starts again."""
         with self._lock:
-            process, self._process = self._process, None
-            self._stop()
-        if process is not None:
-            process.join(_GRACE_S)
-            if process.is_alive():
-                process.kill()
-                process.join()
+            worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.close(_GRACE_S)
 
     def _begin(self, deed: solver.Deed) -> None:
         """Start a process that does it."""
-        project = self._desk.project
-        context = multiprocessing.get_context("spawn")
-        ours, theirs = context.Pipe()
-        settings, source = self._settings, str(project.folder / self._kind.source)
-        task = solver.Task(source, self._out, self._kind.how(settings), settings.title or self._kind.title)
-        asked = (theirs, self._kind.make, deed, task)
-        process = context.Process(target=solver.run, args=asked, daemon=True, name="lightcube-solver")
-        process.start()
-        theirs.close()
-        self._process, self._pipe = process, ours
+        settings, source = self._settings, str(self._desk.project.folder / self._kind.source)
+        task = solver.Task(source, self._out, self._kind.how(settings), self._kind.called_in(settings))
+        if self._worker is not None:  # it has told its last already, and is about to end
+            self._worker.close()
+        self._worker = Worker(self._lock, solver.run, (self._kind.make, deed, task), self._heard, self._ended)
         if deed == "start":
             self._before = dict(self._facts), self.wall
             self.curve, self.wall, self._parts = [], {"pictures": [], "voxels": 0}, {}
             self._facts |= _nothing() | {"made_of": made_of(settings), "pictures": [], "said": []}
         self._set(status="stopping" if deed == "keep" else "running", sentence="")
-        threading.Thread(target=self._hear, args=(process, ours), daemon=True).start()
-
-    def _hear(self, process: SpawnProcess, pipe: Connection) -> None:
-        """Hear what a process tells until it ends."""
-        last = ""
-        try:
-            while True:
-                last, facts = pipe.recv()
-                with self._lock:
-                    if process is self._process:
-                        self._heard(last, facts)
-                if last in ("done", "kept"):  # there is something to take away now; nobody waits for the lock
-                    self._desk.hub.tell("state", self._desk.state())
-        except (EOFError, OSError):
-            process.join()
-        with self._lock:
-            pipe.close()
-            if process is self._process:
-                self._process = self._pipe = None
-                self._ended(last)
 
     def _heard(self, what: str, facts: dict[str, Any]) -> None:
         """Take up one thing that was told."""
@@ -216,14 +182,22 @@ class Solving:
         elif what == "said":
             self._set(sentence=facts["sentence"])
         elif what in ("done", "kept"):
-            for name, data in self._parts.items():
-                self._desk.project.write(data, MADE, f"{self._kind.stem}.{name}.gz")
-            self._set(status=what, left_s=None, sentence="", **facts)
+            self._set(status=what, left_s=None, sentence=self._kept_for_later(), **facts)
         elif what == "failed":
             self._set(status="failed", left_s=None, sentence=facts["sentence"])
 
+    def _kept_for_later(self) -> str:
+        """Keep what is turned for when the studio is started again; says why where it cannot be."""
+        try:
+            for name, data in self._parts.items():
+                self._desk.project.write(data, MADE, f"{self._kind.stem}.{name}.gz")
+        except InputError as error:
+            return f"{error}"
+        return ""
+
     def _ended(self, last: str) -> None:
         """The process is gone: as it was told to, or not."""
+        self._worker = None
         after, self._after = self._after, ""
         if last == "stopped" and after == "keep":
             self._begin("keep")
@@ -257,12 +231,6 @@ class Solving:
         """Tell everybody, where the project is to become this."""
         if self._desk.project.settings.kind == self._name:
             self._desk.hub.tell("solving", facts)
-
-    def _stop(self) -> None:
-        """Tell the process to stop."""
-        if self._pipe is not None:
-            with suppress(OSError):  # it is gone already
-                self._pipe.send("stop")
 
     def _is_begun(self) -> bool:
         """Whether there is something of an unfinished cube."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import threading
 from pathlib import Path
 from typing import Any
@@ -13,16 +14,19 @@ from fastapi.responses import FileResponse, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from lightcube.errors import InputError
-from lightcube.events import Interrupted, Progress, Said
 from lightcube.io._files import system_errors
 from lightcube.studio.desk import Desk
-from lightcube.studio.kinds import Kind, kind_of
+from lightcube.studio.kinds import kind_of
 from lightcube.studio.project import MADE
+from lightcube.studio.worker import Worker
+from lightcube.viewer.label import Label
 
 #: Where things lie that were made to be taken away, and what is known of these, by what they were made of and name.
 _AWAY, _KNOWN = "away", "taking.json"
+#: Where a thing is while it is made; seconds that it is given to stop by itself.
+_MAKING, _PATIENCE_S = ".making", 3.0
 #: How far a thing is that was just begun.
-_NOTHING = {"done": 0, "of": 0}
+_NOTHING = {"done": 0, "of": 0, "sentence": ""}
 #: Letters of a file's name at most.
 _MOST_LETTERS = 60
 
@@ -71,15 +75,15 @@ def router(desk: Desk) -> APIRouter:
 
 
 class Taking:
-    """Makes one thing at a time, beside all else that goes on."""
+    """Makes one thing at a time, in a process of its own, beside all else that goes on."""
 
     def __init__(self, desk: Desk) -> None:
         self._desk, self._lock = desk, threading.RLock()
         self._made: dict[str, dict[str, Any]] = self._read()
+        self._worker: Worker | None = None
         self._doing: dict[str, Any] | None = None
+        self._of: float | None = None
         self._failed: dict[str, str] = {}
-        self._stop = threading.Event()
-        self._thread: threading.Thread | None = None
 
     def state(self) -> dict[str, Any]:
         """How it stands, as plain JSON."""
@@ -89,111 +93,124 @@ class Taking:
         with self._lock:
             things = []
             for name, thing in away.things(kind.things).items():
-                known = self._made.get(_key(kind, name))
-                if known is not None and not self._path(kind, known["file"]).is_file():
-                    known = None
+                key = _key(kind.stem, name)
                 told: dict[str, Any] = {"name": name, "title": thing.title, "said": thing.said, "suffix": thing.suffix}
-                told |= {"group": thing.group, "made": None, "failed": self._failed.get(_key(kind, name), "")}
-                if known is not None:
+                told |= {"group": thing.group, "made": None, "failed": self._failed.get(key, "")}
+                known = self._made.get(key)
+                if known is not None and self._path(kind.stem, known["file"]).is_file():
                     told["made"] = {**known, "is_old": known["of"] != made}
                 things.append(told)
-            doing = self._doing if self._doing is None or self._doing["kind"] == kind.stem else {"name": "", **_NOTHING}
-            return {"has_cube": made is not None, "kind": kind.stem, "things": things, "doing": doing}
+            return {"has_cube": made is not None, "kind": kind.stem, "things": things, "doing": self._doing_now()}
 
     def begin(self, name: str, asked: _Asked) -> None:
         """Begin to make a thing; `InputError` where there is none of the name, nothing to make it of, or no time."""
         from lightcube.studio import away
 
-        kind = kind_of(self._desk.project.settings)
+        settings = self._desk.project.settings
+        kind, title = kind_of(settings), kind_of(settings).called_in(settings)
         things = away.things(kind.things)
         if name not in things:
             raise InputError(f"nothing that can be taken away has this name: ask for one of {', '.join(things)}")
-        if self._made_at() is None:
-            there = "is none of" if kind.are == "is" else "are none of"
-            raise InputError(f"there {there} {kind.called} yet: make {'it' if kind.are == 'is' else 'them'} first")
         with self._lock:
             if self._doing is not None:
                 raise InputError(f"{self._doing['title'].lower()} is being made: wait for it, or stop it")
+            self._of = self._made_at()
+            if self._of is None:
+                there = "is none of" if kind.are == "is" else "are none of"
+                raise InputError(f"there {there} {kind.called} yet: make {'it' if kind.are == 'is' else 'them'} first")
+            target = self._emptied() / f"{_called(title)}-{name}.{things[name].suffix}"
+            source, label = self._desk.project.path(MADE, kind.file), Label(title, asked.by, asked.note)
+            self._failed.pop(_key(kind.stem, name), None)
             self._doing = {"name": name, "kind": kind.stem, "title": things[name].title, **_NOTHING}
-            self._failed.pop(_key(kind, name), None)
-            self._stop.clear()
-            self._thread = threading.Thread(target=self._make, args=(kind, name, asked), daemon=True)
-            self._thread.start()
+            given = (kind.things, name, source, target, label, asked.captions)
+            self._worker = Worker(self._lock, away.run, given, self._heard, self._ended)
         self._tell()
 
     def stop(self) -> None:
-        """Stop what is being made, at its next step."""
-        self._stop.set()
+        """Stop what is being made; at once where its next step is far."""
+        with self._lock:
+            if self._worker is not None:
+                self._worker.stop(_PATIENCE_S)
 
     def close(self) -> None:
-        """Stop, and wait a little for it."""
-        self.stop()
-        if self._thread is not None:
-            self._thread.join(5)
+        """Stop what is being made, at once."""
+        with self._lock:
+            worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.close()
 
     def file(self, name: str) -> Path:
         """Where the file of a thing lies; `InputError` where it was not made."""
         with self._lock:
             kind = kind_of(self._desk.project.settings)
-            known = self._made.get(_key(kind, name))
-        path = None if known is None else self._path(kind, known["file"])
+            known = self._made.get(_key(kind.stem, name))
+        path = None if known is None else self._path(kind.stem, known["file"])
         if path is None or not path.is_file():
             raise InputError("this was not made yet, or its file is gone: make it first")
         return path
 
-    def _make(self, kind: Kind, name: str, asked: _Asked) -> None:
-        """Make a thing, in a thread of its own; whatever is wrong with it is told."""
-        from lightcube.studio import away
-        from lightcube.viewer.label import Label
+    def _heard(self, what: str, facts: dict[str, Any]) -> None:
+        """Take up one thing that was told."""
+        assert self._doing is not None  # noqa: S101 - by whom would it be told
+        before, key = self._doing, _key(self._doing["kind"], self._doing["name"])
+        if what == "progress":
+            self._doing = {**before, "done": facts["done"], "of": facts["of"], "sentence": ""}
+            if _step_of(self._doing) != _step_of(before):
+                self._desk.hub.tell("taking", {"doing": self._doing_now()})
+        elif what == "said":
+            self._doing = {**before, **_NOTHING, "sentence": facts["sentence"]}
+            self._desk.hub.tell("taking", {"doing": self._doing_now()})
+        elif what == "failed":
+            self._failed[key] = facts["sentence"]
+        elif what == "made":
+            try:
+                self._keep(key, before["kind"], **facts)
+            except (InputError, OSError) as error:
+                self._failed[key] = f"its file cannot be kept ({error}): make room on the disk, and make it again"
 
-        try:
-            title = self._desk.project.settings.title or kind.title.removeprefix("A ").capitalize()
-            folder = self._desk.project.path(MADE, _AWAY, kind.stem)
-            with system_errors(folder, "writing"):
-                folder.mkdir(parents=True, exist_ok=True)
-            target = self._path(kind, f"{_called(title)}-{name}.{away.things(kind.things)[name].suffix}")
-            of, label = self._made_at(kind), Label(title, asked.by, asked.note)
-            source = self._desk.project.path(MADE, kind.file)
-            said = away.make(kind.things, name, source, target, label, self._told, captions=asked.captions)
-            known = {"file": target.name, "bytes": target.stat().st_size, "said": list(said), "of": of}
-            with self._lock:
-                self._made[_key(kind, name)] = known
-                self._desk.project.write(json.dumps(self._made).encode(), MADE, _KNOWN)
-        except Interrupted:
-            pass
-        except InputError as error:
-            self._failed[_key(kind, name)] = f"{error}"
-        except MemoryError:
-            self._failed[_key(kind, name)] = "this needs more memory than there is: make it smaller"
-        except OSError as error:
-            self._failed[_key(kind, name)] = f"its file cannot be written ({error.strerror}): is the disk full?"
-        finally:
-            with self._lock:
-                self._doing = None
-            self._tell()
+    def _keep(self, key: str, kind: str, file: str, said: list[str]) -> None:
+        """Give what was made its place, and know of it."""
+        self._path(kind).mkdir(exist_ok=True)
+        for each in self._path(_MAKING).iterdir():
+            each.replace(self._path(kind, each.name))
+        self._made[key] = {"file": file, "bytes": self._path(kind, file).stat().st_size, "said": said, "of": self._of}
+        self._desk.project.write(json.dumps(self._made).encode(), MADE, _KNOWN)
 
-    def _told(self, event: Progress | Said) -> bool:
-        """Pass on how far it is; True where it is to stop."""
-        if isinstance(event, Progress) and self._doing is not None:
-            before = self._doing
-            self._doing = {**before, "done": event.done, "of": event.of}
-            if before["of"] != event.of or 50 * event.done // max(1, event.of) != 50 * before["done"] // max(
-                1, event.of
-            ):
-                self._desk.hub.tell("taking", {"doing": self._doing})
-        return self._stop.is_set()
+    def _ended(self, last: str) -> None:
+        """The process is gone: it is done, was stopped, or was killed."""
+        assert self._doing is not None  # noqa: S101 - it was doing something
+        assert self._worker is not None  # noqa: S101 - by it
+        if last not in ("made", "failed", "stopped") and not self._worker.is_stopping:
+            key = _key(self._doing["kind"], self._doing["name"])
+            self._failed[key] = "this was ended from outside, perhaps for want of memory: make it again"
+        self._worker = self._doing = None
+        shutil.rmtree(self._path(_MAKING), ignore_errors=True)
+        self._tell()
+
+    def _doing_now(self) -> dict[str, Any] | None:
+        """What is being made; without a name where it is made of what the project is not to become now."""
+        is_other = self._doing is not None and self._doing["kind"] != kind_of(self._desk.project.settings).stem
+        return {"name": "", **_NOTHING} if is_other else self._doing
+
+    def _emptied(self) -> Path:
+        """The folder in which things are made: nothing of it counts before it is whole."""
+        folder = self._path(_MAKING)
+        with system_errors(folder, "writing"):
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+        return folder
 
     def _tell(self) -> None:
         self._desk.hub.tell("taking", self.state())
 
-    def _made_at(self, kind: Kind | None = None) -> float | None:
+    def _made_at(self) -> float | None:
         """When what things are made of was made; None where there is nothing."""
-        kind = kind or kind_of(self._desk.project.settings)
-        file = self._desk.project.path(MADE, kind.file) / "zarr.json"
+        file = self._desk.project.path(MADE, kind_of(self._desk.project.settings).file) / "zarr.json"
         return file.stat().st_mtime if file.is_file() else None
 
-    def _path(self, kind: Kind, name: str) -> Path:
-        return self._desk.project.path(MADE, _AWAY, kind.stem, name)
+    def _path(self, *names: str) -> Path:
+        """In the folder of what is taken away: by what it is made of, and name."""
+        return self._desk.project.path(MADE, _AWAY, *names)
 
     def _read(self) -> dict[str, dict[str, Any]]:
         """What was made before the studio was started; what is damaged was not made."""
@@ -212,9 +229,14 @@ class Taking:
             return {}
 
 
-def _key(kind: Kind, name: str) -> str:
+def _key(kind: str, name: str) -> str:
     """What a thing is known by: what it is made of, and its name."""
-    return f"{kind.stem}/{name}"
+    return f"{kind}/{name}"
+
+
+def _step_of(doing: dict[str, Any]) -> tuple[int, int]:
+    """What is worth telling of how far a thing is."""
+    return doing["of"], 50 * doing["done"] // max(1, doing["of"])
 
 
 def _called(title: str) -> str:

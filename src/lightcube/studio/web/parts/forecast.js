@@ -5,7 +5,7 @@ import { sentenceOf } from "../tools/asking.js";
 import { createChoice, createCount, createSlider } from "../tools/controls.js";
 import { MAKINGS } from "../tools/makings.js";
 
-const WORDS = { good: "good", fair: "fair", poor: "poor" };
+const MARKS = ["good", "fair", "poor"];
 const per = (value) => `${Math.round(100 * value)} %`;
 
 /** Fill the section of the forecast. */
@@ -81,7 +81,7 @@ function said({ status, pictures, sentence, psnr }) {
   if (status === "compiling") return ["Compiling, once: about half a minute, then never again."];
   if (status === "none") return [];
   if (!pictures.length) return ["Looking …"];
-  const counts = Object.keys(WORDS).map((word) => [word, pictures.filter((each) => each.mark === word).length]).filter(([, count]) => count);
+  const counts = MARKS.map((word) => [word, pictures.filter((each) => each.mark === word).length]).filter(([, count]) => count);
   const all = counts.length === 1;
   const words = counts.map(([word, count]) => element("b", { class: word, text: all ? `${count === 1 ? "The picture" : `All ${count} pictures`} will be ${word}` : `${count} ${word}` }));
   const mixed = words.flatMap((word, number) => (number ? [number + 1 === words.length ? " and " : ", ", word] : [word]));

@@ -30,11 +30,12 @@ export function mount(section, studio) {
     const what = element("p", { class: "quiet", text: thing.said });
     const worth = element("ul", { class: "worth" });
     const bar = element("progress", { max: 1, "aria-label": `${thing.title} is being made`, hidden: true });
+    const step = element("p", { class: "quiet", role: "status" });
     const press = element("button", { type: "button", class: "switch", click: () => make(thing.name) });
     const save = element("a", { class: "save", download: "", href: `/api/taking/${thing.name}/file`, hidden: true });
     const stop = element("button", { type: "button", class: "switch", text: "Stop", hidden: true, click: () => studio.ask("/api/taking/stop", { method: "POST" }) });
-    const card = element("article", { class: "thing" }, heading, what, worth, bar, element("div", { class: "row" }, save, press, stop));
-    return { card, worth, bar, press, save, stop };
+    const card = element("article", { class: "thing" }, heading, what, worth, bar, step, element("div", { class: "row" }, save, press, stop));
+    return { card, worth, bar, step, press, save, stop };
   }
 
   function show(state) {
@@ -57,12 +58,13 @@ export function mount(section, studio) {
       }
     }
     for (const { name, title, made, failed, suffix } of things) {
-      const { worth, bar, press, save, stop } = cards.get(name);
+      const { worth, bar, step, press, save, stop } = cards.get(name);
       const busy = doing?.name === name;
       const lines = failed ? [failed] : made?.is_old ? ["this is of an earlier cube: make it again", ...made.said] : made?.said ?? [];
       worth.replaceChildren(...lines.map((line) => element("li", { text: sentenceOf(line) })));
       worth.toggleAttribute("data-bad", Boolean(failed));
-      [bar.hidden, stop.hidden] = [!busy, !busy];
+      bar.hidden = stop.hidden = step.hidden = !busy;
+      step.textContent = busy ? stepOf(doing) : "";
       if (busy && doing.of > 0) bar.value = doing.done / doing.of;
       else bar.removeAttribute("value");
       [press.hidden, press.disabled] = [busy, doing !== null];
@@ -76,7 +78,16 @@ export function mount(section, studio) {
   }
 
   studio.on("taking", (state) => known !== null && show(state));
+  studio.on("solving", ({ status }) => {
+    if (["done", "kept"].includes(status)) studio.ask("/api/taking").then((state) => state && show(state));
+  });
   return { update: (state) => state.taking && show(state.taking) };
+}
+
+/** What is being done, or how far it is. */
+function stepOf({ sentence, done, of }) {
+  if (sentence) return `${sentenceOf(sentence).replace(/\.$/, "")} …`;
+  return of > 0 ? `${done} of ${of}` : "Begun …";
 }
 
 function sizeText(bytes) {

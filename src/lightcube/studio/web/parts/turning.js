@@ -10,57 +10,69 @@ export function mount(section, studio) {
   const empty = element("p", { class: "quiet", text: "Here it is turned, as soon as there is something of it." });
   const area = element("div", { class: "turned", hidden: true });
   section.append(empty, area);
-  const now = { shown: null, wanted: null, version: null, busy: false, kind: null };
+  const now = { kind: null, shown: null, wanted: "", got: "", busy: false, touched: false };
 
-  /** Show the newest thing, at the angle of the one before; one at a time, and none while it is not to be seen. */
-  async function follow() {
-    if (now.busy || section.hidden || now.wanted === null || now.wanted === now.version) return;
-    now.busy = true;
-    const version = now.wanted;
-    try {
-      const parts = await Promise.all(["scene", "voxels"].map((part) => fetch(`/api/cube/${part}`)));
-      if (parts.every((part) => part.ok)) await show(...await Promise.all(parts.map(async (part) => new Uint8Array(await part.arrayBuffer()))));
-      now.version = version;
-    } catch (error) {
-      now.version = version;
-      studio.say(`${error.message[0].toUpperCase()}${error.message.slice(1)}.`, "bad");
-    }
-    now.busy = false;
+  /** A thing that is made counts more than the forecast's, which is shown while there is none. */
+  function want({ solving, forecast }) {
+    if (solving === undefined) return;
+    const { kind, version } = solving;
+    if (kind !== now.kind) leave(kind);
+    if (version > 0) now.wanted = `${kind} made ${version}`;
+    else if (forecast?.cube > 0) now.wanted = `${kind} first ${forecast.cube}`;
     follow();
   }
 
   /** Show nothing, until there is something of another kind. */
   function leave(kind) {
     now.shown?.dispose();
-    Object.assign(now, { kind, shown: null, wanted: null, version: null });
+    Object.assign(now, { kind, shown: null, wanted: "", got: "", touched: false });
     [area.hidden, empty.hidden] = [true, false];
   }
 
-  async function show(scene, voxels) {
-    const described = await readScene(scene);
-    const open = await viewerOf(described, voxels);
+  /** Show the newest thing, at the angle to which the one before was turned; one at a time, and none that is not seen or is being held. */
+  async function follow() {
+    if (now.busy || section.hidden || now.wanted === now.got || area.matches(":active")) return;
+    now.busy = true;
+    const { kind, wanted } = now;
+    try {
+      const parts = await Promise.all(["scene", "voxels"].map((part) => fetch(`/api/cube/${part}`)));
+      const [scene, data] = await Promise.all(parts.map(async (part) => new Uint8Array(await part.arrayBuffer())));
+      const open = parts.every((part) => part.status === 200) ? await viewerOf(await readScene(scene), data) : null;
+      if (open !== null && kind === now.kind) show(open);
+    } catch (error) {
+      studio.say(`${error.message[0].toUpperCase()}${error.message.slice(1)}.`, "bad");
+    }
+    Object.assign(now, { busy: false, got: wanted });
+    follow();
+  }
+
+  function show(open) {
     const before = now.shown;
     const angle = before?.angle;
+    const focused = places().indexOf(document.activeElement);
     before?.dispose();
     const root = element("div", { tabindex: "-1" });
     area.replaceChildren(root);
     [area.hidden, empty.hidden] = [false, true];
     now.shown = open(root);
-    if (angle !== undefined) now.shown.turnTo?.(angle);
+    if (angle !== undefined && now.touched) now.shown.turnTo?.(angle);
+    places()[focused]?.focus({ preventScroll: true });
   }
 
-  function hear({ kind, version = 0 }) {
-    if (kind === undefined) return;
-    if (kind !== now.kind) leave(kind);
-    if (version > 0) now.wanted = `${kind} ${version}`;
-    follow();
+  /** All in the viewer that can have the focus. */
+  function places() {
+    return [...area.querySelectorAll("button, input, select, [tabindex]")];
   }
 
-  studio.on("solving", hear);
-  return {
-    update: (state) => hear(state.solving),
-    opened: follow,
-  };
+  for (const name of ["pointerdown", "keydown", "wheel"]) area.addEventListener(name, () => (now.touched = true), { passive: true });
+  for (const name of ["pointerup", "pointercancel"]) addEventListener(name, () => setTimeout(follow));
+  studio.on("solving", (facts) => facts.version !== undefined && want({ solving: facts }));
+  studio.on("forecast", ({ cube }) => {
+    if (cube === undefined) return;
+    if (now.shown === null) now.got = ""; // what was made is not there yet
+    want({ solving: studio.state.solving, forecast: { cube } });
+  });
+  return { update: want, opened: follow };
 }
 
 /** What opens the viewer of a thing; its modules come when the first of its kind is there. */

@@ -15,21 +15,22 @@ const EVERY = 90;
 export function createSlider({ name, label, low, high, step, ends, text, to = (value) => value, from = (value) => value }, field, studio) {
   const value = element("span", { class: "now", "aria-hidden": "true" });
   const input = element("input", { type: "range", name, min: low, max: high, step, "aria-label": label });
-  let [waiting, sent] = [0, 0];
-  const send = () => {
+  let [waiting, sent, asked] = [0, 0, 0];
+  const send = async () => {
     clearTimeout(waiting);
     const soon = sent + EVERY - performance.now();
-    if (soon > 0) {
-      waiting = setTimeout(send, soon);
-      return;
-    }
+    waiting = soon > 0 ? setTimeout(send, soon) : 0;
+    if (waiting) return;
     sent = performance.now();
-    studio.ask("/api/settings", { method: "PATCH", json: { [field]: { [name]: from(Number(input.value)) } } });
+    asked += 1;
+    const state = await studio.ask("/api/settings", { method: "PATCH", json: { [field]: { [name]: from(Number(input.value)) } } });
+    asked -= 1;
+    update(state ?? studio.state); // what was refused goes back
   };
   const show = (now) => {
     value.textContent = text(now);
     input.setAttribute("aria-valuetext", text(now));
-    input.style.setProperty("--part", (to(now) - low) / (high - low));
+    input.style.setProperty("--part", (to(now) - input.min) / (input.max - input.min || 1));
   };
   input.addEventListener("input", () => {
     show(from(Number(input.value)));
@@ -38,31 +39,34 @@ export function createSlider({ name, label, low, high, step, ends, text, to = (v
   return {
     element: element("label", { class: "setting" }, element("span", { class: "label" }, element("b", { text: label }), value), input,
       element("span", { class: "ends quiet" }, ...ends.map((end) => element("span", { text: end })))),
-    update({ settings }) {
-      const now = settings[field][name];
-      if (document.activeElement !== input || !input.matches(":active")) input.value = to(now);
-      show(now);
-    },
+    update,
   };
+
+  /** While it is moved nothing that was true before comes in between. */
+  function isMoving() {
+    return waiting !== 0 || asked > 0 || input.matches(":active");
+  }
+
+  function update({ settings }) {
+    if (isMoving()) return;
+    input.value = to(settings[field][name]);
+    show(settings[field][name]);
+  }
 }
 
-/** How many of the pictures are used. */
+/** How many of the pictures are used; all of them, also when there are more. */
 export function createCount(studio) {
-  const slider = createSlider({ name: "count", label: "How many", low: 2, high: 2, step: 1, ends: ["two", "all of them"], text: (value) => (value ? `the first ${value}` : "all of them") }, "making", studio);
-  const input = slider.element.querySelector("input");
-  const value = slider.element.querySelector(".now");
   let all = 2;
+  const slider = createSlider({ name: "count", label: "How many", low: 2, high: 2, step: 1, ends: ["two", "all of them"],
+    text: (value) => (value && value < all ? `the first ${value}` : `all ${all}`),
+    to: (value) => Math.min(value || all, all), from: (value) => (value < all ? value : 0) }, "making", studio);
   return {
     element: slider.element,
-    update({ settings }) {
-      all = settings.pictures.length;
-      const count = Math.min(settings.making.count || all, all);
+    update(state) {
+      all = state.settings.pictures.length;
       slider.element.hidden = all < 3;
-      input.max = all;
-      if (!input.matches(":active")) input.value = count;
-      value.textContent = count >= all ? `all ${all}` : `the first ${count}`;
-      input.setAttribute("aria-valuetext", value.textContent);
-      input.style.setProperty("--part", (count - 2) / Math.max(all - 2, 1));
+      slider.element.querySelector("input").max = all;
+      slider.update(state);
     },
   };
 }

@@ -28,6 +28,7 @@ export function createFrame(studio, known) {
   }
 
   function open(door) {
+    if (![undefined, door].includes(studio.root.dataset.door)) scrollTo({ top: 0, behavior: "instant" });
     studio.root.dataset.door = door;
     for (const part of known) sections.get(part.name).hidden = part.door !== door;
     for (const [name, link] of head.doors) link.toggleAttribute("data-open", name === door);
