@@ -1,5 +1,6 @@
 """The studio in a real browser: from an empty page to a cube, by hand and by keys, for everybody and on a phone."""
 
+import importlib.util
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -95,6 +96,8 @@ def test_the_whole_story_in_two_tabs(enter: Callable[..., Any], photos: list[Pat
     assert {each.shape for each in io.read_pictures(save(tab, "A square movie", tmp_path), to_s=0.1).images} == {
         (1080, 1080, 3)
     }
+    if importlib.util.find_spec("reportlab"):
+        assert save(tab, "Films", tmp_path).read_bytes().startswith(b"%PDF-")
     other.reload()
     other.wait_for_selector(".walls.live li")
     assert "The cube is finished" in other.locator(".solving .state").inner_text()
