@@ -137,6 +137,6 @@ def test_what_is_no_part_of_the_light_is_refused(veil: float) -> None:
     with pytest.raises(InputError, match=match):
         lc.turntable(GRID, ANGLES, veil=veil)
     with pytest.raises(InputError, match=match):
-        replace(ROOM, veil=veil).rig()
+        replace(ROOM, veil=veil)
     with pytest.raises(InputError, match="has shape"):
         replace(Fading.none(3), veil=np.zeros(2))

@@ -11,6 +11,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO
 from itertools import pairwise
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -149,7 +150,7 @@ def made(names: tuple[str, ...] = (), **changed: Any) -> Cube:
     targets = random.integers(1, 65535, (3, 3, 5, 4), dtype=np.uint16)
     targets[..., 3] = 65535
     rig = turntable(grid, spread_angles(3, 360), elevation_deg=20, picture_shape=(3, 5))
-    provenance = {"lightcube": "0.1.0", "method": "display", "powers": "per-picture", "lamp_max": 4.0}
+    provenance = {"lightcube": version("lightcube"), "method": "display", "powers": "per-picture", "lamp_max": 4.0}
     return replace(Cube(extinction, grid, rig, None, targets, names, provenance=provenance), **changed)
 
 

@@ -21,7 +21,18 @@ from lightcube.optics.material import Material
 from lightcube.optics.moves import Move, moved
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
-from lightcube.optics.tables import POWER_MAX, POWER_MIN, POWER_MOST, Fading, Lamps, Screens, Stops, Sums, Turning
+from lightcube.optics.tables import (
+    POWER_MAX,
+    POWER_MIN,
+    POWER_MOST,
+    Fading,
+    Lamps,
+    Screens,
+    Stops,
+    Sums,
+    Turning,
+    check_veil,
+)
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import MOST_DEG, Views, unit
 from lightcube.wording import counted
@@ -242,6 +253,7 @@ class Stage:
                 f"the turntable's stops must be finite numbers of degrees up to {MOST_DEG:g}, and at least one"
             )
         _check_vector("the turntable", "axis", self.axis)
+        check_veil(self.veil)
 
     def __repr__(self) -> str:
         counts = {"lamp": self.lamps, "screen": self.screens, "picture": self.shots, "stop": self.stops_deg}

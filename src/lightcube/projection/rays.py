@@ -15,6 +15,7 @@ from lightcube.optics.arrays import Counts
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import Bent
 from lightcube.optics.views import Views
+from lightcube.projection import projector
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -23,9 +24,6 @@ Floats = NDArray[np.floating[Any]]
 
 #: The kernels number them by 32 bits.
 _MOST_VOXELS = 2**32
-#: Pieces of rays are kept up to so many, of `PIECE` bytes each; of more rays, and in numbers of 64 bits, they are found
-#: anew in every product.
-MOST_PIECES, PIECE = 1 << 24, 16
 _Lists = tuple[Counts, Floats, Floats]
 
 
@@ -125,7 +123,7 @@ class Rays:
         """The pieces of all rays, for the matrix and for its transpose; nothing where they are too many."""
         data = self._rays, self._picture, self._heard, self.grid.shape, self._sides
         offsets = listed.count(*data)
-        if offsets[-1] > MOST_PIECES:
+        if offsets[-1] > projector.MOST_PIECES:
             return ()
         found = listed.trace(*data, offsets)
         return found, listed.transposed(*found, self.shape[1])

@@ -116,8 +116,8 @@ class Taking:
                 raise InputError(f"{self._doing['title'].lower()} is being made: wait for it, or stop it")
             self._of = self._made_at()
             if self._of is None:
-                there = "is none of" if kind.are == "is" else "are none of"
-                raise InputError(f"there {there} {kind.called} yet: make {'it' if kind.are == 'is' else 'them'} first")
+                it = "it" if kind.are == "is" else "them"
+                raise InputError(f"{kind.called} {kind.are} not made yet: make {it} first")
             target = self._emptied() / f"{_called(title)}-{name}.{things[name].suffix}"
             source, label = self._desk.project.path(MADE, kind.file), Label(title, asked.by, asked.note)
             self._failed.pop(_key(kind.stem, name), None)
