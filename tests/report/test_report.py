@@ -9,9 +9,9 @@ import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from html.parser import HTMLParser
+from importlib.metadata import version
 from io import BytesIO
 from itertools import pairwise
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
