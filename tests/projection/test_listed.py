@@ -8,7 +8,7 @@ from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import bent
 from lightcube.optics.setups import turntable
-from lightcube.projection import projector
+from lightcube.projection import limits
 from lightcube.projection.projector import Projector
 from lightcube.projection.rays import Rays
 from tests.helpers import plain
@@ -45,7 +45,7 @@ def test_products_are_those_of_rays_that_are_traced_anew(
     thrown_back = kept.adjoint(b)
     assert kept._lists
     np.testing.assert_array_equal(kept.forward(x), before)
-    monkeypatch.setattr(projector, "MOST_PIECES", kept.pieces - 1)
+    monkeypatch.setattr(limits, "MOST_PIECES", kept.pieces - 1)
     anew = some_rays(kind)
     np.testing.assert_array_equal(anew.adjoint(b), thrown_back)
     assert anew._lists == ()

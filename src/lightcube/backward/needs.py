@@ -18,7 +18,8 @@ from lightcube.optics.light import judged
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 from lightcube.pictures.targets import Targets
-from lightcube.projection.projector import MOST_PIECES, PIECE, Projector
+from lightcube.projection.limits import MOST_PIECES, PIECE
+from lightcube.projection.projector import Projector
 from lightcube.projection.shadows import FEW_PIXELS
 from lightcube.solvers.method import Method
 

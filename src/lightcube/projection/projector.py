@@ -35,11 +35,6 @@ if TYPE_CHECKING:
 _MOST_COLUMNS = 1000
 
 
-#: Pieces of rays that go one by one are kept up to so many, of `PIECE` bytes each; of more rays, and in numbers of 64
-#: bits, they are found anew in every product.
-MOST_PIECES, PIECE = 1 << 24, 16
-
-
 class Engine(Protocol):
     """What multiplies by a matrix, of which `shape`, `level`, `parts` and `areas` are as a `Projector`'s."""
 
@@ -216,7 +211,7 @@ class Projector:
 
     @property
     def pieces(self) -> int:
-        """Pieces of rays that go one by one; up to `MOST_PIECES` are kept for a solver."""
+        """Pieces of rays that go one by one; up to `lightcube.projection.limits.MOST_PIECES` are kept for a solver."""
         return self._engine.pieces
 
     @property

@@ -15,7 +15,7 @@ from lightcube.optics.arrays import Counts
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import Bent
 from lightcube.optics.views import Views
-from lightcube.projection import projector
+from lightcube.projection import limits
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -123,7 +123,7 @@ class Rays:
         """The pieces of all rays, for the matrix and for its transpose; nothing where they are too many."""
         data = self._rays, self._picture, self._heard, self.grid.shape, self._sides
         offsets = listed.count(*data)
-        if offsets[-1] > projector.MOST_PIECES:
+        if offsets[-1] > limits.MOST_PIECES:
             return ()
         found = listed.trace(*data, offsets)
         return found, listed.transposed(*found, self.shape[1])
