@@ -9,7 +9,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from lightcube.errors import InputError
@@ -46,6 +46,7 @@ class Worker:
         self.process.start()
         theirs.close()
         self._lock, self._heard, self._ended = lock, heard, ended
+        self._reaping = threading.Lock()
         self.is_stopping = self._is_closed = False
         threading.Thread(target=self._hear, daemon=True).start()
 
@@ -69,9 +70,9 @@ class Worker:
             self._is_closed = True
         if patience_s:
             self.send("stop")
-            self.process.join(patience_s)
+            self._join(patience_s)
         self.process.kill()
-        self.process.join()
+        self._join()
 
     def _hear(self) -> None:
         """Hear what it tells until it ends."""
@@ -80,9 +81,15 @@ class Worker:
             while True:
                 last, facts = self._pipe.recv()
                 self._tell(self._heard, last, facts)
-        self.process.join()
+        self._join()
         self._pipe.close()
         self._tell(self._ended, last)
+
+    def _join(self, patience_s: float | None = None) -> None:
+        """Wait until it is gone; of two threads that ask the system for one child at once, one is told nothing."""
+        if wait([self.process.sentinel], patience_s):
+            with self._reaping:
+                self.process.join()
 
     def _tell(self, whom: Callable[..., None], *what: Any) -> None:
         with self._lock:
