@@ -1,13 +1,14 @@
 """Cubes in glass: single beams stay a convex problem, with a known factor of each; areas are sums."""
 
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import lightcube as lc
 from lightcube.backward import needs
-from lightcube.backward.job import Job
+from lightcube.backward.job import Job, fingerprint
 from lightcube.backward.problem import pose
 from lightcube.backward.solving import make_job, solve_job
 from lightcube.optics.glass import Form, Glass
@@ -90,21 +91,34 @@ def test_the_shadows_of_a_known_cube_in_glass_come_back(form: Form) -> None:
 @pytest.mark.skipif(INTERPRETED, reason="interpreted kernels hold arrays of their own, and take their time")
 @pytest.mark.parametrize("form", ["block", "cylinder", "sphere"])
 def test_memory_is_as_much_as_is_said(form: Form) -> None:
-    """Also of the lines of beams, and of the pieces of those that go one by one."""
+    """Also of the lines of beams, and of the pieces of those that go one by one, where there is room for them."""
+    solve_job(a_job(form, 6, 2))  # numba compiles
+    for memory in (None, 1):
+        job = a_job(form, 40, 24, memory)
+        tracemalloc.start()
+        try:
+            solve_job(job)
+            peak = tracemalloc.get_traced_memory()[1]
+        finally:
+            tracemalloc.stop()
+        assert needs.job_memory(job) - needs.PROGRAM == pytest.approx(peak, rel=0.25, abs=5e6)
 
-    def made(n: int, wide: int) -> Job:
-        grid = lc.Grid((n, n, n), 1.0)
-        rig = lc.turntable(
-            grid, lc.spread_angles(12), elevation_deg=35, picture_shape=(wide, wide), glass=Glass(1.5, form)
-        )
-        return make_job(lc.fit(photographs(12), rig), grid, lc.Recipe(passes=30))
 
-    solve_job(made(6, 2))  # numba compiles
-    job = made(40, 24)
-    tracemalloc.start()
-    try:
-        solve_job(job)
-        peak = tracemalloc.get_traced_memory()[1]
-    finally:
-        tracemalloc.stop()
-    assert needs.job_memory(job) - needs.PROGRAM == pytest.approx(peak, rel=0.25, abs=5e6)
+def a_job(form: Form, n: int, wide: int, memory: int | None = None) -> Job:
+    """Of photographs in glass, in one unit."""
+    grid = lc.Grid((n, n, n), 1.0)
+    rig = lc.turntable(grid, lc.spread_angles(12), elevation_deg=35, picture_shape=(wide, wide), glass=Glass(1.5, form))
+    return make_job(lc.fit(photographs(12), rig), grid, lc.Recipe(passes=30), units=1, memory=memory)
+
+
+def test_pieces_of_rays_are_kept_where_all_else_leaves_room_for_them() -> None:
+    """They neither part a cube into more units nor refuse it, and they decide no bit."""
+    ample = a_job("sphere", 6, 4)
+    needed, least = needs.job_memory(ample), needs.job_memory(replace(ample, room=0))
+    assert needed > least
+    assert needs.job_memory(a_job("sphere", 6, 4, needed)) == needed
+    scarce = a_job("sphere", 6, 4, needed - 1)
+    assert needs.job_memory(scarce) == least
+    assert needs.fewest_units(scarce, least) == 1
+    assert fingerprint(scarce) == fingerprint(ample)
+    np.testing.assert_array_equal(solve_job(scarce).cube.extinction, solve_job(ample).cube.extinction)

@@ -23,6 +23,7 @@ from lightcube.optics.light import Light, finer
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 from lightcube.pictures.targets import Targets
+from lightcube.projection.limits import ROOM
 from lightcube.solvers.contract import Bounds
 
 #: Passes at each of the coarser sizes at most; no more than of the cube itself.
@@ -62,6 +63,8 @@ class Job:
         smaller one, or clear.
     provenance
         What the cube shall remember of how it was made, beside all this; it decides no bit of the extinction.
+    room
+        Bytes that pieces of rays may take (`lightcube.projection.projector.Projector`): as little.
     """
 
     targets: Targets
@@ -70,6 +73,7 @@ class Job:
     units: int = 1
     start: Images | None = None
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    room: int = ROOM
 
     @property
     def channels(self) -> int:

@@ -18,7 +18,7 @@ from lightcube.optics.light import judged
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 from lightcube.pictures.targets import Targets
-from lightcube.projection.limits import MOST_PIECES, PIECE
+from lightcube.projection.limits import PIECE, ROOM
 from lightcube.projection.projector import Projector
 from lightcube.projection.shadows import FEW_PIXELS
 from lightcube.solvers.method import Method
@@ -129,8 +129,14 @@ def _solver(
 
 
 def job_memory(job: Job) -> int:
-    """`memory_needed` of a job."""
-    return _memory_in(job.units, job, asked(job.targets.rig, job.grid, job.recipe).rig)
+    """`memory_needed` of a job, with the pieces of rays that it has room for."""
+    every = asked(job.targets.rig, job.grid, job.recipe).rig
+    return _memory_in(job.units, job, every) + _kept(job, every)
+
+
+def with_room(job: Job, memory: int) -> Job:
+    """A job that keeps what pieces of rays there is room for in so many bytes, beside all that it needs anyway."""
+    return replace(job, room=min(ROOM, max(0, memory - job_memory(replace(job, room=0)))))
 
 
 def _memory_in(units: int, job: Job, every: Rig) -> int:
@@ -145,7 +151,7 @@ def _memory_in(units: int, job: Job, every: Rig) -> int:
         mixed
         + kept
         + _dyes_memory(units, job, beams * parts)
-        + _rays_memory(job, beams)
+        + _bent_memory(job, beams)
         + memory_needed(
             job.recipe.solver,
             job.grid,
@@ -163,19 +169,23 @@ def _memory_in(units: int, job: Job, every: Rig) -> int:
     )
 
 
-def _rays_memory(job: Job, beams: int) -> int:
-    """Bytes that are kept of so many beams that are no copies of each other: their pieces, and where glass bends them.
-
-    And where it bends those that the cube is judged by, which are kept where they are few.
-    """
+def _bent_memory(job: Job, beams: int) -> int:
+    """Bytes for where glass bends so many beams, and those that the cube is judged by, which are kept where few."""
     rig = job.targets.rig
-    pieces = 0 if job.recipe.solver.holds_matrix or job.recipe.dtype != "float32" else _thin_pieces(job.grid, rig)
-    pieces *= beams // (len(rig.views) * math.prod(rig.picture_shape))
-    listed = PIECE * pieces if pieces <= MOST_PIECES else 0
     if rig.glass is None:
-        return listed
+        return 0
     judge = len(judged(rig, job.grid).views) * math.prod(rig.picture_shape)
-    return listed + _BENT * (beams + (judge if judge <= FEW_PIXELS else 0))
+    return _BENT * (beams + (judge if judge <= FEW_PIXELS else 0))
+
+
+def _kept(job: Job, every: Rig) -> int:
+    """Bytes of the pieces of rays that a job keeps: all, or none where it has no room for them."""
+    rig = job.targets.rig
+    if job.room == 0 or job.recipe.solver.holds_matrix or job.recipe.dtype != "float32":
+        return 0
+    beams = len(every.views) * math.prod(every.picture_shape) // (len(rig.views) * math.prod(rig.picture_shape))
+    pieces = PIECE * beams * _thin_pieces(job.grid, rig)
+    return pieces if pieces <= job.room else 0
 
 
 @lru_cache(maxsize=8)
@@ -244,7 +254,8 @@ def measured_speed(job: Job) -> Speed:
     targets, grid = job.targets, job.grid
     while _work(job, targets, grid)[0] > _REHEARSED:
         targets, grid = coarser(targets, grid, 1)
-    problem = pose(targets, grid, job.recipe)
+    room = _kept(job, asked(job.targets.rig, job.grid, job.recipe).rig)  # as the job itself: nothing, or all pieces
+    problem = pose(targets, grid, job.recipe, room=room)
     low, high = job.lamp_bounds
     marks: list[float] = []
     problem.solve(

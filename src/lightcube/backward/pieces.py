@@ -143,7 +143,8 @@ def _posed(job: Job, name: str, store: Store, recipe: Recipe) -> tuple[Problem, 
         (targets, grid), part = coarser(job.targets, job.grid, int(number)), None
     else:
         (targets, grid), part = (job.targets, job.grid), job.parts[int(number)]
-    problem = pose(targets, grid, recipe if job.dyes is None else recipe.for_any_size(job.grid), part)
+    own = recipe if job.dyes is None else recipe.for_any_size(job.grid)
+    problem = pose(targets, grid, own, part, room=job.room)
     bounds = job.lamp_bounds
     if kind == "unit" and job.frozen:
         powers = _finished(job, store, level_name(1))[POWERS]

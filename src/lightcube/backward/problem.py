@@ -27,6 +27,7 @@ from lightcube.optics.rig import Rig
 from lightcube.optics.transfer import decode, encode
 from lightcube.optics.views import Views
 from lightcube.pictures.targets import Targets
+from lightcube.projection.limits import ROOM
 from lightcube.projection.projector import Projector
 from lightcube.projection.shadows import Shadows
 from lightcube.solvers.contract import Bounds, Lighting, Result, Wanted
@@ -182,10 +183,11 @@ def is_level(grid: Grid, views: Views) -> bool:
     return is_stacked(grid, views) and StackedBeams(grid, views).level
 
 
-def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None) -> Problem:
+def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None, *, room: int = ROOM) -> Problem:
     """Pose the problem of the cube `grid` whose shadows are `targets`, by a recipe.
 
-    Only the columns of `part` are made: None = all colours and slices; some slices only where `is_level`.
+    Only the columns of `part` are made: None = all colours and slices; some slices only where `is_level`. `room` is the
+    matrix's.
 
     Pixels darker than the screen's black are wanted at it. The ends of a hold by thin beams, with nothing to hold on to
     beyond, count twice: else they are what falls apart first (measured).
@@ -193,7 +195,7 @@ def pose(targets: Targets, grid: Grid, recipe: Recipe, part: Part | None = None)
     all_that = asked(targets.rig, grid, recipe)
     rig, views = all_that.rig, all_that.rig.views
     wanted, heavy = _wanted(targets, grid, recipe, all_that)
-    matrix = Projector(grid, rig, (heavy > 0)[rig.sums.picture])
+    matrix = Projector(grid, rig, (heavy > 0)[rig.sums.picture], room=room)
     darkest = decode(targets.rig.screens.black[targets.rig.stops.screen].astype(np.float32), targets.transfer)
     high, channels = views.picture_shape[0], targets.pictures.shape[-1]
     part = part or Part(slice(0, channels), slice(0, grid.shape[0]))

@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 
 from lightcube.backward.job import Job
-from lightcube.backward.needs import MEMORY, fewest_units
+from lightcube.backward.needs import MEMORY, fewest_units, with_room
 from lightcube.backward.pieces import Watching, solve_pieces
 from lightcube.backward.recipe import Recipe
 from lightcube.backward.solution import Solution, merged
@@ -121,7 +121,8 @@ def make_job(
     most = job.most_units
     if units is not None and not 1 <= units <= most:
         raise InputError(f"this cube can be solved in 1 to {most} units, not in {units}: ask for a number between")
-    return replace(job, units=fewest_units(job, memory or MEMORY) if units is None else units)
+    most_bytes = memory or MEMORY
+    return with_room(replace(job, units=units or fewest_units(job, most_bytes)), most_bytes)
 
 
 def _as_start(cube: Cube, grid: Grid, targets: Targets, recipe: Recipe) -> Images:

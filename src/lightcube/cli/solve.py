@@ -7,7 +7,6 @@ from typing import Annotated, Protocol
 import typer
 
 from lightcube.backward.job import Job
-from lightcube.backward.needs import job_memory
 from lightcube.cli import arguments, printing
 from lightcube.cli.console import Stopped, compiling, done, err, json_line, listening, out, telling
 from lightcube.cli.fields import one_by_one
@@ -105,7 +104,7 @@ def solve(
         done(as_json, words.needed(needs, verbose=verbose), **needs)
         return
     if scheduler in (None, cluster.LOCAL):
-        solving.check_memory(job_memory(job) * min(workers, job.units))
+        job = solving.fitted(job, min(workers, job.units))
     if not as_json:
         for line in said(verbose=verbose):
             err.print(line)

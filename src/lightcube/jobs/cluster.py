@@ -11,6 +11,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import replace
 from importlib.metadata import version
 from itertools import accumulate
 from pathlib import Path
@@ -84,7 +85,7 @@ def run(job: Job, scheduler: str, store: DiskStore, tell: Tell) -> bool:
         tasks: dict[str, Future[None]] = {}
         level = None
         for name in (name for name in job.pieces if name not in done):
-            said = place, name, version("lightcube"), topic, level
+            said = place, name, version("lightcube"), topic, job.room, level
             tasks[name] = client.submit(solve_there, *said, key=f"{name}-{topic}", retries=_RETRIES)
             if name not in job.unit_names:
                 level = tasks[name]
@@ -101,7 +102,7 @@ def run(job: Job, scheduler: str, store: DiskStore, tell: Tell) -> bool:
             _stop(client, tasks.values())
 
 
-def solve_there(place: str, name: str, written_by: str, topic: str, after: object) -> None:
+def solve_there(place: str, name: str, written_by: str, topic: str, room: int, after: object) -> None:
     """Solve a piece: what a worker does.
 
     Parameters
@@ -114,6 +115,8 @@ def solve_there(place: str, name: str, written_by: str, topic: str, after: objec
         The version of lightcube that asks for it.
     topic
         Under which events ``[name, part of all the work]`` are logged.
+    room
+        Bytes that it may take to keep pieces of rays.
     after
         The task that is waited for.
     """
@@ -138,7 +141,7 @@ def solve_there(place: str, name: str, written_by: str, topic: str, after: objec
         try:
             if version("lightcube") != written_by:
                 raise InputError(f"lightcube is {version('lightcube')} there, and {written_by} here")
-            solve_piece(load_job(place), name, DiskStore(place), watching)
+            solve_piece(replace(load_job(place), room=room), name, DiskStore(place), watching)
         except InputError as error:
             raise InputError(
                 f"the worker at {worker.address} cannot solve {name} in {place} ({error}): mend that, and the same "

@@ -19,6 +19,7 @@ from lightcube.optics.arrays import Flags, Floats, Reals
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import Bent
 from lightcube.optics.views import Views
+from lightcube.projection.limits import ROOM
 from lightcube.projection.rays import Rays
 from lightcube.projection.stacked import StackedBeams, is_stacked
 
@@ -34,7 +35,7 @@ class BentBeams:
     areas = None
     shape: tuple[int, int]
 
-    def __init__(self, grid: Grid, views: Views, heard: Flags | None, bent: Bent) -> None:
+    def __init__(self, grid: Grid, views: Views, heard: Flags | None, bent: Bent, *, room: int = ROOM) -> None:
         lit = bent.through > 0 if heard is None else heard & (bent.through > 0)
         self.grid, self.views = grid, views
         self._lit, self._bent = lit, bent
@@ -46,7 +47,7 @@ class BentBeams:
             self._stacked = StackedBeams.of_columns(grid, views, ends, together)
         self._any_together = bool(np.any(together))
         alone = lit & ~together
-        self._rays = Rays(grid, views, alone, bent) if np.any(alone) else None
+        self._rays = Rays(grid, views, alone, bent, room=room) if np.any(alone) else None
         self._counts = np.ascontiguousarray(together[:, ::-1].swapaxes(1, 2)).reshape(-1, 1)
 
     @property

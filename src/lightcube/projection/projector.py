@@ -25,6 +25,7 @@ from lightcube.optics.refraction import bent
 from lightcube.optics.rig import Rig
 from lightcube.optics.stack import Stack
 from lightcube.optics.views import Views, check_reach
+from lightcube.projection.limits import ROOM
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -85,6 +86,10 @@ class Projector:
     heard
         ``(views, rows, columns)`` bool: pixels that do not count may be left out, for speed; a matrix that does so
         has empty rows there. None = all count.
+    room
+        Bytes that pieces of rays which go one by one may take. Who multiplies by the transpose, in float32, mostly goes
+        on by turns: where they fit, all pieces are kept from then on, and where not, each product finds them anew. It
+        decides how long products take, and not a bit of them.
 
     Attributes
     ----------
@@ -145,14 +150,14 @@ class Projector:
     level: bool
 
     @checked
-    def __init__(self, grid: Grid, rig: Rig | Views, heard: Flags | None = None) -> None:
+    def __init__(self, grid: Grid, rig: Rig | Views, heard: Flags | None = None, *, room: int = ROOM) -> None:
         views = rig if isinstance(rig, Views) else rig.views
         check_reach(views, grid)
         self.grid, self.views = grid, views
         heard = None if heard is None else np.asarray(heard, np.bool_)
         if heard is not None and heard.shape != (len(views), *views.picture_shape):
             raise InputError(f"which pixels count has shape {heard.shape}, not {(len(views), *views.picture_shape)}")
-        self._engine = _engine(grid, rig, heard)
+        self._engine = _engine(grid, rig, heard, room)
         self.shape, self.level = self._engine.shape, self._engine.level
         self.domain_shape, self.range_shape = grid.shape, (self.parts * len(views), *views.picture_shape)
 
@@ -211,7 +216,7 @@ class Projector:
 
     @property
     def pieces(self) -> int:
-        """Pieces of rays that go one by one; up to `lightcube.projection.limits.MOST_PIECES` are kept for a solver."""
+        """Pieces of rays that go one by one: voxels that each runs through."""
         return self._engine.pieces
 
     @property
@@ -335,7 +340,7 @@ class Transpose:
         return self.T.to_sparse().T.tocsr()
 
 
-def _engine(grid: Grid, rig: Rig | Views, heard: Flags | None) -> Engine:
+def _engine(grid: Grid, rig: Rig | Views, heard: Flags | None, room: int) -> Engine:
     """What multiplies by the matrix of a block: the quickest there is."""
     if isinstance(grid, Stack):
         from lightcube.projection.films import Middles, Rectangles  # here: the compiler comes with them
@@ -347,9 +352,9 @@ def _engine(grid: Grid, rig: Rig | Views, heard: Flags | None) -> Engine:
     from lightcube.projection.stacked import StackedBeams, is_stacked
 
     if isinstance(rig, Rig) and rig.glass is not None:
-        return BentBeams(grid, rig.views, heard, bent(rig))
+        return BentBeams(grid, rig.views, heard, bent(rig), room=room)
     views = rig if isinstance(rig, Views) else rig.views
-    return StackedBeams(grid, views, heard) if is_stacked(grid, views) else Rays(grid, views, heard)
+    return StackedBeams(grid, views, heard) if is_stacked(grid, views) else Rays(grid, views, heard, room=room)
 
 
 def _product(multiply: Callable[[Floats], Floats], x: Floats) -> Floats:

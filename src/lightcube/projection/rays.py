@@ -15,7 +15,7 @@ from lightcube.optics.arrays import Counts
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import Bent
 from lightcube.optics.views import Views
-from lightcube.projection import limits
+from lightcube.projection.limits import PIECE, ROOM
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -37,6 +37,8 @@ class Rays:
         None = all.
     bent
         Where rays go in glass: only what they run through it counts; None = all is straight.
+    room
+        Bytes that their pieces may take.
     """
 
     level = False
@@ -46,7 +48,13 @@ class Rays:
     shape: tuple[int, int]
 
     def __init__(
-        self, grid: Grid, views: Views, heard: NDArray[np.bool_] | None = None, bent: Bent | None = None
+        self,
+        grid: Grid,
+        views: Views,
+        heard: NDArray[np.bool_] | None = None,
+        bent: Bent | None = None,
+        *,
+        room: int = ROOM,
     ) -> None:
         if math.prod(grid.shape) > _MOST_VOXELS:
             raise InputError(
@@ -75,6 +83,7 @@ class Rays:
         if bent is not None:
             self._bend(bent)
         self.shape = (len(views) * columns * rows, int(np.prod(grid.shape)))
+        self._room = room
         self._lists: tuple[_Lists, ...] | None = None
 
     def _bend(self, bent: Bent) -> None:
@@ -120,10 +129,10 @@ class Rays:
         return x
 
     def _kept(self) -> tuple[_Lists, ...]:
-        """The pieces of all rays, for the matrix and for its transpose; nothing where they are too many."""
+        """The pieces of all rays, for the matrix and for its transpose; nothing where there is no room."""
         data = self._rays, self._picture, self._heard, self.grid.shape, self._sides
         offsets = listed.count(*data)
-        if offsets[-1] > limits.MOST_PIECES:
+        if PIECE * offsets[-1] > self._room:
             return ()
         found = listed.trace(*data, offsets)
         return found, listed.transposed(*found, self.shape[1])

@@ -69,17 +69,15 @@ def solve(told: Told, deed: Deed, task: Task) -> None:
     if deed == "keep":
         _keep(told, task)
         return
-    from lightcube.backward.needs import job_memory
     from lightcube.jobs import publishing, running
     from lightcube.jobs.partial import DiskStore, load_job, open_partial, partial_path
     from lightcube.verbs import solving
 
     if deed == "resume":
-        job, store = load_job(partial_path(task.out)), DiskStore(partial_path(task.out))
+        job, store = solving.fitted(load_job(partial_path(task.out))), DiskStore(partial_path(task.out))
     else:
         planned = solving.read(task.source, task.how, told=False)(solving.rehearsals())
-        job = solving.job(planned)
-        solving.check_memory(job_memory(job))
+        job = solving.fitted(solving.job(planned))
         store = open_partial(task.out, job, overwrite=True)
     show = _Show(told, task.title)
     if not running.run(job, job.pieces, store, told.pass_on, show):

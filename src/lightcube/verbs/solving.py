@@ -13,7 +13,16 @@ from typing import TYPE_CHECKING, Any
 from lightcube import io
 from lightcube.backward.job import Job
 from lightcube.backward.mat import Mat
-from lightcube.backward.needs import Speed, expected_passes, job_memory, measured_speed, memory_needed, seconds_a_pass
+from lightcube.backward.needs import (
+    MEMORY,
+    Speed,
+    expected_passes,
+    job_memory,
+    measured_speed,
+    memory_needed,
+    seconds_a_pass,
+    with_room,
+)
 from lightcube.backward.solving import make_job
 from lightcube.errors import InputError
 from lightcube.events import Tell
@@ -215,9 +224,18 @@ def divided(made: Job, output: str, workers: int, memory: int | None = None) -> 
     """A job in units for so many workers, or in as many as its unfinished cube was begun with, if they fit `memory`."""
     most = made.most_units
     begun = begun_units(output, made)
-    if begun is None or (memory is not None and job_memory(replace(made, units=begun)) > memory):
+    if begun is None or (memory is not None and job_memory(replace(made, units=begun, room=0)) > memory):
         begun = max(made.units, min(workers, most))
-    return replace(made, units=begun)
+    return with_room(replace(made, units=begun), memory or MEMORY)
+
+
+def fitted(made: Job, processes: int = 1) -> Job:
+    """A job that keeps pieces of rays only where so many processes find room for them in half of what memory is free.
+
+    `InputError` where there is not even as much as all else needs.
+    """
+    check_memory(job_memory(replace(made, room=0)) * processes)
+    return replace(made, room=min(made.room, with_room(made, io.free_memory() // (2 * processes)).room))
 
 
 def needs(made: Job) -> dict[str, Any]:
