@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lightcube as lc
-from lightcube.optics.glare import ghosts
+from lightcube.optics.glare import ghosts, off_normals
 from lightcube.optics.glass import Glass
 from lightcube.optics.rig import Rig
 from lightcube.optics.setups import turntable
@@ -43,7 +43,9 @@ def test_where_beams_land_that_are_thrown_back_ghosts_are_told(angle_deg: float,
 
 def test_stops_off_the_normals_before_a_far_screen_have_no_ghosts_in_the_middle() -> None:
     grid = lc.Grid((20, 20, 20), 2.0)
-    room = turntable(grid, [4.0, 15.0, 45.0, 75.0], elevation_deg=0.0, picture_shape=(12, 12), glass=Glass(1.5))
+    room = turntable(
+        grid, [4.0, 15.0, 45.0, 75.0], elevation_deg=0.0, picture_shape=(12, 12), glass=Glass(1.5), screen_mm=91.0
+    )
     share = np.mean(ghosts(room) > 0.01, axis=(1, 2))
     assert share[0] > 0.01
     assert not np.any(share[1:])
@@ -54,3 +56,26 @@ def test_stops_off_the_normals_before_a_far_screen_have_no_ghosts_in_the_middle(
 def test_what_is_round_or_a_bath_has_none() -> None:
     for form in ("cylinder", "sphere", "bath", "round-bath"):
         assert not np.any(ghosts(turntable(GRID, [33.0], elevation_deg=20, glass=Glass(1.5, form))))
+
+
+def off(angles_deg: np.ndarray) -> float:
+    """How far the nearest is from a multiple of 90 degrees."""
+    return float(np.min(np.abs(np.remainder(angles_deg + 45.0, 90.0) - 45.0)))
+
+
+@pytest.mark.parametrize("count", range(1, 40))
+def test_stops_are_turned_together_as_far_from_the_normals_as_can_be(count: int) -> None:
+    """As a search over all turns finds, and no further than they must."""
+    even = lc.spread_angles(count, 360.0)
+    for angles_deg in (even, np.random.default_rng(count).uniform(0, 360, count)):
+        turned = off_normals(angles_deg, Glass(1.5))
+        turns = turned - angles_deg
+        np.testing.assert_allclose(turns, turns[0], atol=1e-9)
+        some = np.arange(-45.0, 45.0, 0.05)
+        reached = np.array([off(angles_deg + turn) for turn in some])
+        assert off(turned) >= reached.max() - 1e-9
+        assert abs(turns[0]) <= np.min(np.abs(some[reached > off(turned) - 0.05])) + 0.1
+    if off(even) == 45.0 / (count / np.gcd(count, 4)):
+        np.testing.assert_array_equal(off_normals(even, Glass(1.5)), even)
+    for glass in (None, Glass(1.0), Glass(1.5, "cylinder")):
+        assert off_normals(even, glass) is even

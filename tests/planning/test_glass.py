@@ -1,14 +1,17 @@
 """What glass does to wanted pictures, told before they are solved for."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import lightcube as lc
 from lightcube.errors import InputError
+from lightcube.optics.glare import has_ghosts
 from lightcube.optics.glass import Glass
 from lightcube.optics.refraction import bent
+from lightcube.optics.views import swept_mm
 from lightcube.pictures.samples import photographs
 from lightcube.planning import glass as planning
 from lightcube.planning.prediction import predict
@@ -69,3 +72,21 @@ def test_what_is_expected_of_three_indices_is_that_of_their_mean() -> None:
     room = lc.Turntable(elevation_deg=35.0, glass=Glass((1.49, 1.5, 1.51))).rig(PICTURES, grid, picture_width=0.4)
     told = [predict(each, grid) for each in (replace(three, rig=room), three)]
     np.testing.assert_allclose(told[0].psnr, told[1].psnr, rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [2, 5, 9, 13, 24, 36])
+def test_stops_and_screens_are_where_no_ghost_falls_on_a_picture(count: int) -> None:
+    """What is said stays as it is; and a block's picture is the same on each screen."""
+    grid, picture = lc.Grid((12,) * 3, 8.0), np.full((4, 4, 3), 0.5, np.float32)
+    pictures = lc.Pictures((picture,) * count, tuple(map(str, range(count))))
+
+    def rig(**said: Any) -> lc.Rig:
+        return lc.Turntable(glass=Glass(1.5), **said).rig(pictures, grid, picture_width=0.5)
+
+    chosen, usual = rig(), rig(screen_mm=200.0)
+    assert not has_ghosts(chosen)
+    assert usual.behind_mm[0] == pytest.approx(200 + swept_mm(grid))
+    np.testing.assert_array_equal(usual.views.angles_deg, chosen.views.angles_deg)
+    np.testing.assert_allclose(bent(chosen).lines_mm, bent(usual).lines_mm, atol=1e-9)
+    as_said = np.arange(count) * 8.0
+    np.testing.assert_allclose(rig(angles_deg=as_said).views.angles_deg, as_said, atol=1e-9)

@@ -191,6 +191,10 @@ SOLVES = {
     "clear": "--n 6 --picture-width 0.5 --hold-deg 0 --clear 0.01,0.02,0.015 --max-extinction 0.4 --iterations 2",
     "dyes": "--n 6 --picture-width 0.5 --hold-deg 0 --material polyjet --iterations 2",
     "glass": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.48,1.5,1.53 --bottom blocked --iterations 2",
+    "glass, turned": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.5 --span-deg 288 --iterations 2",
+    "glass, ghosts": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.5 --angles-deg 1,95,200,300 --iterations 2",
+    "glass, nearer": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.5 --angles-deg 7,95,200,300 --screen-mm 130 "
+    "--iterations 2",
     "glass cylinder": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.5 --form cylinder --lamp-deg 0.3 --iterations 2",
     "glass sphere": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.4 --form sphere --screen-mm 60 --iterations 2",
     "glass bath": "--n 6 --picture-width 0.5 --hold-deg 0 --ior 1.33 --form bath --bath-mm 199 --iterations 2",

@@ -2,17 +2,20 @@
 
 import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from lightcube.backward.recipe import Recipe
+from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig
 from lightcube.optics.setups import turntable
 from lightcube.pictures.fitting import Fit
 from lightcube.pictures.pictures import Pictures
+from lightcube.pictures.turntable import Turntable
 from lightcube.planning.plan import Plan, plan
 from lightcube.scoring.metrics import nearness
 from lightcube.verbs import words
@@ -48,6 +51,18 @@ def test_pictures_that_lose_more_than_a_third_are_named_the_worst_first() -> Non
 def test_nothing_is_cut_off_where_nothing_is_cropped_or_little(fit: Fit) -> None:
     assert doubts_of_cropping(planned((24, 24), (24, 60), fit=fit)) == []
     assert doubts_of_cropping(planned((24, 24), (24, 35), (24, 24))) == []
+
+
+def test_how_far_away_the_screen_stands_is_said_where_it_matters() -> None:
+    read = Pictures((np.full((4, 4, 3), 0.5, np.float32),) * 2, ("a", "b"))
+
+    def said(**table: Any) -> list[str]:
+        made = plan(read, 8, size_mm=80.0, picture_width=0.5, turntable=Turntable(**table), told=False)
+        return [line for line in words.in_short(made, None) if "screen stands" in line]
+
+    assert said() == []
+    assert said(glass=Glass(1.5, "cylinder")) == ["the screen stands 120 mm behind the axis"]
+    assert said(lamp_deg=0.5, screen_mm=30.0) == [f"the screen stands {30 + 40 * 2**0.5:.0f} mm behind the axis"]
 
 
 @pytest.mark.parametrize("light", [Light(), Light(grain=0.01), Light(grain=2.0), Light.thin()])

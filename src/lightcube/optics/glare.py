@@ -2,8 +2,8 @@
 
 A beam that enters one face and meets a neighbouring one is wholly thrown back there, where the index is above the root
 of 2, and leaves through the face opposite to its own with one or two parts of its direction turned round. So ghosts
-land elsewhere the farther the screen stands, unlike the picture. They are told, not computed with: a screen three
-widths behind, and stops at least 10 degrees off the faces' normals, have none.
+land elsewhere the farther the screen stands, unlike the picture. They are told, not computed with: stops that stand off
+the faces' normals have none before a screen that is far enough away.
 """
 
 from __future__ import annotations
@@ -13,9 +13,12 @@ from itertools import product
 import numpy as np
 
 from lightcube.optics.arrays import Reals
+from lightcube.optics.glass import Glass
 from lightcube.optics.refraction import iors, known
 from lightcube.optics.rig import Rig
 
+#: Ghosts fainter than this, of a lamp of power 1, are not seen.
+SEEN = 0.01
 #: A direction's part below this is none; and so steeply light falls on a screen at least.
 _NONE, _AWAY = 1e-9, 0.02
 
@@ -25,28 +28,60 @@ def ghosts(rig: Rig) -> Reals:
 
     0 of all but blocks, whose sides are flat.
     """
+    return np.stack([_ghosts(rig, view) for view in range(len(rig.views))])
+
+
+def has_ghosts(rig: Rig) -> bool:
+    """Whether on any pixel one falls that is seen."""
+    return any(np.any(_ghosts(rig, view) > SEEN) for view in range(len(rig.views)))
+
+
+def _ghosts(rig: Rig, view: int) -> Reals:
+    """``(rows, columns)``: those of a view."""
     views, glass = rig.views, known(rig)
-    shown = np.zeros((len(views), *views.picture_shape))
+    shown = np.zeros(views.picture_shape)
     if glass.form != "block" or glass.size_mm is None:
         return shown
-    half, blocked = np.array(glass.size_mm) / 2, glass.bottom == "blocked"
-    for view, ior in enumerate(iors(rig)):
-        light = views.lamps[view, :3] / np.linalg.norm(views.lamps[view, :3])
-        normal = np.cross(views.column_steps_mm[view], views.row_steps_mm[view])
-        normal /= np.linalg.norm(normal)
-        places = _pixels(rig, view)
-        for face, turned in product(range(3), product((1, -1), repeat=2)):
-            aside = [axis for axis in range(3) if axis != face]
-            way = light.copy()
-            way[aside] *= turned
-            falls = (way @ normal) / (light @ normal)
-            if turned == (1, 1) or abs(light[face]) < _NONE or falls < _AWAY or (face == 2 and blocked):
-                continue
-            if any(sign < 0 and abs(light[axis]) < _NONE for sign, axis in zip(turned, aside, strict=True)):
-                continue
-            lit = _comes(places, light, way, face, half, float(ior))
-            shown[view] += lit * _passes(abs(light[face]), float(ior)) * falls
+    half, ior = np.array(glass.size_mm) / 2, float(iors(rig)[view])
+    light = views.lamps[view, :3] / np.linalg.norm(views.lamps[view, :3])
+    normal = np.cross(views.column_steps_mm[view], views.row_steps_mm[view])
+    normal /= np.linalg.norm(normal)
+    places = _pixels(rig, view)
+    for face, turned in product(range(3), product((1, -1), repeat=2)):
+        aside = [axis for axis in range(3) if axis != face]
+        way = light.copy()
+        way[aside] *= turned
+        falls = (way @ normal) / (light @ normal)
+        dark = face == 2 and glass.bottom == "blocked"
+        if turned == (1, 1) or abs(light[face]) < _NONE or falls < _AWAY or dark:
+            continue
+        if any(sign < 0 and abs(light[axis]) < _NONE for sign, axis in zip(turned, aside, strict=True)):
+            continue
+        lit = _comes(places, light, way, face, half, ior)
+        shown += lit * _passes(abs(light[face]), ior) * falls
     return shown
+
+
+def off_normals(angles_deg: Reals, glass: Glass | None) -> Reals:
+    """Angles of a turntable, turned together by as little as brings them as far from a block's normals as can be.
+
+    Those of other bodies, and of none, stay as they are.
+
+    Examples
+    --------
+    >>> import numpy as np, lightcube as lc
+    >>> from lightcube.optics.glare import off_normals
+    >>> off_normals(np.array([3.0, 123, 243]), lc.Glass(1.5))
+    array([ 15., 135., 255.])
+    """
+    if glass is None or glass.form != "block" or not glass.bends:
+        return angles_deg
+    within = np.sort(np.remainder(angles_deg, 90.0))
+    gaps = np.diff(within, append=within[0] + 90.0)
+    widest = gaps > gaps.max() - 1e-9
+    middles = (within + gaps / 2)[widest]
+    turns = 45.0 - np.remainder(middles + 45.0, 90.0)  # that bring such a middle to a normal
+    return np.asarray(angles_deg + turns[np.argmin(np.abs(turns))])
 
 
 def _comes(places: Reals, light: Reals, way: Reals, face: int, half: Reals, ior: float) -> Reals:

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Numbers
 from lightcube.optics.checks import checked
+from lightcube.optics.glare import has_ghosts
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid
 from lightcube.optics.rig import Rig
 from lightcube.optics.tables import POWER_MAX
 from lightcube.optics.transfer import BLACK
 from lightcube.optics.views import check_lamp, swept_mm, turntable_views
+
+#: So many times as far behind a block of glass as usual a screen may stand, so that no ghost falls on a picture.
+_FURTHER = np.arange(1.1, 3.05, 0.1)
 
 
 @checked
@@ -92,11 +97,20 @@ def in_glass(rig: Rig, grid: Grid, glass: Glass, screen_mm: float | None = None)
     Parameters
     ----------
     screen_mm
-        As `soft` takes it; default three widths behind a block, and one and a half behind what is round.
+        As `soft` takes it; default one and a half widths behind what is round, and three behind a block, or up to nine
+        where only there nothing falls on a picture that the block throws back inside (`lightcube.optics.glare`).
     """
     body = glass.around(grid)
+    if screen_mm is not None:
+        return _before(rig, body, swept_mm(grid) + screen_mm)
+    usual = _before(rig, body, body.far_mm)
+    further = (_before(rig, body, times * body.far_mm) for times in _FURTHER)
+    return next((each for each in chain([usual], further) if not has_ghosts(each)), usual)
+
+
+def _before(rig: Rig, body: Glass, behind_mm: float) -> Rig:
+    """A rig with glass, and its screens so far behind the axis."""
     light, views = rig.light, rig.views
-    behind_mm = body.far_mm if screen_mm is None else swept_mm(grid) + screen_mm
     further = (behind_mm - rig.behind_mm) / np.linalg.norm(light[:, :2], axis=1)
     origins_mm = views.origins_mm + further[:, None] * light
     origins_mm[:, 2] += body.rise_mm(light)

@@ -9,6 +9,7 @@ import numpy as np
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Numbers, Reals, keep
 from lightcube.optics.checks import check_fields, checked
+from lightcube.optics.glare import off_normals
 from lightcube.optics.glass import Glass
 from lightcube.optics.grid import Grid, check_elevation, picture_shape
 from lightcube.optics.rig import Rig
@@ -33,7 +34,7 @@ class Turntable:
     ----------
     angles_deg
         Turntable angles in degrees, one per picture; default those that came with the pictures, and where none did,
-        spread evenly.
+        spread evenly; before a block of glass as far from the normals of its sides as can be.
     span_deg
         Degrees over which angles are spread evenly, instead of those that came with the pictures.
     elevation_deg
@@ -147,7 +148,8 @@ class Turntable:
         if angles_deg is None:
             lens = self.glass is not None and self.glass.is_round  # half a turn on, it shows no mirror image
             span_deg = 360.0 if lens and self.span_deg is None else self.span_deg
-            return distinct_angles(spread_angles(len(pictures), span_deg, elevation_deg=elevation_deg))
+            spread_deg = spread_angles(len(pictures), span_deg, elevation_deg=elevation_deg)
+            return distinct_angles(off_normals(spread_deg, self.glass))
         chosen = distinct_angles(angles_deg)
         if len(chosen) != len(pictures):
             raise InputError(

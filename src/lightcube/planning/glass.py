@@ -8,7 +8,7 @@ import numpy as np
 
 from lightcube.errors import InputError
 from lightcube.optics.arrays import Flags, Reals
-from lightcube.optics.glare import ghosts
+from lightcube.optics.glare import SEEN, ghosts
 from lightcube.optics.grid import Grid
 from lightcube.optics.refraction import bent, known
 from lightcube.optics.rig import Rig
@@ -16,8 +16,6 @@ from lightcube.pictures.targets import Targets
 
 #: Smaller parts of a picture are not worth a sentence; so much of one may be lost at most.
 _WORTH_SAYING, _MOST = 0.005, 0.5
-#: Ghosts fainter than this, of a lamp of power 1, are not seen.
-_SEEN = 0.01
 #: What is said of light through the bottom.
 _BOTTOM = {
     "open": "is lit through the bottom of the block: stand it on a ring or a sheet of glass that lets light through",
@@ -48,7 +46,7 @@ def lit(targets: Targets) -> Lit:
     if glass.form == "block" and glass.size_mm is not None:
         at = found.leaves_mm[..., 2] * np.sign(rig.views.lamps[:, 2])[:, None, None]
         below = (found.through > 0) & (at > glass.size_mm[2] / 2 * (1 - 1e-9))
-    return Lit(*(_part(rig, each, wanted) for each in (found.through == 0, below, ghosts(rig) > _SEEN)))
+    return Lit(*(_part(rig, each, wanted) for each in (found.through == 0, below, ghosts(rig) > SEEN)))
 
 
 def _part(rig: Rig, where: Flags, wanted: Flags) -> Reals:

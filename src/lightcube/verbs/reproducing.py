@@ -21,6 +21,7 @@ from lightcube.errors import InputError, without_secrets
 from lightcube.optics.attenuator import Films
 from lightcube.optics.cube import Cube
 from lightcube.optics.dyes import Dyes
+from lightcube.optics.glare import off_normals
 from lightcube.optics.glass import Glass
 from lightcube.optics.light import Light
 from lightcube.optics.rig import Rig
@@ -330,7 +331,7 @@ def _angles(cube: Cube) -> tuple[list[str], NDArray[np.float64]]:
     for offset in (1 / 2, 1 / 3):  # as `lightcube.optics.views.spread_angles` begins
         span_deg = round(float(angles_deg[0]) / offset * len(views), 6)
         if 0 < span_deg <= 360:
-            spread_deg = spread_angles(len(views), span_deg)
+            spread_deg = off_normals(spread_angles(len(views), span_deg), cube.rig.glass)
             if np.array_equal(_made(cube, spread_deg).views.lamps, cube.rig.views.lamps):
                 return ["--span-deg", _number(span_deg)], spread_deg
     return ["--angles-deg", _listed(angles_deg)], np.round(angles_deg, _DIGITS)

@@ -54,6 +54,7 @@ def in_short(planned: Plan, order: "Order | None") -> list[str]:
         _wanted(planned),
         *_cropped(planned),
         f"{block(planned.grid)}{held}",
+        *_screen(planned),
         *expected(planned),
         *gain(planned, order),
         *([] if planned.recipe.dyes is None else materials.in_words(planned.recipe.dyes)),
@@ -75,6 +76,14 @@ def block(grid: Grid) -> str:
 def voxels(shape: tuple[int, int, int]) -> str:
     """``(z, y, x)`` as people say it: across, in depth, upwards."""
     return " x ".join(str(count) for count in reversed(shape))
+
+
+def _screen(planned: Plan) -> list[str]:
+    """How far away the screen of a turntable stands, where that decides what it shows."""
+    rig = planned.targets.rig
+    if planned.stage is not None or (rig.glass is None and not np.any(rig.sums.disc_deg)):
+        return []
+    return [f"the screen stands {rig.behind_mm[0]:.0f} mm behind the axis"]
 
 
 def _wanted(planned: Plan) -> str:
