@@ -108,7 +108,7 @@ def a_job(form: Form, n: int, wide: int, memory: int | None = None) -> Job:
     """Of photographs in glass, in one unit."""
     grid = lc.Grid((n, n, n), 1.0)
     rig = lc.turntable(grid, lc.spread_angles(12), elevation_deg=35, picture_shape=(wide, wide), glass=Glass(1.5, form))
-    return make_job(lc.fit(photographs(12), rig), grid, lc.Recipe(passes=30), units=1, memory=memory)
+    return make_job(lc.fit(photographs(12), rig), grid, lc.Recipe(passes=15), units=1, memory=memory)
 
 
 def test_pieces_of_rays_are_kept_where_all_else_leaves_room_for_them() -> None:
