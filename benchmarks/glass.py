@@ -118,6 +118,7 @@ def speed() -> None:
         ("straight", None, 35.0),
         ("block", "block", 35.0),
         ("cylinder", "cylinder", 20.0),
+        ("sphere", "sphere", 20.0),
     ):
         rig = room(form, elevation_deg, 360.0, IOR, 64, 16, 32)  # type: ignore[arg-type]
         matrix = lc.Projector(grid, asked(rig, grid, lc.Recipe()).rig)
