@@ -1,5 +1,5 @@
 # make demo   set everything up and run the demonstration, into out/
-# make test   set everything up and run the tests, compiled, and those of the rooms that compute interpreted too
+# make test   set everything up and run the tests, compiled, and those that call kernels themselves interpreted too
 #             (one thread for each of the processes that run side by side; tests of threads take more; each process takes
 #             tests that stand together, for what is made or compiled once for many, and in the end some of another's)
 # make check  lint, format and types
@@ -13,7 +13,8 @@
 # Use another Python with: make demo PYTHON=python3.12
 
 PYTHON ?= python3
-COMPUTING := backward forward kernels laws optics planning projection scene scoring solids solvers
+INTERPRETED := kernels laws/test_engine.py laws/test_solver.py projection scene solids solvers drawing/test_room.py \
+  forward/test_casting.py optics/test_law.py planning/test_order.py
 EXTRAS ?= dev,docs,heif,plot,notebook,remote,cluster,studio
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
@@ -29,7 +30,7 @@ demo: .venv/.ready
 
 test: .venv/.ready-$(EXTRAS)
 	NUMBA_NUM_THREADS=1 $(BIN)/python $(PYTEST)
-	NUMBA_DISABLE_JIT=1 $(BIN)/python $(PYTEST) $(addprefix tests/,$(COMPUTING))
+	NUMBA_DISABLE_JIT=1 $(BIN)/python $(PYTEST) $(addprefix tests/,$(INTERPRETED))
 
 test-lowest test-newest: test-%: .venv-%
 	NUMBA_CACHE_DIR=.venv-$*/numba NUMBA_NUM_THREADS=1 .venv-$*/bin/python $(PYTEST) $(TESTS)
