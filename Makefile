@@ -75,7 +75,7 @@ clean:
 	@$(PIP) --editable .
 	@touch $@
 
-.venv/.ready-$(EXTRAS): .venv/.ready
+.venv/.ready-$(EXTRAS): .venv/.made pyproject.toml constraints.txt
 	@$(PIP) --editable '.[$(EXTRAS)]'
 	@touch $@
 
