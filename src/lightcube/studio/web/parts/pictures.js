@@ -1,6 +1,6 @@
 // The pictures: dropped, pasted, taken by a webcam, or a set to try; the strip in which they are named, cropped, ordered.
 
-import { element } from "/viewer/tools/elements.js";
+import { element, icon } from "/viewer/tools/elements.js";
 import { openCrop } from "../tools/cropping.js";
 import { askFilm } from "../tools/filming.js";
 import { glyph } from "../tools/glyphs.js";
@@ -120,7 +120,7 @@ function itemOf(picture, number, { used, missing, places }, studio) {
           if (cropped !== null) change({ crop: cropped });
         } }, glyph("crop")),
       element("button", { type: "button", class: "icon", "aria-label": `Remove ${name}`, title: "Remove", "data-does": "remove",
-        click: () => studio.ask(`/api/pictures/${key}`, { method: "DELETE" }) }, glyph("remove"))));
+        click: () => studio.ask(`/api/pictures/${key}`, { method: "DELETE" }) }, icon("close"))));
 }
 
 /** Show of a picture what is taken of it. */

@@ -82,7 +82,7 @@ function headOf(studio, doors, open) {
     click: () => setTheme(studio.root, studio.root.dataset.theme !== "dark", true) }, icon("theme"));
   const links = doors.map(([door, text]) => [door, element("button", { type: "button", class: "door", click: () => open(door), text })]);
   document.addEventListener("keydown", (event) => {
-    const typing = event.target.closest("input[type=text], textarea");
+    const typing = event.target.closest("input:not([type=range], [type=checkbox], [type=file]), textarea, dialog");
     if (typing || !(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
     event.preventDefault();
     (event.shiftKey ? redo : undo).click();
