@@ -19,6 +19,8 @@ from tests.helpers.studios import TOKEN, opened
 
 def test_whatever_is_asked_is_answered_by_more_than_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lightcube.studio.solving.Solving._begin", lambda *_: None)  # nothing is solved
+    for deed in ("begin", "ask"):  # and nothing foretold, by a process for each question
+        monkeypatch.setattr(f"lightcube.studio.forecast.Forecast.{deed}", lambda _: None)
     app: Any = opened(tmp_path / "project").app
     document = app.openapi()
     del document["paths"]["/api/events"]  # it never ends

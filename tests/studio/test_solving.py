@@ -24,10 +24,9 @@ from lightcube import io
 from lightcube.cli import main
 from lightcube.errors import InputError
 from lightcube.studio.forecast import Forecast
-from lightcube.studio.guard import HEADER
 from lightcube.studio.serving import serve
 from lightcube.studio.solving import Solving
-from tests.helpers.studios import opened, started
+from tests.helpers.studios import entered, opened, started
 
 pytestmark = pytest.mark.skipif(
     os.environ.get("NUMBA_DISABLE_JIT", "0") != "0",
@@ -262,12 +261,6 @@ def test_a_studio_that_is_killed_goes_on_where_it_was(tmp_path: Path) -> None:
         assert state["solving"]["status"] == "running"
         until(lambda: client.get("/api/solving").json()["done"])
         process.kill()
-
-
-def entered(address: str) -> httpx2.Client:
-    """Who asks a studio that runs."""
-    root, _, token = address.partition("/?token=")
-    return httpx2.Client(base_url=root, headers={HEADER: token})
 
 
 def test_a_port_that_is_taken_and_a_folder_that_is_open_are_sentences(client: TestClient, tmp_path: Path) -> None:

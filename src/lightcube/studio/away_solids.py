@@ -79,7 +79,7 @@ def _sheet(order: Order[Relief]) -> list[str]:
     scores = score_relief(order.thing, off=True)
     drawn = relief_sheet(order.thing, scores, order.label.title)
     io.Output(order.target, "picture", overwrite=True).write(drawn)
-    return plates.told(order.thing, scores)
+    return plates.came_out(order.thing, scores)
 
 
 def _movie(order: Order[Relief]) -> list[str]:

@@ -27,7 +27,12 @@ def foretold(plate: Relief, scores: Mapping[str, Any]) -> list[str]:
 
 
 def told(plate: Relief, scores: Mapping[str, Any]) -> list[str]:
-    """The same, with how each picture has come out and how it is lit."""
+    """The same, after how each picture has come out."""
+    return [*came_out(plate, scores), *foretold(plate, scores)]
+
+
+def came_out(plate: Relief, scores: Mapping[str, Any]) -> list[str]:
+    """How each picture has come out, under which lamp."""
     if plate.is_colour:
         near, far = nearness(scores["near_psnr_mean"]), nearness(scores["psnr_mean"])
         lines = [f"in colour it is {near} near by and {far} from afar: red lamp right, green left, blue behind"]
@@ -39,7 +44,7 @@ def told(plate: Relief, scores: Mapping[str, Any]) -> list[str]:
         ]
     if any(mark(each["psnr"]) == "poor" for each in scores["pictures"]):
         lines.append("what would help: fewer pictures, plainer ones, or a finer plate")
-    return [*lines, *foretold(plate, scores)]
+    return lines
 
 
 def _of_black(black: float) -> str:

@@ -26,8 +26,9 @@ export function askOf(studio) {
   };
 }
 
-/** A sentence as it stands in a page: with a capital and a full stop. */
+/** A sentence as it stands in a page: with a capital, but where a file's name begins it, and a full stop. */
 export function sentenceOf(text) {
-  const said = text ? `${text[0].toUpperCase()}${text.slice(1)}` : "This could not be done";
+  const isName = /^\S*\.\w/.test(text);
+  const said = isName ? text : text ? `${text[0].toUpperCase()}${text.slice(1)}` : "This could not be done";
   return /[.!?…]$/.test(said) ? said : `${said}.`;
 }

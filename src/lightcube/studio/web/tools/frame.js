@@ -72,7 +72,10 @@ function sectionOf({ name, title }) {
 function headOf(studio, doors, open) {
   const title = element("input", {
     class: "project", type: "text", maxlength: "120", "aria-label": "Title of this project", placeholder: "Untitled",
-    change: () => studio.ask("/api/settings", { method: "PATCH", json: { title: title.value } }),
+    change: async () => {
+      const state = await studio.ask("/api/settings", { method: "PATCH", json: { title: title.value } });
+      title.value = (state ?? studio.state).settings.title; // what was refused goes back
+    },
   });
   const step = (way, label, key) => element("button", {
     type: "button", class: "switch", title: `${label} (${key})`, disabled: true, click: () => studio.ask(`/api/${way}`, { method: "POST" }),
