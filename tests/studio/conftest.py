@@ -20,17 +20,12 @@ def desk(tmp_path: Path) -> Iterator[Any]:
 @pytest.fixture
 def client(desk: Any, request: pytest.FixtureRequest) -> Any:
     """Asks the part that the test's module is about: its `PART`, without guard."""
-    from fastapi import FastAPI, Request
-    from fastapi.responses import JSONResponse
+    from fastapi import FastAPI
     from fastapi.testclient import TestClient
 
-    from lightcube.errors import InputError
+    from lightcube.studio.app import speak
 
     app = FastAPI()
     app.include_router(request.module.PART.router(desk))
-
-    @app.exception_handler(InputError)
-    async def refused(_: Request, error: Exception) -> JSONResponse:
-        return JSONResponse({"sentence": f"{error}"}, status_code=400)
-
+    speak(app)
     return TestClient(app)

@@ -10,11 +10,13 @@ import pytest
 
 pytest.importorskip("fastapi", reason="the studio's extra is not installed")
 pytest.importorskip("uvicorn", reason="the studio's extra is not installed")
+pytest.importorskip("httpx2", reason="httpx2 is not installed")
 import uvicorn
 
 from lightcube.studio.app import make_app
 from lightcube.studio.kinds import KINDS
 from lightcube.studio.project import Project
+from tests.helpers.studios import is_bad
 
 
 @pytest.fixture(scope="module")
@@ -45,11 +47,6 @@ def tab(browser: Any, address: str) -> Iterator[Any]:
     yield opened
     context.close()
     assert not heard
-
-
-def is_bad(said: Any) -> bool:
-    """What a page says of itself; that the studio refused something is said in the page."""
-    return said.type == "error" and "status of 400" not in said.text
 
 
 def seen_by_axe(tab: Any, part: str) -> list[str]:

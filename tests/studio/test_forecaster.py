@@ -36,3 +36,16 @@ def test_a_first_look_has_the_order_that_was_found_best(tmp_path: Path, monkeypa
     best = [keys[2], keys[0], keys[1]]
     assert told == [[list(keys), best], [best, best], [list(keys), list(keys)]]
     ours.close()
+
+
+def test_whatever_goes_wrong_is_told_and_the_next_question_is_answered(tmp_path: Path) -> None:
+    ours, theirs = Pipe()
+
+    def wrong(*_: Any) -> Any:
+        raise MemoryError
+
+    Looking(theirs).answer(Asked(7, wrong, None, (), (), (), (), tmp_path, ""))
+    told, facts = ours.recv()
+    assert (told, facts["number"], facts["stage"]) == ("forecast", 7, "failed")
+    assert "not enough memory" in facts["sentence"]
+    ours.close()

@@ -85,3 +85,31 @@ def test_more_than_is_taken_is_refused_whether_it_says_so_or_not(
 )
 def test_no_path_leads_out_of_the_pages_folder(client: TestClient, path: str) -> None:
     assert client.get(path).status_code == 404
+
+
+def test_who_looks_is_told_on_a_page_and_who_asks_in_json(client: TestClient) -> None:
+    del client.headers[guard.HEADER]
+    page = client.get("/", headers={"sec-fetch-dest": "document"})
+    assert (page.status_code, page.headers["content-type"]) == (403, "text/html")
+    assert "Open the address that the terminal shows: it holds the key to this studio." in page.text
+    policy = page.headers["content-security-policy"]
+    assert policy.startswith("default-src 'none'; style-src 'sha256-")
+    assert client.get("/", headers={"sec-fetch-dest": "empty"}).json()["sentence"]
+
+
+def test_an_old_tab_is_told_that_the_studio_was_started_again(client: TestClient) -> None:
+    del client.headers[guard.HEADER]
+    old = {"cookie": f"{guard.cookie_of('another')}=another"}
+    assert "was started again" in client.get("/api/state", headers=old).json()["sentence"]
+    page = client.get("/", headers={**old, "sec-fetch-dest": "document"}).text
+    assert "The studio was started again, and has another key now" in page
+
+
+def test_cookies_of_other_programs_do_not_hide_the_token(client: TestClient) -> None:
+    del client.headers[guard.HEADER]
+    cookies = f'theirs={{"a b": "c"}}; {guard.cookie_of(TOKEN)}={TOKEN}'
+    assert client.get("/api/state", headers={"cookie": cookies}).status_code == 200
+
+
+def test_a_length_that_is_no_number_does_no_harm(client: TestClient) -> None:
+    assert client.patch("/api/settings", content=b"{}", headers=[(b"content-length", b"\xb2")]).status_code < 500

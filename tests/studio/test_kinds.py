@@ -13,14 +13,17 @@ from PIL import Image
 
 pytest.importorskip("fastapi", reason="the studio's extra is not installed")
 
+import lightcube as lc
 from lightcube import io
 from lightcube.errors import InputError
 from lightcube.events import Interrupted
-from lightcube.studio import away, rooms
+from lightcube.scoring.reliefs import score_relief
+from lightcube.studio import away, plates, rooms
 from lightcube.studio.forecaster import Asked
 from lightcube.studio.kinds import KINDS, check_there, command_of, described, kind_of, made_of, used
 from lightcube.studio.makers import without_commands
 from lightcube.studio.making import MOST_PICTURES, FilmsMaking, PlateMaking, ShapeMaking
+from lightcube.studio.offered import THINGS
 from lightcube.studio.pictures import Strip
 from lightcube.studio.project import MADE, KindName, Picture, Project, Settings
 from lightcube.studio.solver import Task
@@ -131,7 +134,7 @@ def test_the_table_is_whole() -> None:
         assert 1 <= least <= most <= MOST_PICTURES
         assert hasattr(settings, kind.settings)
         assert told["name"] == name
-        assert away.things(kind.things)
+        assert list(THINGS[kind.things]) == list(away.MAKERS[kind.things][0])
         assert command_of(Path("/a"), settings).startswith(f"lightcube {kind.verb} /a/{kind.source} -o /a/made/")
 
 
@@ -185,7 +188,39 @@ def test_what_will_come_is_told_of_every_picture(name: KindName, project: Projec
         assert [picture["key"] for picture in each["pictures"]] == [picture.key for picture in used(settings)]
         assert {picture["mark"] for picture in each["pictures"]} <= {"good", "fair", "poor"}
         assert all(picture["worth"] and picture["image"] for picture in each["pictures"])
+        assert name != "plate" or is_plain(each["notes"])
     assert looking.shown is not None
+
+
+def is_plain(said: list[str]) -> bool:
+    """Whether sentences are for people who make things, and know nothing of how they are computed."""
+    return not any(word in each for each in said for word in ("dB", "PSNR", "sweep", "column", "near by ("))
+
+
+def a_ramp() -> lc.Pictures:
+    """A picture from dark to light."""
+    return lc.Pictures((np.linspace(0, 1, 192, dtype=np.float32).reshape(8, 8, 3),), ("a",))
+
+
+@pytest.mark.parametrize(
+    ("black", "worst", "said"),
+    [
+        (0.2, 27.0, ["nearly black", "a few degrees more or less do no harm"]),
+        (0.4, 26.2, ["dark grey: a higher relief makes it darker", "3° more or less make the pictures a little worse"]),
+        (0.6, 20.0, ["middle grey", "with care: 3° more or less make the pictures poor"]),
+    ],
+)
+def test_of_a_plate_it_is_said_what_to_do(black: float, worst: float, said: list[str]) -> None:
+    plate = lc.relief(
+        lc.Pictures((np.linspace(0, 1, 192, dtype=np.float32).reshape(8, 8, 3),), ("a",)),
+        lc.ReliefRecipe(side=16, sweeps=1),
+    )
+    scores = score_relief(plate, off=True) | {"black": black, "psnr_mean": 27.5}
+    scores["off"] = {"3 deg higher": worst, "3 deg lower": 27.5}
+    found = plates.told(plate, scores)
+    assert is_plain(found)
+    for each in said:
+        assert any(each in line for line in found)
 
 
 def test_outlines_that_no_solid_casts_are_not_called_good(project: Project, desk: Any) -> None:
@@ -225,6 +260,7 @@ def test_it_is_made_as_its_command_makes_it_and_taken_away(
     kind.make(told, "start", Task(str(project.folder / kind.source), str(out), kind.how(settings), "mine"))  # type: ignore[arg-type]
     done = next(facts for what, facts in told.heard if what == "done")
     assert [each["name"] for each in done["pictures"]] == [picture.name for picture in used(settings)]
+    assert name != "plate" or is_plain(done["said"])
     scene = [facts["scene"] for what, facts in told.heard if what == "cube"][-1]
     assert json.loads(gzip.decompress(scene))["title"] == "mine"
     words = command_of(project.folder, settings).split()[1:]
@@ -250,7 +286,7 @@ def test_each_thing_that_is_offered_is_made_and_says_what_it_is_worth(
 ) -> None:
     source = made(name, project, desk)
     offer = KINDS[name].things
-    for thing, offered in away.things(offer).items():
+    for thing, offered in THINGS[offer].items():
         if offered.suffix == "mp4":
             continue  # movies take long: they are made of cubes in tests/drawing
         target = tmp_path / f"{thing}.{offered.suffix}"

@@ -1,5 +1,6 @@
 """Pictures are taken in any format, kept small, cropped, named and ordered, and lie where commands read them."""
 
+import errno
 import json
 import zlib
 from io import BytesIO
@@ -182,7 +183,7 @@ def test_what_nobody_can_come_back_to_is_cleared_and_undo_still_works(client: Te
     drop(client, picture(), "other.png")  # the last two cannot come back
     (folder / ".incoming-abc").mkdir()
     (folder / ".incoming-abc" / "file.png").write_bytes(b"half")
-    for name in (f".{'0' * 16}.png.7", "mine.png", f"{'1' * 16}.jpg"):
+    for name in (f".{'0' * 16}.png.7.half-written", "mine.png", f"{'1' * 16}.jpg"):
         (folder / "dropped" / name).write_bytes(b"x")
     kept = client.get("/api/state").json()["settings"]["pictures"]
     client.put("/api/pictures", json={"keys": []})
@@ -213,3 +214,45 @@ def test_a_crop_that_cannot_be_is_one_sentence(client: TestClient) -> None:
         assert answer.status_code == 422, crop
         assert answer.json()["sentence"]
     assert project.Crop().model_dump() == client.get("/api/state").json()["settings"]["pictures"][0]["crop"]
+
+
+def test_what_vanishes_of_what_the_command_reads_is_written_again(client: TestClient) -> None:
+    folder = Path(client.post("/api/samples/letters").json()["folder"]) / "pictures"
+    before = {each.name: each.read_bytes() for each in folder.iterdir()}
+    for name in ("0002.png", "views.toml"):
+        (folder / name).unlink()
+    client.patch("/api/settings", json={"title": "anything"})
+    assert {each.name: each.read_bytes() for each in folder.iterdir()} == before
+
+
+def test_a_damaged_picture_is_a_sentence_and_everybody_is_told_of_the_change(client: TestClient) -> None:
+    state = client.post("/api/samples/letters").json()
+    key = state["settings"]["pictures"][0]["key"]
+    (Path(state["folder"]) / "dropped" / f"{key}.png").write_bytes(b"no picture")
+    desk: Any = client.app.state.desk  # type: ignore[attr-defined]
+    told: list[Any] = []
+    desk.hub._put = told.append
+    answer = client.patch(f"/api/pictures/{key}", json={"crop": {"width": 0.5}})
+    assert answer.status_code == 400
+    assert f"reading {state['folder']}/dropped/{key}.png failed" in answer.json()["sentence"]
+    assert [event.name for event in told] == ["state"]
+    assert client.get("/api/state").json()["settings"]["pictures"][0]["crop"]["width"] == 0.5
+    desk.close()
+    with opened(Path(state["folder"])) as again:  # it is open all the same, and says what is wrong
+        assert "dropped" in again.get("/api/state").json()["trouble"]
+
+
+def test_a_disk_that_is_full_is_said_with_the_files_own_name(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = Path.open
+
+    def full(path: Path, *how: Any, **more: Any) -> Any:
+        if path.name.startswith("file"):
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return written(path, *how, **more)
+
+    monkeypatch.setattr(Path, "open", full)
+    said = drop(client, picture(), "../my sea.png").json()["sentence"]
+    assert "no space is left on the disk" in said
+    assert "writing my sea.png" in said

@@ -237,3 +237,54 @@ def test_the_command_says_what_the_sliders_say(making: Making) -> None:
     given["ior"] = None if given["ior"] is None else (float(given["ior"]),)
     said = Options(**{name: value for name, value in given.items() if name in Options.__dataclass_fields__})
     assert said == of_cube(making)
+
+
+def test_a_disk_that_is_full_for_the_history_alone_changes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Settings and history are written both or none: what stands in one is in the other, too."""
+    project = Project(tmp_path)
+    project.change(titled("one"))
+    written = Path.open
+
+    def full(path: Path, *how: Any, **more: Any) -> Any:
+        if "history" in path.name and "w" in "".join(how):
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return written(path, *how, **more)
+
+    monkeypatch.setattr(Path, "open", full)
+    with pytest.raises(InputError, match="no space is left"):
+        project.change(titled("two"))
+    monkeypatch.undo()
+    assert project.settings.title == "one"
+    project.close()
+    again = Project(tmp_path)
+    assert (again.settings.title, again.described()["can_undo"]) == ("one", True)
+
+
+def test_what_a_killed_studio_had_half_written_goes_and_nothing_else(tmp_path: Path) -> None:
+    Project(tmp_path).close()
+    half, other = ".project.toml.12.half-written", ".bash_history.1"
+    for folder in (tmp_path, tmp_path / "made"):
+        for name in (half, other):
+            (folder / name).write_text("x")
+    Project(tmp_path).close()
+    for folder in (tmp_path, tmp_path / "made"):
+        assert not (folder / half).exists()
+        assert (folder / other).exists()
+
+
+def test_settings_can_be_read_while_they_change(tmp_path: Path) -> None:
+    """A change that goes back makes the history shorter: who reads meanwhile sees the one or the other."""
+    project = Project(tmp_path)
+    seen = []
+
+    class Watched(Project):
+        def __setattr__(self, name: str, value: Any) -> None:
+            super().__setattr__(name, value)
+            seen.append(self.settings.title)  # as another thread may, after every single step
+
+    project.change(titled("one"), "x")
+    project.__class__ = Watched
+    project.change(titled(""), "x")
+    assert set(seen) == {""}

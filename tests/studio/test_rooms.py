@@ -78,8 +78,10 @@ def test_what_is_no_room_is_refused(client: TestClient, change: dict[str, Any]) 
 )
 def test_what_cannot_stand_is_a_sentence(client: TestClient, change: dict[str, Any]) -> None:
     refused = client.post("/api/rooms/check", json=a_room(**change))
-    assert refused.status_code == 400
-    assert refused.json()["sentence"]
+    assert refused.status_code in (400, 422)
+    assert refused.json()["sentence"].startswith(
+        ("lamp 'front' stands in", "screen 'side wall' is lit by 'bulb'", "two ")
+    )
 
 
 def test_a_room_that_is_kept_makes_the_project_a_cube_for_it_and_its_file_is_the_same_stage(
@@ -106,4 +108,17 @@ def test_a_room_that_cannot_be_is_not_kept(client: TestClient, desk: Desk) -> No
     room = a_room()
     room["screens"][0]["z"] = 105
     assert client.post("/api/rooms/keep", json=room).status_code == 400
+    assert not desk.project.path(rooms.FILE).exists()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"lamps": [{"name": "front", "x": 0, "y": 0, "z": 0}]}, {"lamps": [{"name": "other", "x": 1, "y": 2, "z": 3}]}],
+    ids=["a lamp in the middle", "no such lamp"],
+)
+def test_a_room_that_was_kept_and_is_none_does_no_harm(desk: Desk, change: dict[str, Any]) -> None:
+    room = a_room(screens=[{"name": "wall", "x": 150, "y": 0, "z": -105, "lamp": "front"}], **change)
+    desk.change(lambda before: before.model_copy(update={"parts": {rooms.PART: room}}))
+    assert rooms.room_of(desk.project.settings) is None
+    rooms.write(desk.project)
     assert not desk.project.path(rooms.FILE).exists()

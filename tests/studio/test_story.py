@@ -13,9 +13,11 @@ from PIL import Image
 
 pytest.importorskip("fastapi", reason="the studio's extra is not installed")
 pytest.importorskip("uvicorn", reason="the studio's extra is not installed")
+pytest.importorskip("httpx2", reason="httpx2 is not installed")
 
 from lightcube import io
-from tests.helpers.studios import started
+from lightcube.studio.project import MAKINGS, Settings
+from tests.helpers.studios import entered, is_bad, started
 
 #: Bytes of the page before pictures, all that it is made of.
 HEAVIEST = 250_000
@@ -23,23 +25,45 @@ HEAVIEST = 250_000
 PATIENCE_MS = 60_000
 
 
-@pytest.fixture
-def studio(tmp_path: Path) -> Iterator[str]:
-    """The address of a studio that runs as people start it."""
-    with started(tmp_path / "project") as (_, address):
+@pytest.fixture(scope="module")
+def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a studio that runs as people start it, for all who make nothing in it."""
+    with started(tmp_path_factory.mktemp("shared") / "project") as (_, address):
         yield address
+
+
+@pytest.fixture
+def studio(running: str) -> str:
+    """The same, as it is when it is new."""
+    with entered(running) as client:
+        client.put("/api/pictures", json={"keys": []})
+        settings = Settings().model_dump(mode="json")
+        client.patch("/api/settings", json={name: settings[name] for name in ("kind", "title", *MAKINGS)})
+    return running
 
 
 @pytest.fixture
 def enter(browser: Any, studio: str) -> Iterator[Callable[..., Any]]:
     """A function that opens the studio in a tab; whatever a tab complains of fails the test."""
+    yield from tabs(browser, studio)
+
+
+@pytest.fixture
+def enter_alone(browser: Any, tmp_path: Path) -> Iterator[Callable[..., Any]]:
+    """The same of a studio of one's own, in which something can be made."""
+    with started(tmp_path / "project") as (_, address):
+        yield from tabs(browser, address)
+
+
+def tabs(browser: Any, studio: str) -> Iterator[Callable[..., Any]]:
+    """A function that opens a studio in a tab, and what it complained of in the end."""
     heard: list[str] = []
     contexts: list[Any] = []
 
     def open_tab(**context: Any) -> Any:
         contexts.append(browser.new_context(**context))
         tab = contexts[-1].new_page()
-        tab.on("console", lambda said: heard.append(said.text) if said.type == "error" else None)
+        tab.on("console", lambda said: heard.append(said.text) if is_bad(said) else None)
         tab.on("pageerror", lambda error: heard.append(str(error)))
         tab.on("request", lambda asked: heard.append(asked.url) if "//127.0.0.1:" not in asked.url[:30] else None)
         tab.goto(studio)
@@ -72,8 +96,8 @@ def photos(tmp_path: Path) -> list[Path]:
     return [tmp_path / f"photo {number + 1}.jpg" for number in range(len(found))]
 
 
-def test_the_whole_story_in_two_tabs(enter: Callable[..., Any], photos: list[Path], tmp_path: Path) -> None:
-    tab, other = enter(), enter()
+def test_the_whole_story_in_two_tabs(enter_alone: Callable[..., Any], photos: list[Path], tmp_path: Path) -> None:
+    tab, other = enter_alone(), enter_alone()
     assert tab.get_by_text("Drop pictures here").is_visible()
     drop(tab, photos[:2])
     tab.wait_for_selector(".forecast .walls li:nth-child(2)", timeout=PATIENCE_MS)
@@ -116,8 +140,8 @@ def save(tab: Any, thing: str, folder: Path) -> Path:
     return path
 
 
-def test_the_whole_story_by_keys_alone(enter: Callable[..., Any]) -> None:
-    tab = enter(reduced_motion="reduce")
+def test_the_whole_story_by_keys_alone(enter_alone: Callable[..., Any]) -> None:
+    tab = enter_alone(reduced_motion="reduce")
     to(tab, "Title of this project")
     tab.keyboard.type("By keys")
     to(tab, "Five letters")
@@ -246,9 +270,54 @@ def test_what_is_no_picture_is_said_in_the_page(enter: Callable[..., Any], tmp_p
     assert "there is room for 64" in tab.locator(".said").inner_text()
 
 
+def drop_by_hand(tab: Any, paths: list[Path]) -> None:
+    """Drop files and folders onto the page, as from a desktop."""
+    hand = tab.context.new_cdp_session(tab)
+    held = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
+    for kind in ("dragEnter", "dragOver", "drop"):
+        hand.send("Input.dispatchDragEvent", {"type": kind, "x": 300, "y": 300, "data": held})
+
+
+def test_files_and_folders_are_dropped_and_each_that_is_no_picture_is_named(
+    enter: Callable[..., Any], photos: list[Path], tmp_path: Path
+) -> None:
+    folder = tmp_path / "holidays"
+    folder.mkdir()
+    for number in (10, 9):
+        photos[number - 9].rename(folder / f"day {number}.jpg")
+    (folder / ".hidden.jpg").write_text("no picture")
+    (folder / "a.txt").write_text("no picture")
+    (folder / "b.png").write_text("no picture")
+    tab = enter()
+    drop_by_hand(tab, [photos[2], folder])
+    tab.wait_for_selector(".said .bad")
+    said = tab.locator(".said").inner_text()
+    assert "a.txt is no picture" in said
+    assert "b.png" in said
+    names = "(all) => all.map((each) => each.value)"
+    assert tab.locator(".strip li input").evaluate_all(names) == ["photo 3", "day 9", "day 10"]
+
+
+def test_what_is_refused_goes_back(enter: Callable[..., Any], photos: list[Path]) -> None:
+    tab = enter()
+    drop(tab, photos[:1])
+    tab.wait_for_selector(".strip li")
+    refuse = {"status": 400, "json": {"sentence": "no space is left on the disk"}}
+    for path in ("**/api/settings", "**/api/pictures/*"):
+        tab.route(path, lambda route: route.fulfill(**refuse) if route.request.method == "PATCH" else route.continue_())
+    for box, before in (("Title of this project", ""), ("Name of picture 1", "photo 1")):
+        tab.get_by_role("textbox", name=box).fill("Another")
+        tab.keyboard.press("Tab")
+        tab.get_by_text("No space is left on the disk.").wait_for()
+        until(tab, f"document.querySelector('[aria-label=\"{box}\"]').value === '{before}'")
+    tab.get_by_label("Care").select_option("draft")
+    until(tab, "document.querySelector('select[name=quality]').value === 'normal'")
+
+
 def test_a_studio_that_is_gone_is_told_of_and_a_door_begins_at_its_top(browser: Any, tmp_path: Path) -> None:
     with started(tmp_path / "project") as (process, address):
-        tab = browser.new_page(viewport={"width": 390, "height": 500})
+        context = browser.new_context(viewport={"width": 390, "height": 500})
+        tab = context.new_page()
         tab.goto(address)
         tab.wait_for_selector("[data-ready]")
         tab.get_by_role("button", name="Room").click()
@@ -258,7 +327,12 @@ def test_a_studio_that_is_gone_is_told_of_and_a_door_begins_at_its_top(browser: 
         until(tab, "scrollY === 0")
         process.kill()
         tab.get_by_text("The studio does not answer").wait_for(timeout=PATIENCE_MS)
-        tab.close()
+    port = int(address.rpartition(":")[2].partition("/")[0])
+    with started(tmp_path / "project", "--port", str(port)) as (_, other):
+        tab.get_by_text("The studio was started again, and has another key now").wait_for(timeout=PATIENCE_MS)
+        context.new_page().goto(other)
+        tab.get_by_text("The studio is back").wait_for(timeout=PATIENCE_MS)
+        context.close()
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])

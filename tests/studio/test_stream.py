@@ -89,3 +89,71 @@ def test_when_the_studio_ends_followers_are_let_go() -> None:
         assert [event async for event in hub.follow()] == []
 
     to_the_end(run())
+
+
+def test_how_all_stands_is_told_as_it_is_after_the_last_event() -> None:
+    """An event that comes while it is looked at makes that old: nobody is told it after the event."""
+
+    async def run() -> None:
+        stands = ["before"]
+
+        def whole() -> str:
+            found = stands[0]
+            if found == "before":
+                stands[0] = "after"
+                hub.tell("step", "after")
+            return found
+
+        hub = Hub(whole)
+        following = hub.follow(hub.id_of(Event(0, "", "")))
+        first = asyncio.ensure_future(anext(following))
+        await asyncio.sleep(0)
+        assert hub.tell_whole() == "after"
+        told = [await first, await anext(following)]
+        assert [(event.name, json.loads(event.text)) for event in told] == [("step", "after"), ("state", "after")]
+
+    to_the_end(run())
+
+
+def test_what_is_kept_for_who_comes_back_is_bounded_by_its_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stream, "_LETTERS", 100)
+
+    async def run() -> None:
+        hub = Hub(lambda: "all")
+        for _ in range(5):
+            hub.tell("large", "x" * 40)
+        assert (await heard(hub.follow(hub.id_of(Event(2, "", ""))), 1))[0] == ("state", "all")
+        assert await heard(hub.follow(hub.id_of(Event(3, "", ""))), 2) == [("large", "x" * 40)] * 2
+
+    to_the_end(run())
+
+
+def test_who_takes_nothing_any_more_is_let_go_and_comes_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stream, "_KEPT", 3)
+
+    async def run() -> None:
+        hub = Hub(lambda: "all")
+        late = hub.follow()
+        await anext(late)
+        for number in range(9):
+            hub.tell("count", number)
+            await asyncio.sleep(0)
+        assert len([event async for event in late]) == 3
+        assert await heard(hub.follow(), 1) == [("state", "all")]
+
+    to_the_end(run())
+
+
+def test_a_follower_whose_loop_is_gone_keeps_nobody_from_telling() -> None:
+    hub = Hub(lambda: "all")
+
+    async def run() -> None:
+        following = hub.follow()
+        await anext(following)
+        hub._followers = dict.fromkeys(hub._followers, closed)
+
+    closed = asyncio.new_event_loop()
+    closed.close()
+    to_the_end(run())
+    hub._followers[asyncio.Queue()] = closed
+    hub.tell("count", 1)

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -16,9 +18,9 @@ import lightcube as lc
 from lightcube.events import Progress, Said
 from lightcube.fabrication.resins import ConvertedCube
 from lightcube.studio import taking
-from lightcube.studio.away_cubes import CUBES
+from lightcube.studio.away_cubes import OF_CUBES
 from lightcube.studio.desk import Desk
-from lightcube.studio.offered import Order
+from lightcube.studio.offered import THINGS, Order
 from lightcube.studio.project import MADE
 from lightcube.viewer.label import Label
 from tests.helpers.made import a_cube
@@ -42,6 +44,19 @@ def finished(client: TestClient, name: str) -> dict[str, Any]:
     raise AssertionError(f"{name} does not end")
 
 
+def test_how_it_stands_is_told_without_what_makes_files(tmp_path: Path) -> None:
+    """That takes a third of a second to load, and the page's first paint waits for how all stands."""
+    asked = (
+        "import sys; from pathlib import Path; from tests.helpers.studios import opened; "
+        "assert opened(Path(sys.argv[1])).get('/api/state').json()['taking']['things']; "
+        "print([each for each in sys.modules if each in ('lightcube.studio.away', 'lightcube.drawing.films')])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", asked, str(tmp_path / "p")], capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "[]"
+
+
 def test_without_a_cube_nothing_is_made(client: TestClient) -> None:
     assert client.get("/api/taking").json()["has_cube"] is False
     refused = client.post("/api/taking/page", json={})
@@ -50,9 +65,9 @@ def test_without_a_cube_nothing_is_made(client: TestClient) -> None:
 
 @pytest.mark.parametrize("name", ["page", "sheet", "shell", "points", "volume", "schedule"])
 def test_what_is_made_says_what_it_is_worth(tmp_path: Path, name: str) -> None:
-    source, target = tmp_path / "cube.npz", tmp_path / f"thing.{CUBES[name].suffix}"
+    source, target = tmp_path / "cube.npz", tmp_path / f"thing.{THINGS['cubes'][name].suffix}"
     lc.save(a_cube((8, 8, 8)), source)
-    said = CUBES[name].make(Order(lc.load(source), source, target, Label("Sea"), False, lambda _: False))
+    said = OF_CUBES[name](Order(lc.load(source), source, target, Label("Sea"), False, lambda _: False))
     assert all(said)
     assert target.stat().st_size > 0
 
@@ -61,7 +76,7 @@ def test_slices_are_packed_whole_and_tell_of_every_step(tmp_path: Path) -> None:
     heard: list[Progress | Said] = []
     cube, target = a_cube((4, 5, 6)), tmp_path / "sea.zip"
     with pytest.warns(ConvertedCube):
-        CUBES["slices"].make(Order(cube, tmp_path, target, Label("Sea"), False, heard.append))
+        OF_CUBES["slices"](Order(cube, tmp_path, target, Label("Sea"), False, heard.append))
     with ZipFile(target) as packed:
         slices = [name for name in packed.namelist() if name.endswith(".png")]
     steps = [event.done / event.of for event in heard if isinstance(event, Progress)]

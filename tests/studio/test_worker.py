@@ -101,3 +101,34 @@ def test_whatever_goes_wrong_is_a_sentence(error: Exception, said: str, capfd: p
     assert said in why(error)
     assert "\n" not in why(error)
     assert ("fault" in said) == bool(capfd.readouterr().err)  # who mends it sees where
+
+
+def test_nobody_waits_for_a_process_that_is_busy() -> None:
+    """What is sent is taken at once, however much of it, while whoever would hear is kept waiting: no deadlock."""
+    listener = Listener(busy)
+    assert listener.begun.wait(60)
+    with listener.worker._lock:
+        for _ in range(50):
+            listener.worker.send(b"x" * 100_000)
+    listener.worker.send("stop")
+    assert listener.ended.wait(60)
+    assert [what for what, _ in listener.heard] == ["busy", *["answered"] * 51]
+
+
+def busy(pipe: Connection) -> None:
+    """Work that answers all it is told, at length."""
+    pipe.send(("busy", {}))
+    while True:
+        told = pipe.recv()
+        pipe.send(("answered", {"at length": b"x" * 100_000}))
+        if told == "stop":
+            return
+
+
+def test_a_process_that_cannot_be_started_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: Any) -> None:
+        raise OSError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr("multiprocessing.context.SpawnProcess.start", full)
+    with pytest.raises(InputError, match="the system starts no process for this"):
+        Listener(deaf)

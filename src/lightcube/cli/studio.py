@@ -1,5 +1,6 @@
 """The command `lightcube studio`."""
 
+import threading
 import webbrowser
 from pathlib import Path
 from typing import Annotated
@@ -27,9 +28,10 @@ def studio(
 
     def ready(address: str) -> None:
         typer.echo(address)  # as it is: it holds the key
-        err.print("the studio is open in your browser; Ctrl-C ends it, and nothing is lost")
-        if not no_browser:
-            webbrowser.open(address)
+        where = "open this address in a browser" if no_browser else "the studio opens in your browser"
+        err.print(f"{where}; Ctrl-C ends the studio, and nothing is lost")
+        if not no_browser:  # beside: some browsers are waited for until they are closed
+            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
 
     serve(folder, port, ready)
     err.print("the studio is closed; the same command opens it again where it was")

@@ -13,15 +13,14 @@ from fastapi import APIRouter, FastAPI, Header, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, Response
 from fastapi.sse import EventSourceResponse, ServerSentEvent
-from pydantic import BaseModel
+from pydantic import BaseModel, ConfigDict
 from starlette.exceptions import HTTPException
 
 from lightcube.errors import InputError, shown
-from lightcube.scene.description import sentence
 from lightcube.studio.desk import Desk
 from lightcube.studio.guard import LOOPBACK, Guard
 from lightcube.studio.kinds import described
-from lightcube.studio.project import MAKINGS, Project
+from lightcube.studio.project import MAKINGS, Project, Settings, said, updated
 
 #: The parts of the page in their order: name, title, and which door it stands behind.
 PARTS = (
@@ -39,6 +38,8 @@ _KINDS = {"html": "text/html", "css": "text/css", "js": "text/javascript", "svg"
 
 class _Change(BaseModel):
     """What is changed of the settings; what is not said stays."""
+
+    model_config = ConfigDict(extra="forbid")
 
     kind: str | None = None
     title: str | None = None
@@ -73,9 +74,7 @@ def make_app(project: Project, token: str, hosts: frozenset[str] = LOOPBACK) -> 
         if find_spec(f"lightcube.studio.{name}") is not None:
             app.include_router(import_module(f"lightcube.studio.{name}").router(desk))
     app.include_router(_pages())
-    app.exception_handler(InputError)(_refused)
-    app.exception_handler(RequestValidationError)(_invalid)
-    app.exception_handler(HTTPException)(_unknown)
+    speak(app)
     app.add_middleware(Guard, token=token, hosts=hosts)
     return app
 
@@ -97,17 +96,16 @@ def _own(desk: Desk) -> APIRouter:
     @router.patch("/settings")
     def settings(change: _Change) -> dict[str, Any]:
         """Change what is to be made, how, its title, or what a part keeps."""
-        asked = change.model_dump(exclude_unset=True)
+        asked = {name: getattr(change, name) for name in change.model_fields_set}
 
-        def changed(before: Any) -> Any:
+        def changed(before: Settings) -> Settings:
             update: dict[str, Any] = {name: asked[name] for name in ("kind", "title") if asked.get(name) is not None}
             for name in MAKINGS:
                 if asked.get(name) is not None:
-                    made = getattr(before, name)
-                    update[name] = type(made).model_construct(**(made.model_dump() | asked[name]))
+                    update[name] = getattr(before, name).model_dump() | asked[name]
             if asked.get("part") is not None:
                 update["parts"] = before.parts | {asked["part"]: asked.get("kept")}
-            return before.model_copy(update=update)
+            return updated(before, update)
 
         names = {name: sorted(value) if isinstance(value, dict) else name for name, value in asked.items()}
         return desk.change(changed, moving=f"{names} {change.part}")
@@ -172,18 +170,25 @@ def _file(package: str, path: str) -> Response:
     return Response(found.read_bytes(), media_type=kind, headers={"cache-control": "no-cache"})
 
 
+def speak(app: FastAPI) -> None:
+    """Let an application say in a sentence what it refuses."""
+    app.exception_handler(InputError)(_refused)
+    app.exception_handler(RequestValidationError)(_invalid)
+    app.exception_handler(HTTPException)(_unknown)
+
+
 async def _refused(_: Request, error: Exception) -> Response:
     return JSONResponse({"sentence": f"{error}"}, status_code=400)
 
 
 async def _invalid(_: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)  # noqa: S101 - for what else would this be called
-    found = error.errors()
-    said = sentence(found[0]) if found else "this cannot be read"
-    return JSONResponse({"sentence": shown(said)}, status_code=422)
+    return JSONResponse({"sentence": shown(said(error.errors()))}, status_code=422)
 
 
 async def _unknown(_: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)  # noqa: S101 - for what else would this be called
-    said = {404: "there is no such thing in this studio", 405: "this cannot be done here"}
-    return JSONResponse({"sentence": said.get(error.status_code, f"{error.detail}")}, status_code=error.status_code)
+    sentences = {404: "there is no such thing in this studio", 405: "this cannot be done here"}
+    return JSONResponse(
+        {"sentence": sentences.get(error.status_code, f"{error.detail}")}, status_code=error.status_code
+    )

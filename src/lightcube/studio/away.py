@@ -1,4 +1,4 @@
-"""What can be taken away of each kind of thing, and what makes its file and says how good it is.
+"""What makes the files of things that are taken away, and says how good they are.
 
 It is made in a process of its own, which `run` is the whole of.
 """
@@ -14,35 +14,30 @@ from typing import Any
 from lightcube import io
 from lightcube.events import Tell
 from lightcube.jobs.reading import load
-from lightcube.studio.away_cubes import CUBES, FILMS
-from lightcube.studio.away_solids import PLATES, SOLIDS
+from lightcube.studio.away_cubes import OF_CUBES, OF_FILMS
+from lightcube.studio.away_solids import OF_PLATES, OF_SOLIDS
 from lightcube.studio.makers import without_commands
-from lightcube.studio.offered import Order, Thing
+from lightcube.studio.offered import Maker, Order
 from lightcube.studio.worker import telling
 from lightcube.viewer.label import Label
 
-#: What is offered, in the page's order, and what reads the thing that it is made of.
-OFFERS: Mapping[str, tuple[Mapping[str, Thing[Any]], Callable[[str], Any]]] = {
-    "cubes": (CUBES, load),
-    "films": (FILMS, load),
-    "solids": (SOLIDS, io.read_shape),
-    "plates": (PLATES, io.read_relief),
+#: Who makes what `THINGS` offers, and what reads the thing that it is made of.
+MAKERS: Mapping[str, tuple[Mapping[str, Maker[Any]], Callable[[str], Any]]] = {
+    "cubes": (OF_CUBES, load),
+    "films": (OF_FILMS, load),
+    "solids": (OF_SOLIDS, io.read_shape),
+    "plates": (OF_PLATES, io.read_relief),
 }
-
-
-def things(offer: str) -> Mapping[str, Thing[Any]]:
-    """What can be taken away, by name."""
-    return OFFERS[offer][0]
 
 
 def make(
     offer: str, name: str, source: Path, target: Path, label: Label, tell: Tell, *, captions: bool
 ) -> Sequence[str]:
     """Make a thing's file of another one; returns what is to be said of it. `InputError` where it cannot be."""
-    offered, read = OFFERS[offer]
+    makers, read = MAKERS[offer]
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always", UserWarning)
-        said = offered[name].make(Order(read(str(source)), source, target, label, captions, tell))
+        said = makers[name](Order(read(str(source)), source, target, label, captions, tell))
     noticed = (f"{each.message}" for each in warned if issubclass(each.category, UserWarning))
     return without_commands([*said, *noticed])
 

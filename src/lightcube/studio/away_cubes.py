@@ -1,9 +1,9 @@
-"""What can be made of cubes and films to be taken away: tables from a name to what makes the file."""
+"""Makers of what is taken away of cubes and films: tables from a name of `THINGS` to what makes the file."""
 
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal
 from zipfile import ZipFile
@@ -21,13 +21,10 @@ from lightcube.io._places import place
 from lightcube.optics.cube import Cube
 from lightcube.optics.stack import Stack
 from lightcube.scoring.metrics import mark
-from lightcube.studio.offered import Order, Thing
+from lightcube.studio.offered import FILMS, Maker, Order
 from lightcube.verbs import drawing, exporting, reporting, scoring, viewing
 from lightcube.verbs.refitting import wanted_of
 from lightcube.viewer.page import page
-
-#: Films that a cube is made of where nothing is said.
-_FILMS = 5
 
 
 def of_pictures(cube: Cube) -> str:
@@ -50,7 +47,7 @@ def _page(order: Order[Cube]) -> list[str]:
     return [of_pictures(cube), exact, "it opens in any browser, without a network: mail it, or put it on a stick"]
 
 
-def _movie(shape: Literal["square", "portrait", "wide"] | None) -> Callable[[Order[Cube]], list[str]]:
+def _movie(shape: Literal["square", "portrait", "wide"] | None) -> Maker[Cube]:
     """A movie of the pictures in a shape, or of the room."""
 
     def make(order: Order[Cube]) -> list[str]:
@@ -108,7 +105,7 @@ def _itself(order: Order[Cube]) -> list[str]:
     return [of_pictures(order.thing), "all of it, bit for bit, for this program"]
 
 
-def _exported(kind: Kind, options: Mapping[str, Any] | None = None) -> Callable[[Order[Cube]], list[str]]:
+def _exported(kind: Kind, options: Mapping[str, Any] | None = None) -> Maker[Cube]:
     """A file for printers, lasers and other programs."""
 
     def make(order: Order[Cube]) -> list[str]:
@@ -119,7 +116,7 @@ def _exported(kind: Kind, options: Mapping[str, Any] | None = None) -> Callable[
 
 def _films(order: Order[Cube]) -> list[str]:
     """The cube solved anew as a few films, on pages to be printed."""
-    stack = order.thing if isinstance(order.thing.grid, Stack) else as_films(order.thing, _FILMS, tell=order.tell)
+    stack = order.thing if isinstance(order.thing.grid, Stack) else as_films(order.thing, FILMS, tell=order.tell)
     said = [] if stack is order.thing else exporting.said_of_films(stack)
     return [*said, *_export(order, stack, "film", {}, order.target)]
 
@@ -160,38 +157,32 @@ def _export(order: Order[Cube], cube: Cube, kind: Kind, options: Mapping[str, An
     return exporting.told(document)
 
 
-#: What can be taken away, in the page's order.
-CUBES: Mapping[str, Thing[Cube]] = {
-    "page": Thing(
-        "A page", "The cube to be turned by hand, in one file that opens in any browser.", "html", "show", _page
-    ),
-    "square": Thing("A square movie", "For messages and posts.", "mp4", "show", _movie("square")),
-    "portrait": Thing("An upright movie", "For telephones and stories.", "mp4", "show", _movie("portrait")),
-    "wide": Thing("A wide movie", "For screens and projectors.", "mp4", "show", _movie("wide")),
-    "room": Thing("A movie of the room", "Lamp, cube and walls, as the table turns.", "mp4", "show", _movie(None)),
-    "sheet": Thing("A sheet", "Each picture beside what was wanted.", "png", "know", _sheet),
-    "report": Thing("A report", "All that is known of the cube, to keep and to print.", "html", "know", _report),
-    "cube": Thing("The cube itself", "In one file, to go on with.", "zarr.zip", "know", _itself),
-    "films": Thing("Films", f"The cube as {_FILMS} printed transparencies, on pages.", "pdf", "make", _films),
-    "shell": Thing("Shells", "Surfaces around what is darkest, for a 3-D printer.", "3mf", "make", _exported("shell")),
-    "slices": Thing("Slices", "For a printer of coloured droplets (PolyJet).", "zip", "make", _slices),
-    "points": Thing("Points", "For a laser that marks glass inside.", "ply", "make", _exported("points")),
-    "blender": Thing("A volume for Blender", "OpenVDB, in metres.", "vdb", "make", _exported("volume", {"unit": "m"})),
-    "volume": Thing("A volume", "NRRD, for 3-D Slicer and others.", "nrrd", "make", _exported("volume")),
-    "paraview": Thing("A volume for ParaView", "VTI.", "vti", "make", _exported("volume")),
-    "schedule": Thing(
-        "A schedule", "When the table turns, and how bright lamps are.", "csv", "make", _exported("schedule")
-    ),
+#: Of cubes.
+OF_CUBES: Mapping[str, Maker[Cube]] = {
+    "page": _page,
+    "square": _movie("square"),
+    "portrait": _movie("portrait"),
+    "wide": _movie("wide"),
+    "room": _movie(None),
+    "sheet": _sheet,
+    "report": _report,
+    "cube": _itself,
+    "films": _films,
+    "shell": _exported("shell"),
+    "slices": _slices,
+    "points": _exported("points"),
+    "blender": _exported("volume", {"unit": "m"}),
+    "volume": _exported("volume"),
+    "paraview": _exported("volume"),
+    "schedule": _exported("schedule"),
 }
 #: Of films.
-FILMS: Mapping[str, Thing[Cube]] = {
-    "print": Thing("Films to print", "A PDF: each film true to size, with its marks.", "pdf", "make", _films),
-    "assembly": Thing("How they are put together", "Heights, gaps and lamps, as a drawing.", "svg", "make", _assembly),
-    "page": Thing(
-        "A page", "The films under their lamps, in one file that opens in any browser.", "html", "show", _page
-    ),
-    "room": Thing("A movie of the room", "Lamp after lamp over the films.", "mp4", "show", _movie(None)),
-    "sheet": CUBES["sheet"],
-    "report": Thing("A report", "All that is known of the films, to keep and to print.", "html", "know", _report),
-    "films": Thing("The films themselves", "In one file, to go on with.", "zarr.zip", "know", _itself),
+OF_FILMS: Mapping[str, Maker[Cube]] = {
+    "print": _films,
+    "assembly": _assembly,
+    "page": _page,
+    "room": _movie(None),
+    "sheet": _sheet,
+    "report": _report,
+    "films": _itself,
 }

@@ -1,4 +1,4 @@
-"""What can be made of solids and plates to be taken away: tables from a name to what makes the file."""
+"""Makers of what is taken away of solids and plates: tables from a name of `THINGS` to what makes the file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from lightcube.scoring.reliefs import score_relief
 from lightcube.solids.reach import count_pieces
 from lightcube.solids.relief import Relief
 from lightcube.solids.shape import Shape, as_cube
-from lightcube.studio.offered import Order, Thing
+from lightcube.studio import plates
+from lightcube.studio.offered import Maker, Order
 from lightcube.verbs import hull_words, hulls, reliefs, viewing
 from lightcube.viewer.page import relief_page
 
@@ -50,23 +51,21 @@ def _shape(order: Order[Shape]) -> list[str]:
     return ["all of it: its field, silhouettes, lamps and screens, for this program"]
 
 
-#: Of solids, in the page's order.
-SOLIDS: Mapping[str, Thing[Shape]] = {
-    "3mf": Thing("For a 3-D printer", "3MF, in mm, with a small picture of it.", "3mf", "make", _mesh),
-    "stl": Thing("For any 3-D printer", "STL, in mm; what every slicer reads.", "stl", "make", _mesh),
-    "obj": Thing("For other programs", "OBJ, in mm.", "obj", "make", _mesh),
-    "outlines": Thing("Outlines", "For cutters of paper and wood, in mm.", "svg", "make", _outlines),
-    "page": Thing(
-        "A page", "The solid between its walls, in one file that opens in any browser.", "html", "show", _page
-    ),
-    "shape": Thing("The solid itself", "In one file, to go on with.", "shape.zarr.zip", "know", _shape),
+#: Of solids.
+OF_SOLIDS: Mapping[str, Maker[Shape]] = {
+    "3mf": _mesh,
+    "stl": _mesh,
+    "obj": _mesh,
+    "outlines": _outlines,
+    "page": _page,
+    "shape": _shape,
 }
 
 
 def _plate(order: Order[Relief]) -> list[str]:
     """The plate as its suffix says: for a printer, as heights, or all of it."""
     io.Output(order.target, "relief", overwrite=True).write(order.thing)
-    return reliefs.told(order.thing, score_relief(order.thing, off=True))
+    return plates.told(order.thing, score_relief(order.thing, off=True))
 
 
 def _plates_page(order: Order[Relief]) -> list[str]:
@@ -80,7 +79,7 @@ def _sheet(order: Order[Relief]) -> list[str]:
     scores = score_relief(order.thing, off=True)
     drawn = relief_sheet(order.thing, scores, order.label.title)
     io.Output(order.target, "picture", overwrite=True).write(drawn)
-    return reliefs.told(order.thing, scores)
+    return plates.came_out(order.thing, scores)
 
 
 def _movie(order: Order[Relief]) -> list[str]:
@@ -104,14 +103,12 @@ def _scale(relief: Relief) -> int:
 
 
 #: Of plates.
-PLATES: Mapping[str, Thing[Relief]] = {
-    "3mf": Thing("For a 3-D printer", "3MF, in mm.", "3mf", "make", _plate),
-    "stl": Thing("For any 3-D printer", "STL, in mm; what every slicer reads.", "stl", "make", _plate),
-    "heights": Thing("Heights", "A grey picture, 16 bits, for milling and other programs.", "png", "make", _plate),
-    "page": Thing(
-        "A page", "The plate under its lamp, in one file that opens in any browser.", "html", "show", _plates_page
-    ),
-    "round": Thing("A movie of the lamp", "It goes round, and shows picture after picture.", "mp4", "show", _movie),
-    "sheet": Thing("A sheet", "What each lamp shows beside what was wanted.", "png", "know", _sheet),
-    "relief": Thing("The plate itself", "In one file, to go on with.", "relief.zarr.zip", "know", _plate),
+OF_PLATES: Mapping[str, Maker[Relief]] = {
+    "3mf": _plate,
+    "stl": _plate,
+    "heights": _plate,
+    "page": _plates_page,
+    "round": _movie,
+    "sheet": _sheet,
+    "relief": _plate,
 }

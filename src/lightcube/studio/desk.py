@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
+from lightcube.errors import InputError
 from lightcube.studio.project import Project, Settings
 from lightcube.studio.stream import Hub
 
@@ -22,9 +22,11 @@ class Desk:
     minding
         Called after every change of the settings.
     first_cube
-        Scene or voxels of a small cube, which can be turned before there is another one.
+        A small cube as the viewer takes it, in JSON, which can be turned before there is another one.
     starting, closing
         Called when the studio begins to be served, and when it ends.
+    trouble
+        What could not be done when it began, in a sentence; the studio is open all the same.
     """
 
     def __init__(self, project: Project) -> None:
@@ -34,14 +36,13 @@ class Desk:
         self.minding: list[Callable[[], None]] = []
         self.closing: list[Callable[[], None]] = []
         self.starting: list[Callable[[], None]] = []
-        self.first_cube: Callable[[str], bytes | None] = lambda _: None
-        self.is_started = False
-        self._lock = threading.Lock()
+        self.first_cube: Callable[[], bytes] = lambda: b""
+        self.is_started, self.trouble = False, ""
 
     def state(self) -> dict[str, Any]:
         """How all stands, as plain JSON."""
-        with self._lock:
-            return self.project.described() | {name: part() for name, part in self.parts.items()}
+        stands = self.project.described() | {name: part() for name, part in self.parts.items()}
+        return stands | {"trouble": self.trouble}
 
     def change(self, change: Callable[[Settings], Settings], moving: str = "") -> dict[str, Any]:
         """Change the settings, keep them, and tell everybody; as `Project.change`."""
@@ -51,16 +52,21 @@ class Desk:
     def start(self) -> None:
         """Begin what goes on by itself."""
         self.is_started = True
-        for start in self.starting:
-            start()
+        self.trouble = "; ".join(f"{error}" for error in _each(self.starting))
 
     def changed(self) -> dict[str, Any]:
-        """Tell everybody how the project stands now, and return it."""
-        for mind in self.minding:
-            mind()
-        state = self.state()
-        self.hub.tell("state", state)
+        """Tell everybody how the project stands now, and return it; then `InputError` where somebody could not mind."""
+        try:
+            self.mind()
+        finally:
+            state: dict[str, Any] = self.hub.tell_whole()
         return state
+
+    def mind(self) -> None:
+        """Have everybody mind how the project stands; then `InputError` where somebody could not."""
+        troubles = _each(self.minding)
+        if troubles:
+            raise troubles[0]
 
     def close(self) -> None:
         """End what goes on, and let go of the folder."""
@@ -68,3 +74,14 @@ class Desk:
         for close in self.closing:
             close()
         self.project.close()
+
+
+def _each(deeds: Iterable[Callable[[], None]]) -> list[InputError]:
+    """Do each of them, whatever becomes of the others; returns what could not be done."""
+    troubles = []
+    for do in deeds:
+        try:
+            do()
+        except InputError as error:
+            troubles.append(error)
+    return troubles

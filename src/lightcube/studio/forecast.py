@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from typing import Any
 
@@ -22,7 +23,7 @@ def router(desk: Desk) -> APIRouter:
     desk.starting += [forecast.begin, forecast.ask]
     desk.minding.append(forecast.ask)
     desk.closing.append(forecast.close)
-    desk.first_cube = forecast.part
+    desk.first_cube = forecast.thing
 
     @routes.get("/forecast")
     def told() -> dict[str, Any]:
@@ -43,7 +44,7 @@ class Forecast:
         self._desk, self._lock = desk, threading.RLock()
         self._worker: Worker | None = None
         self._number, self._asked, self._kind = 0, "", ""
-        self._parts: dict[str, bytes] = {}
+        self._thing = b""
         self._facts: dict[str, Any] = {"status": "none", "pictures": [], "notes": [], "cube": 0}
 
     def described(self) -> dict[str, Any]:
@@ -68,7 +69,7 @@ class Forecast:
             if len(pictures) < max(1, kind.counts(settings)[0]) or not all(file.is_file() for file in files):
                 self._asked = ""
                 self._number += 1
-                self._parts = {}
+                self._thing = b""
                 self._set(status="none", pictures=[], notes=[])
                 return
             question = forecaster.Asked(
@@ -86,7 +87,7 @@ class Forecast:
             if about == self._asked:
                 return
             if settings.kind != self._kind:
-                self._kind, self._parts = settings.kind, {}
+                self._kind, self._thing = settings.kind, b""
                 self._set(pictures=[], notes=[])
             self._asked = about
             self._number = question.number
@@ -96,10 +97,9 @@ class Forecast:
             assert self._worker is not None  # noqa: S101 - it has begun
             self._worker.send(question)
 
-    def part(self, name: str) -> bytes | None:
-        """Scene or voxels of the small cube, to be turned while there is none other."""
-        with self._lock:
-            return self._parts.get(name)
+    def thing(self) -> bytes:
+        """The small cube as the viewer takes it, to be turned while there is none other; nothing before."""
+        return self._thing
 
     def close(self) -> None:
         """End the process; nothing of it is needed."""
@@ -120,7 +120,7 @@ class Forecast:
         elif what == "ready" and self._facts["status"] == "compiling":
             self._set(status="looking" if self._asked else "none")
         elif what == "cube" and facts.pop("number") == self._number:
-            self._parts = facts
+            self._thing = json.dumps(facts).encode()
             self._facts["cube"] += 1
             self._desk.hub.tell("forecast", {"cube": self._facts["cube"]})
         elif what == "forecast" and facts["number"] == self._number:

@@ -21,10 +21,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightcube.errors import InputError
 from lightcube.studio.kept import linear, png
 from lightcube.studio.makers import without_commands
 from lightcube.studio.project import Crop
+from lightcube.studio.worker import why
 from lightcube.verbs.options import Options
 
 #: Voxels across and passes of the first look, and of cubes that lack a picture.
@@ -141,8 +141,10 @@ class Looking:
                 notes = without_commands(told.get("notes", ()))
                 self.pipe.send(("forecast", {"number": asked.number, **told, "notes": notes}))
                 self.give_way()
-        except InputError as error:
-            self.pipe.send(("forecast", {"number": asked.number, "stage": "failed", "sentence": f"{error}"}))
+        except _Newer:
+            raise
+        except Exception as error:  # whatever it is, the next question is answered
+            self.pipe.send(("forecast", {"number": asked.number, "stage": "failed", "sentence": why(error)}))
 
     def look(self, planned: Any, size: tuple[int, int] | None = None) -> tuple[Any, Any]:
         """Solve a small cube: from the one before, of a size and so many passes, or as predictions are fitted to."""
@@ -174,13 +176,11 @@ class Looking:
 
     def show(self, asked: Asked, cube: Any) -> None:
         """Tell the small cube itself, to be turned until there is a better one."""
-        from lightcube.viewer.description import zipped
-        from lightcube.viewer.page import parts_of
+        from lightcube.studio.viewed import viewed
 
         if self.pipe.poll(_PAUSE_S):
             raise _Newer
-        description, data = parts_of(cube, asked.title or "A first idea")
-        self.pipe.send(("cube", {"number": asked.number, "scene": zipped(description), "voxels": data}))
+        self.pipe.send(("cube", {"number": asked.number, **viewed(cube, asked.title or "A first idea")}))
 
 
 #: Tells more and more of what will come of a question.

@@ -92,7 +92,9 @@ def of_a_plate(looking: Looking, asked: Asked) -> Iterator[dict[str, Any]]:
     """A smaller plate, then the one that is asked for, made with a tenth of the care."""
     from lightcube.scoring.reliefs import score_relief
     from lightcube.solids.relief_making import relief
+    from lightcube.studio import plates
     from lightcube.verbs import reliefs
+    from lightcube.verbs.words import duration
 
     def tell(_: Progress | Said) -> None:
         looking.give_way()
@@ -104,7 +106,7 @@ def of_a_plate(looking: Looking, asked: Asked) -> Iterator[dict[str, Any]]:
     yield facts(asked, _of_plate(quick, score_relief(quick)), began, "first")
     made, seconds = reliefs.rehearsed(read, recipe, colour=is_colour, tell=tell)
     scores = score_relief(made, off=True)
-    notes = reliefs.foretold(reliefs.facts_of(made, scores, seconds))
+    notes = [*plates.foretold(made, scores), f"making it takes about {duration(seconds)}"]
     yield facts(asked, _of_plate(made, scores), began, "whole", notes)
     looking.show(asked, made)
 

@@ -5,11 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 import secrets
+from base64 import b64encode
 from collections.abc import Awaitable, Callable, MutableMapping
 from contextlib import suppress
-from http.cookies import CookieError, SimpleCookie
+from functools import cache
+from html import escape
+from importlib.resources import files
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
+
+from starlette.requests import cookie_parser
 
 Scope = MutableMapping[str, Any]
 Message = MutableMapping[str, Any]
@@ -23,6 +28,10 @@ LOOPBACK = frozenset({"127.0.0.1", "localhost", "::1"})
 MOST_FILE, MOST_TEXT = 300_000_000, 1_000_000
 #: Where files are sent to.
 _UPLOADS = "/api/uploads"
+#: What the names of cookies begin with that hold a studio's token.
+_OURS = "lightcube-"
+_NO_KEY = "open the address that the terminal shows: it holds the key to this studio"
+_OLD_KEY = "the studio was started again, and has another key now: open the address that the terminal shows"
 #: A header with the token, for programs.
 HEADER = "x-studio-token"
 _POLICY = (
@@ -46,7 +55,7 @@ def new_token() -> str:
 
 def cookie_of(token: str) -> str:
     """Name of the cookie that keeps a token: browsers send cookies of one port to all."""
-    return f"lightcube-{hashlib.sha256(token.encode()).hexdigest()[:12]}"
+    return f"{_OURS}{hashlib.sha256(token.encode()).hexdigest()[:12]}"
 
 
 class _TooMuch(Exception):  # noqa: N818 - it never leaves this module
@@ -78,14 +87,16 @@ class Guard:
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
         refused = self._refused(headers)
         if refused:
-            await _answer(send, 403, refused)
+            await _answer(send, 403, refused, headers)
             return
         asked = dict(parse_qsl(scope.get("query_string", b"").decode("latin-1")))
         if scope["path"] == "/" and self._is(asked.get("token", "")):
             await self._welcome(send)
             return
-        if not self._knows(headers):
-            await _answer(send, 403, "open the address that the terminal shows: it holds the key to this studio")
+        cookies = cookie_parser(headers.get("cookie", ""))
+        if not self._is(headers.get(HEADER, "")) and not self._is(cookies.get(self._cookie, "")):
+            had_one = any(name.startswith(_OURS) for name in cookies)
+            await _answer(send, 403, _OLD_KEY if had_one else _NO_KEY, headers)
             return
         await self._bounded(scope, headers, receive, send)
 
@@ -100,16 +111,6 @@ class Guard:
         if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
             return "another page asked for this: only the studio's own page may"
         return ""
-
-    def _knows(self, headers: dict[str, str]) -> bool:
-        """Whether a request brings the token."""
-        if self._is(headers.get(HEADER, "")):
-            return True
-        try:
-            found = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
-        except CookieError:
-            return False
-        return found is not None and self._is(found.value)
 
     def _is(self, given: str) -> bool:
         return secrets.compare_digest(given.encode("utf-8", "replace"), self._token.encode())
@@ -126,8 +127,8 @@ class Guard:
         most = MOST_FILE if scope["path"] == _UPLOADS else MOST_TEXT
         sentence = f"this is larger than {most / 1e6:g} MB, the most that is taken at once: make it smaller"
         length = headers.get("content-length", "0")
-        if length.isdigit() and int(length) > most:
-            await _answer(send, 413, sentence)
+        if length.isdecimal() and int(length) > most:
+            await _answer(send, 413, sentence, headers)
             return
         got, begun, over = 0, False, False
 
@@ -154,7 +155,7 @@ class Guard:
         with suppress(_TooMuch):
             await self._app(scope, counted, secured)
         if over and not begun:
-            await _answer(send, 413, sentence)
+            await _answer(send, 413, sentence, headers)
 
 
 def _secured() -> list[tuple[bytes, bytes]]:
@@ -169,8 +170,23 @@ def _name_of(address: str) -> str:
         return ""
 
 
-async def _answer(send: Send, status: int, sentence: str) -> None:
-    body = json.dumps({"sentence": sentence}).encode()
-    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode()), *_secured()]
+async def _answer(send: Send, status: int, sentence: str, asked: dict[str, str]) -> None:
+    """Refuse with a sentence: as a page where a person looks at it, as JSON where the page or a program asks."""
+    secured = dict(_secured())
+    if asked.get("sec-fetch-dest") == "document":
+        page, style = _locked()
+        body, kind = page.replace("{sentence}", escape(f"{sentence[0].upper()}{sentence[1:]}.")).encode(), b"text/html"
+        secured[b"content-security-policy"] = f"default-src 'none'; style-src '{style}'".encode()
+    else:
+        body, kind = json.dumps({"sentence": sentence}).encode(), b"application/json"
+    headers = [(b"content-type", kind), (b"content-length", str(len(body)).encode()), *secured.items()]
     await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})
+
+
+@cache
+def _locked() -> tuple[str, str]:
+    """The page of who may not come in, and what the content policy calls its style."""
+    page = files("lightcube.studio").joinpath("web", "locked.html").read_text("utf-8")
+    style = page.partition("<style>")[2].partition("</style>")[0]
+    return page, f"sha256-{b64encode(hashlib.sha256(style.encode()).digest()).decode()}"

@@ -26,15 +26,15 @@ from lightcube.optics.views import spread_angles
 from lightcube.projection.projector import Projector
 from lightcube.solids.reach import Reach, count_pieces, reach
 from lightcube.solids.repair import Repaired, Way, repair
-from lightcube.solids.shape import Shape, as_cube
+from lightcube.solids.shape import as_cube
 from lightcube.solids.silhouettes import FINE, Silhouettes
 from lightcube.solids.walls import WALLS, walls
 from lightcube.solvers import METHODS
 from lightcube.solvers.contract import Wanted
 from lightcube.studio.desk import Desk
+from lightcube.studio.makers import without_commands
+from lightcube.studio.viewed import viewed
 from lightcube.verbs import hull_words, hulls
-from lightcube.viewer.description import zipped
-from lightcube.viewer.page import contents
 
 #: Pixels along a side of the boxes to draw in, and mm of the block that they are the faces of.
 SIDE, _SIZE_MM = 24, 100.0
@@ -101,7 +101,7 @@ def solid(drawn: Drawn) -> dict[str, Any]:
         "cast": [_rows(np.where(_coarse(each), _FULL, _EMPTY)) for each in cast],
         "overlaps": repaired.overlaps.tolist(),
         "repaired": _done(repaired),
-        **_scene(repaired.shape),
+        **viewed(as_cube(repaired.shape), "Your solid"),
     }
 
 
@@ -117,7 +117,7 @@ def printable(drawn: Drawn, suffix: Literal["stl", "3mf"]) -> dict[str, Any]:
     return {
         "name": path.name,
         "data": base64.b64encode(data).decode(),
-        "said": [each for each in said if "lightcube " not in each],
+        "said": without_commands(said),
     }
 
 
@@ -177,12 +177,6 @@ def _done(repaired: Repaired) -> str:
     if repaired.way == "grow":
         return f"What was missing was added to the others. What is cast overlaps what you drew by {least} or more."
     return ""
-
-
-def _scene(shape: Shape) -> dict[str, str]:
-    """A solid as the viewer takes it."""
-    description, voxels = contents(as_cube(shape), "Your solid")
-    return {"scene": base64.b64encode(zipped(description)).decode(), "voxels": base64.b64encode(voxels).decode()}
 
 
 @lru_cache(maxsize=1)

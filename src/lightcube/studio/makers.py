@@ -56,6 +56,7 @@ def press(told: Told, deed: Deed, task: Task) -> None:
     from lightcube.scoring.reliefs import score_relief
     from lightcube.solids.relief_light import shown
     from lightcube.solids.relief_making import relief
+    from lightcube.studio import plates
 
     made = relief(reliefs.read([task.source]), recipe, colour=is_colour, tell=told.pass_on)
     told("said", sentence="looking at what its lamps show")
@@ -65,7 +66,7 @@ def press(told: Told, deed: Deed, task: Task) -> None:
     tell_wall(told, names, [to_uint8(picture) for picture in as_seen(made, shown(made))], recipe.side)
     tell_thing(told, made, task.title)
     pictures = [{"name": name, "psnr": None} for name in names]
-    told("done", pictures=pictures, psnr=None, said=without_commands(reliefs.told(made, scores)))
+    told("done", pictures=pictures, psnr=None, said=plates.told(made, scores))
 
 
 def names_of(made: Any) -> tuple[str, ...]:

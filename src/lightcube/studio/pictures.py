@@ -82,11 +82,19 @@ class Film(BaseModel):
 
 def router(desk: Desk) -> APIRouter:
     """What is asked of pictures."""
-    routes = APIRouter(prefix="/api")
     strip = Strip(desk)
     desk.parts["pictures"] = strip.described
     desk.minding.append(strip.write)
     desk.starting += [strip.write, strip.tidy]
+    routes = APIRouter(prefix="/api")
+    routes.include_router(_taking_in(desk, strip))
+    routes.include_router(_changing(desk, strip))
+    return routes
+
+
+def _taking_in(desk: Desk, strip: Strip) -> APIRouter:
+    """How pictures come in."""
+    routes = APIRouter()
 
     @routes.post("/uploads")
     async def upload(
@@ -98,7 +106,7 @@ def router(desk: Desk) -> APIRouter:
         strip.room()
         with _incoming(desk.project, name) as file:
             try:
-                with system_errors(file, "writing"), file.open("wb") as opened:
+                with system_errors(desk.project.folder / _file_name(name), "writing"), file.open("wb") as opened:
                     async for chunk in request.stream():
                         opened.write(chunk)
             except ClientDisconnect:
@@ -109,6 +117,13 @@ def router(desk: Desk) -> APIRouter:
     def sample(name: Literal["photographs", "letters", "ball"]) -> dict[str, Any]:
         """Add pictures to try things with."""
         return strip.add([(to_uint8(image), title) for image, title in SAMPLES[name].make()])
+
+    return routes
+
+
+def _changing(desk: Desk, strip: Strip) -> APIRouter:
+    """What is done to those that are there."""
+    routes = APIRouter()
 
     @routes.patch("/pictures/{key}")
     def edit(key: _Key, change: _Edit) -> dict[str, Any]:
@@ -173,7 +188,7 @@ class Strip:
                 found = io.read_pictures(file, least=1, **part)
             except InputError as error:
                 raise InputError(_by_name(f"{error}", file, name)) from None
-        title = PurePath(name.replace("\\", "/")).stem
+        title = PurePath(_file_name(name)).stem
         several = len(found) > 1
         kept = [
             (to_uint8(smaller(image)), f"{title} {number}" if several else title)
@@ -225,17 +240,18 @@ class Strip:
         project = self._desk.project
         with self._lock:
             wanted = {f"{number:04d}.png": each for number, each in enumerate(used(project.settings), 1)}
+            there = _names_in(project)
             for name, picture in wanted.items():
                 file = dropped(project, picture.key)
-                if self._written.get(name) != picture and file.is_file():
+                if (self._written.get(name) != picture or name not in there) and file.is_file():
                     project.write(_cropped(file, picture.crop), PICTURES, name)
                     self._written[name] = picture
-            for stale in (set(self._written) | _names_in(project)) - set(wanted):
+            for stale in there - {*wanted, VIEWS_FILE}:
                 with suppress(OSError):
                     project.path(PICTURES, stale).unlink()
                 self._written.pop(stale, None)
             names = views_text(None, [picture.name for picture in wanted.values()]).encode()
-            if names != self._names:
+            if names != self._names or VIEWS_FILE not in there:
                 project.write(names, PICTURES, VIEWS_FILE)
                 self._names = names
 
@@ -244,9 +260,8 @@ class Strip:
         project = self._desk.project
         needed, since = project.keys, time.time() - older_s
         for file in project.path(DROPPED).iterdir():
-            is_needed = file.stem in needed or not (_OWN.fullmatch(file.name) or file.name.startswith("."))
             with suppress(OSError):
-                if not is_needed and file.stat().st_mtime <= since:
+                if _OWN.fullmatch(file.name) and file.stem not in needed and file.stat().st_mtime <= since:
                     file.unlink()
         for folder in project.folder.glob(f"{_INCOMING}*"):
             with suppress(OSError):
@@ -255,21 +270,22 @@ class Strip:
 
 
 def _names_in(project: Project) -> set[str]:
-    """Names of the pictures that were written before."""
+    """Names of what was written before for the command."""
     with system_errors(project.path(PICTURES), "reading"):
-        return {each.name for each in project.path(PICTURES).iterdir() if each.suffix == ".png"}
+        return {
+            each.name for each in project.path(PICTURES).iterdir() if each.suffix == ".png" or each.name == VIEWS_FILE
+        }
 
 
 def _cropped(file: Path, crop: Crop) -> bytes:
     """What is taken of a picture, as a PNG."""
     with system_errors(file, "reading"):
-        data = file.read_bytes()
-    if crop == Crop():
-        return data
-    stream = BytesIO()
-    with Image.open(BytesIO(data)) as image:
-        image.crop(box(crop, image.size)).save(stream, "png", compress_level=3)
-    return stream.getvalue()
+        if crop == Crop():
+            return file.read_bytes()
+        stream = BytesIO()
+        with Image.open(file) as image:
+            image.crop(box(crop, image.size)).save(stream, "png", compress_level=3)
+        return stream.getvalue()
 
 
 @lru_cache(maxsize=256)
@@ -285,13 +301,18 @@ def _small(file: Path) -> bytes:
 @contextmanager
 def _incoming(project: Project, name: str) -> Iterator[Path]:
     """A file for what is being sent, which goes away; its suffix says what it is."""
-    suffix = PurePath(name.replace("\\", "/")).suffix.lower()
+    suffix = PurePath(_file_name(name)).suffix.lower()
     if not suffix.isascii() or not suffix[1:].isalnum() or len(suffix) > 6 or not is_pictures(Path(f"x{suffix}")):
         raise InputError(f"{shown(name)} is no picture, animation or video that is known here: drop another file")
     with system_errors(project.folder, "writing"):
         made = tempfile.TemporaryDirectory(prefix=_INCOMING, dir=project.folder)
     with made as folder:
         yield Path(folder) / f"file{suffix}"
+
+
+def _file_name(name: str) -> str:
+    """The last part of a name that a browser tells, whatever system it is on."""
+    return PurePath(name.replace("\\", "/")).name
 
 
 def _by_name(said: str, file: Path, name: str) -> str:

@@ -8,7 +8,8 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -31,7 +32,11 @@ else:
 FORMAT = 1
 #: Changes that can be undone; seconds within which one thing that is changed again and again, as by a slider, is one.
 _MOST_STEPS, _ONE_MOVE_S = 200, 1.5
+#: How deeply tables of other parts stand in each other, and so many letters of them, at most.
+_DEEPEST, _MOST_LETTERS = 12, 100_000
 _FILE, _HISTORY, _LOCK = "project.toml", "history.json", ".studio.lock"
+#: What a file is called before it is whole.
+_HALF = ".half-written"
 #: Folders: what was dropped, what is solved for, and what was made.
 DROPPED, PICTURES, MADE = "dropped", "pictures", "made"
 
@@ -85,7 +90,7 @@ class Settings(Strict):
     def _each_once(self) -> Settings:
         if len({picture.key for picture in self.pictures}) < len(self.pictures):
             raise ValueError("a picture stands in the strip twice")
-        if len(json.dumps(self.parts, allow_nan=False)) > 100_000:
+        if _is_deeper(self.parts, _DEEPEST) or len(json.dumps(self.parts, allow_nan=False)) > _MOST_LETTERS:
             raise ValueError("more is said of the other parts than is kept")
         return self
 
@@ -100,6 +105,19 @@ class _Step:
     @classmethod
     def of(cls, settings: Settings) -> _Step:
         return cls(settings, json.dumps(settings.model_dump(mode="json")))
+
+
+@dataclass(frozen=True)
+class _History:
+    """All settings that one can come back to, and which of them count: one value, as other threads read it any time."""
+
+    steps: tuple[_Step, ...]
+    at: int
+
+    @property
+    def now(self) -> Settings:
+        """The settings that count."""
+        return self.steps[self.at].settings
 
 
 class Project:
@@ -127,7 +145,8 @@ class Project:
             for name in (DROPPED, PICTURES, MADE):
                 with system_errors(self.folder / name, "writing"):
                     (self.folder / name).mkdir(exist_ok=True)
-            self._steps, self._at = self._read()
+            self._tidy()
+            self._history = self._read()
         except BaseException:
             self.close()
             raise
@@ -141,13 +160,12 @@ class Project:
     @property
     def settings(self) -> Settings:
         """How it stands now."""
-        return self._steps[self._at].settings
+        return self._history.now
 
     @property
     def keys(self) -> frozenset[str]:
         """The pictures of all settings that one can come back to."""
-        with self._lock:
-            return frozenset(picture.key for step in self._steps for picture in step.settings.pictures)
+        return frozenset(picture.key for step in self._history.steps for picture in step.settings.pictures)
 
     def change(self, change: Callable[[Settings], Settings], moving: str = "") -> Settings:
         """Change the settings and keep them; `InputError` where they cannot be, or not be written.
@@ -156,15 +174,13 @@ class Project:
         """
         with self._lock:
             before = self.settings
-            after = _checked(change(before))
+            after = updated(change(before), {})
             if after == before:
                 return before
-            begun = self._steps[: self._at + 1]
-            if self._is_moving(moving):
-                begun.pop()
+            begun = self._history.steps[: self._history.at + 1 - self._is_moving(moving)]
             is_back = after == begun[-1].settings
-            steps = begun if is_back else [*begun, _Step.of(after)][-_MOST_STEPS:]
-            self._keep(steps, len(steps) - 1)
+            steps = begun if is_back else (*begun, _Step.of(after))[-_MOST_STEPS:]
+            self._keep(_History(steps, len(steps) - 1))
             self._moved = "" if is_back else moving, time.monotonic()
             return after
 
@@ -176,21 +192,22 @@ class Project:
     def step(self, way: Literal[-1, 1]) -> Settings:
         """Undo a change, or do it again; `InputError` where there is none."""
         with self._lock:
-            if not 0 <= self._at + way < len(self._steps):
+            steps, at = self._history.steps, self._history.at + way
+            if not 0 <= at < len(steps):
                 raise InputError("there is nothing to undo" if way < 0 else "there is nothing to do again")
-            self._keep(self._steps, self._at + way)
+            self._keep(_History(steps, at))
             self._moved = ("", -math.inf)
             return self.settings
 
     def described(self) -> dict[str, Any]:
         """Settings and what can be done, as plain JSON."""
-        with self._lock:
-            return {
-                "folder": str(self.folder),
-                "settings": self.settings.model_dump(mode="json"),
-                "can_undo": self._at > 0,
-                "can_redo": self._at + 1 < len(self._steps),
-            }
+        history = self._history
+        return {
+            "folder": str(self.folder),
+            "settings": history.now.model_dump(mode="json"),
+            "can_undo": history.at > 0,
+            "can_redo": history.at + 1 < len(history.steps),
+        }
 
     def path(self, *parts: str) -> Path:
         """A path in the folder; `InputError` where it would lead out of it."""
@@ -201,58 +218,87 @@ class Project:
             raise InputError("this leads out of the project's folder: only what is in it is read and written")
         return found
 
-    def write(self, data: bytes, *parts: str, is_vital: bool = True) -> Path:
-        """Write a file of the folder, whole or not at all; what is not vital may be lost when the power is."""
+    def write(self, data: bytes, *parts: str) -> None:
+        """Write a file of the folder, whole or not at all."""
+        with self._written(data, *parts):
+            pass
+
+    @contextmanager
+    def _written(self, data: bytes, *parts: str, is_vital: bool = True) -> Iterator[None]:
+        """Write a file beside its place, which it takes after what is done inside.
+
+        What is not vital may be lost when the power is.
+        """
         target = self.path(*parts)
-        begun = target.with_name(f".{target.name}.{threading.get_ident()}")
-        with system_errors(target, "writing"):
-            try:
-                with begun.open("wb") as opened:
-                    opened.write(data)
-                    if is_vital:
-                        opened.flush()
-                        os.fsync(opened.fileno())
+        begun = target.with_name(f".{target.name}.{threading.get_ident()}{_HALF}")
+        try:
+            with system_errors(target, "writing"), begun.open("wb") as opened:
+                opened.write(data)
+                if is_vital:
+                    opened.flush()
+                    os.fsync(opened.fileno())
+            yield
+            with system_errors(target, "writing"):
                 begun.replace(target)
-            finally:
+        finally:
+            with suppress(OSError):
                 begun.unlink(missing_ok=True)
-        return target
 
-    def _keep(self, steps: list[_Step], at: int) -> None:
-        """Write settings and history, and only then believe them."""
-        self.write(toml_text(steps[at].settings).encode(), _FILE)
-        texts = ", ".join(step.text for step in steps)
-        history = f'{{"format": {FORMAT}, "at": {at}, "steps": [{texts}]}}'
-        self.write(history.encode(), _HISTORY, is_vital=False)
-        self._steps, self._at = steps, at
+    def _keep(self, history: _History) -> None:
+        """Write settings and history, both or none, and only then believe them."""
+        texts = ", ".join(step.text for step in history.steps)
+        text = f'{{"format": {FORMAT}, "at": {history.at}, "steps": [{texts}]}}'
+        with self._written(text.encode(), _HISTORY, is_vital=False):
+            self.write(toml_text(history.now).encode(), _FILE)
+        self._history = history
 
-    def _read(self) -> tuple[list[_Step], int]:
+    def _tidy(self) -> None:
+        """Remove what a studio that was killed had half written."""
+        for folder in (self.folder, *(self.folder / name for name in (DROPPED, PICTURES, MADE))):
+            for begun in folder.glob(f".*{_HALF}"):
+                with suppress(OSError):
+                    begun.unlink()
+
+    def _read(self) -> _History:
         """What was kept; the settings count, and a history that ends elsewhere is none."""
         file = self.path(_FILE)
         if not file.exists():
             self.write(toml_text(Settings()).encode(), _FILE)
-            return [_Step.of(Settings())], 0
+            return _History((_Step.of(Settings()),), 0)
         settings = _of_tables(read_tables(file, str(file)), str(file))
         try:
             history = json.loads(self.path(_HISTORY).read_bytes())
-            steps, at = [_Step.of(Settings.model_validate(step)) for step in history["steps"]], int(history["at"])
-            if 0 <= at < len(steps) and steps[at].settings == settings:
-                return steps, at
+            steps = tuple(_Step.of(Settings.model_validate(step)) for step in history["steps"])
+            found = _History(steps, int(history["at"]))
+            if 0 <= found.at < len(steps) and found.now == settings:
+                return found
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass  # it was not written yet, or is damaged: what was changed can then not be undone
-        return [_Step.of(settings)], 0
+        return _History((_Step.of(settings),), 0)
 
 
-def _checked(settings: Settings) -> Settings:
-    """The same settings, every field looked at again; `InputError` says which cannot be."""
+def updated(settings: Settings, update: dict[str, Any]) -> Settings:
+    """Settings of which some fields are others, every one looked at again; `InputError` says which cannot be."""
     try:
-        return Settings.model_validate(settings.model_dump(warnings=False))
+        return Settings.model_validate(settings.model_dump(warnings=False) | update)
     except ValidationError as error:
-        raise InputError(said(error)) from error
+        raise InputError(said(error.errors())) from error
 
 
-def said(error: ValidationError) -> str:
+def _is_deeper(value: Any, most: int) -> bool:
+    """Whether lists and tables stand in each other more deeply than so."""
+    inside = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return most < 0 or any(_is_deeper(each, most - 1) for each in inside)
+
+
+def said(problems: Sequence[Any]) -> str:
     """The first of what pydantic found wrong, as a sentence."""
-    return sentence(error.errors(include_url=False)[0])
+    if not problems:
+        return "this cannot be read"
+    problem = problems[0]
+    if problem["type"] == "value_error":  # it is a sentence already
+        return f"{problem['ctx']['error']}"
+    return sentence(problem | {"loc": [each for each in problem["loc"] if each not in ("body", "query")]})
 
 
 def _of_tables(tables: dict[str, Any], called: str) -> Settings:
@@ -266,7 +312,9 @@ def _of_tables(tables: dict[str, Any], called: str) -> Settings:
         tables["parts"] = json.loads(tables.get("parts", "{}"))
         return Settings.model_validate(tables)
     except ValidationError as error:
-        raise InputError(f"{called} is damaged: {said(error)}; mend it, or move it away to begin anew") from error
+        raise InputError(
+            f"{called} is damaged: {said(error.errors())}; mend it, or move it away to begin anew"
+        ) from error
     except (ValueError, TypeError, RecursionError) as error:
         raise InputError(f"{called} is damaged in its parts: mend it, or move it away to begin anew") from error
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from lightcube.errors import InputError, shown
 from lightcube.io._files import system_errors
@@ -64,6 +64,19 @@ class Room(Strict):
     stops_deg: Annotated[
         list[Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)]], Field(min_length=1, max_length=24)
     ]
+
+    @model_validator(mode="after")
+    def _hangs_together(self) -> Room:
+        lamps = {lamp.name for lamp in self.lamps}
+        for screen in self.screens:
+            if screen.lamp not in lamps:
+                raise InputError(
+                    f"screen {screen.name!r} is lit by {screen.lamp!r}, and there is no such lamp: choose one"
+                )
+        for lamp in self.lamps:
+            if lamp.far and math.hypot(lamp.x, lamp.y, lamp.z) < _ASIDE_MM:
+                raise InputError(f"lamp {lamp.name!r} stands in the cube's middle: move it out")
+        return self
 
 
 def router(desk: Desk) -> APIRouter:
@@ -136,10 +149,6 @@ def checked(room: Room) -> dict[str, Any]:
 def stage_of(room: Room, voxels: int = _VOXELS) -> Stage:
     """A room as a stage; `InputError` where it is none."""
     grid = Grid((voxels, voxels, voxels), _SIZE_MM / voxels)
-    lamps = {lamp.name for lamp in room.lamps}
-    for screen in room.screens:
-        if screen.lamp not in lamps:
-            raise InputError(f"screen {screen.name!r} is lit by {screen.lamp!r}, and there is no such lamp: choose one")
     return Stage(
         grid,
         tuple(_lamp(each) for each in room.lamps),
@@ -166,8 +175,6 @@ def _lamp(lamp: RoomLamp) -> Lamp:
     place = (lamp.x, lamp.y, lamp.z)
     if not lamp.far:
         return Lamp(lamp.name, position_mm=place)
-    if math.hypot(*place) < _ASIDE_MM:
-        raise InputError(f"lamp {lamp.name!r} stands in the cube's middle: move it out")
     return Lamp(lamp.name, direction=_from(place))
 
 

@@ -57,11 +57,9 @@ def tell_wall(told: Told, names: Iterable[str], shown: Iterable[Any], fine: int)
 
 def tell_thing(told: Told, thing: Any, title: str) -> None:
     """Tell a thing as the viewer takes it."""
-    from lightcube.viewer.description import zipped
-    from lightcube.viewer.page import parts_of
+    from lightcube.studio.viewed import viewed
 
-    description, data = parts_of(thing, title)
-    told("cube", scene=zipped(description), voxels=data)
+    told("cube", **viewed(thing, title))
 
 
 def solve(told: Told, deed: Deed, task: Task) -> None:

@@ -1,15 +1,21 @@
-"""Making things in the studio: in a process of its own, paused, kept and gone on with, also after a kill."""
+"""Making things in the studio: in a process of its own, paused, kept and gone on with, also after a kill.
+
+One thing is made at a time: what a project is not to become any more rests, and goes on when it is chosen again.
+"""
 
 from __future__ import annotations
 
 import json
 import threading
+import time
+from pathlib import Path
 from typing import Any, Literal
 
 from fastapi import APIRouter
 from fastapi.responses import Response
 
 from lightcube.errors import InputError
+from lightcube.io._files import system_errors
 from lightcube.jobs.partial import discard_partial, is_partial, partial_path
 from lightcube.studio import solver
 from lightcube.studio.desk import Desk
@@ -17,7 +23,7 @@ from lightcube.studio.kinds import KINDS, check_there, command_of, made_of, used
 from lightcube.studio.project import MADE, KindName, Settings
 from lightcube.studio.worker import Worker
 
-Status = Literal["idle", "running", "stopping", "paused", "done", "kept", "failed"]
+Status = Literal["idle", "running", "stopping", "resting", "paused", "done", "kept", "failed"]
 #: What can be done in which state.
 _MAY: dict[str, frozenset[Status]] = {
     "start": frozenset({"idle", "paused", "done", "kept", "failed"}),
@@ -25,7 +31,7 @@ _MAY: dict[str, frozenset[Status]] = {
     "pause": frozenset({"running"}),
     "resume": frozenset({"paused", "kept", "failed"}),
     "keep": frozenset({"running", "paused", "failed"}),
-    "discard": frozenset({"paused", "kept", "failed"}),
+    "discard": frozenset({"paused", "failed"}),
 }
 #: What only can be done where there is something to go on with, and where there is nothing.
 _GOING_ON, _AT_ONCE = frozenset({"pause", "resume", "keep", "discard"}), frozenset({"stop"})
@@ -33,6 +39,8 @@ _GOING_ON, _AT_ONCE = frozenset({"pause", "resume", "keep", "discard"}), frozens
 _GRACE_S = 8.0
 #: Points of the curve that are told.
 _CURVE = 240
+#: Seconds between two tellings of how far it is, at least.
+_BETWEEN_S = 0.1
 
 
 def router(desk: Desk) -> APIRouter:
@@ -44,13 +52,17 @@ def router(desk: Desk) -> APIRouter:
         return every[desk.project.settings.kind]
 
     desk.parts["solving"] = lambda: now().described()
+    desk.parts["resting"] = lambda: [name for name, solving in every.items() if solving.status == "resting"]
     for solving in every.values():
         desk.starting.append(solving.go_on)
+        desk.minding.append(solving.mind)
         desk.closing.append(solving.close)
 
     @routes.post("/solving/{deed}")
     def do(deed: Literal["start", "stop", "pause", "resume", "keep", "discard"]) -> dict[str, Any]:
         """Start, stop, pause, go on, stop and keep what is there, or throw what is unfinished away."""
+        if deed == "start":
+            desk.mind()  # what vanished from the folder since the last change is written again
         return now().do(deed)
 
     @routes.get("/solving")
@@ -58,13 +70,11 @@ def router(desk: Desk) -> APIRouter:
         """How the making stands, with what the wall shows now and the curve of how it went."""
         return now().described() | {"wall": now().wall, "curve": now().curve}
 
-    @routes.get("/cube/{part}", response_class=Response)
-    def cube(part: Literal["scene", "voxels"]) -> Response:
-        """The newest thing that there is, as the viewer reads it: its scene or its voxels, gzipped; nothing before."""
-        data = now().part(part)
-        if data is None:
-            return Response(status_code=204)
-        return Response(data, media_type="application/octet-stream")
+    @routes.get("/cube", response_class=Response)
+    def cube() -> Response:
+        """The newest thing that there is, as the viewer reads it; nothing before."""
+        thing = now().thing()
+        return Response(thing, media_type="application/json") if thing else Response(status_code=204)
 
     return routes
 
@@ -76,12 +86,12 @@ class Solving:
         self._desk, self._lock, self._name, self._kind = desk, threading.RLock(), name, KINDS[name]
         self._worker: Worker | None = None
         self._after = ""
-        self._parts: dict[str, bytes] = {}
+        self._thing, self._told_at = b"", 0.0
         self.wall: dict[str, Any] = {"pictures": [], "voxels": 0}
         self.curve: list[list[float]] = []
-        self._before: tuple[dict[str, Any], dict[str, Any]] = {}, self.wall
         self._out = str(desk.project.folder / MADE / self._kind.file)
         self._facts: dict[str, Any] = {"status": "idle", "version": 0, "pictures": [], "made_of": "", **_nothing()}
+        self._before = dict(self._facts), self.wall
         self._facts |= self._remembered()
 
     def described(self) -> dict[str, Any]:
@@ -89,7 +99,7 @@ class Solving:
         with self._lock:
             settings = self._settings
             not_here = _AT_ONCE if self._kind.can_pause else _GOING_ON
-            can = {deed for deed, states in _MAY.items() if self._facts["status"] in states}
+            can = {deed for deed, states in _MAY.items() if self.status in states}
             return {
                 **{name: value for name, value in self._facts.items() if name != "made_of"},
                 "kind": self._name,
@@ -97,6 +107,17 @@ class Solving:
                 "changed": self._has_changed(),
                 "command": command_of(self._desk.project.folder, settings) if used(settings) else "",
             }
+
+    @property
+    def status(self) -> Status:
+        """How it stands, in a word."""
+        status: Status = self._facts["status"]
+        return status
+
+    @property
+    def _is_chosen(self) -> bool:
+        """Whether the project is to become this."""
+        return self._desk.project.settings.kind == self._name
 
     @property
     def _settings(self) -> Settings:
@@ -107,17 +128,18 @@ class Solving:
         """Do what is asked; `InputError` where it cannot be done now."""
         with self._lock:
             if deed not in self.described()["can"]:
-                stands = f"{self._kind.called} {self._kind.are} {_SAID[self._facts['status']]}"
+                stands = f"{self._kind.called} {self._kind.are} {_SAID[self.status]}"
                 raise InputError(f"{stands}: {deed} is for another moment")
             if deed == "start":
                 check_there(self._desk.project)
                 self._begin("start")
             elif deed == "resume":
-                self._begin("resume" if self._is_begun() else "start")
+                self._resume()
             elif deed == "discard":
-                discard_partial(self._out)
-                self._set(status="idle", **_nothing())
-            elif self._worker is None or self._facts["status"] != "running":
+                if is_partial(partial_path(self._out)):
+                    discard_partial(self._out)
+                self._restore()
+            elif self._worker is None or self.status != "running":
                 self._begin("keep")
             else:
                 self._after = deed
@@ -125,25 +147,35 @@ class Solving:
                 self._worker.stop()
             return self.described()
 
+    def mind(self) -> None:
+        """Rest where the project is to become something else, and go on where it is to become this again."""
+        with self._lock:
+            if self.status == "running" and not self._is_chosen:
+                assert self._worker is not None  # noqa: S101 - it runs
+                self._set(status="resting")
+                self._worker.stop()
+            elif self.status == "resting" and self._is_chosen and self._worker is None:
+                self._resume()
+
     def go_on(self) -> None:
         """Go on with what ran when the studio was ended or killed."""
         with self._lock:
-            if self._facts["status"] in ("running", "stopping"):
+            if self.status == "running":
+                self._facts["status"] = "resting"
+            elif self.status == "stopping":
                 self._facts["status"] = "paused" if self._kind.can_pause else "idle"
-                if self._is_begun():
-                    self._begin("resume")
-                elif not self._kind.can_pause and self._desk.project.settings.kind == self._name:
-                    self._begin("start")
+        self.mind()
 
-    def part(self, name: str) -> bytes | None:
-        """Scene or voxels of the newest cube; None where there is none."""
+    def thing(self) -> bytes:
+        """The newest thing as the viewer takes it; nothing where there is none."""
         with self._lock:
-            if name in self._parts:
-                return self._parts[name]
-            is_newest = self._facts["status"] != "running"
-        file = self._desk.project.path(MADE, f"{self._kind.stem}.{name}.gz")
-        first = None if is_newest and file.is_file() else self._desk.first_cube(name)
-        return file.read_bytes() if first is None and file.is_file() else first
+            if self._thing:
+                return self._thing
+            is_newest = self.status != "running"
+        file = self._viewed()
+        with system_errors(file, "reading"):
+            kept = file.read_bytes() if file.is_file() else b""
+        return kept if is_newest and kept else self._desk.first_cube() or kept
 
     def close(self) -> None:
         """End the process; what it has reached is kept, and gone on with when the studio starts again."""
@@ -158,12 +190,27 @@ class Solving:
         task = solver.Task(source, self._out, self._kind.how(settings), self._kind.called_in(settings))
         if self._worker is not None:  # it has told its last already, and is about to end
             self._worker.close()
-        self._worker = Worker(self._lock, solver.run, (self._kind.make, deed, task), self._heard, self._ended)
+        try:
+            self._worker = Worker(self._lock, solver.run, (self._kind.make, deed, task), self._heard, self._ended)
+        except InputError as error:
+            self._set(status="failed", sentence=f"{error}")
+            return
         if deed == "start":
-            self._before = dict(self._facts), self.wall
-            self.curve, self.wall, self._parts = [], {"pictures": [], "voxels": 0}, {}
+            if self.status != "resting":
+                self._before = dict(self._facts), self.wall
+            self.curve, self.wall, self._thing = [], {"pictures": [], "voxels": 0}, b""
             self._facts |= _nothing() | {"made_of": made_of(settings), "pictures": [], "said": []}
         self._set(status="stopping" if deed == "keep" else "running", sentence="")
+
+    def _resume(self) -> None:
+        """Go on with what there is of it, or begin anew where there is nothing."""
+        self._begin("resume" if self._is_begun() else "start")
+
+    def _restore(self) -> None:
+        """Let it stand as it did before it was begun."""
+        before, self.wall = self._before
+        self._thing = b""
+        self._set(**before)
 
     def _heard(self, what: str, facts: dict[str, Any]) -> None:
         """Take up one thing that was told."""
@@ -171,14 +218,16 @@ class Solving:
             self.wall = facts
             self._tell({"wall": facts})
         elif what == "cube":
-            self._parts = facts
+            self._thing = json.dumps(facts).encode()
             self._set(version=self._facts["version"] + 1)
         elif what == "progress":
             if facts["psnr"] is not None:
                 self.curve.append([facts["done"] / max(facts["of"], 1), round(facts["psnr"], 2)])
                 self.curve = self.curve if len(self.curve) <= _CURVE else self.curve[::2]
             psnr = self._facts["psnr"] if facts["psnr"] is None else facts["psnr"]
-            self._set(**facts | {"psnr": psnr, "sentence": ""})
+            self._facts |= facts | {"psnr": psnr, "sentence": ""}
+            if time.monotonic() - self._told_at > _BETWEEN_S:
+                self._tell(self.described())
         elif what == "said":
             self._set(sentence=facts["sentence"])
         elif what in ("done", "kept"):
@@ -189,8 +238,7 @@ class Solving:
     def _kept_for_later(self) -> str:
         """Keep what is turned for when the studio is started again; says why where it cannot be."""
         try:
-            for name, data in self._parts.items():
-                self._desk.project.write(data, MADE, f"{self._kind.stem}.{name}.gz")
+            self._desk.project.write(self._thing, MADE, self._viewed().name)
         except InputError as error:
             return f"{error}"
         return ""
@@ -199,13 +247,14 @@ class Solving:
         """The process is gone: as it was told to, or not."""
         self._worker = None
         after, self._after = self._after, ""
-        if last == "stopped" and after == "keep":
+        if self.status == "resting":
+            self.mind()  # it may have been chosen again by now
+        elif last == "stopped" and after == "keep":
             self._begin("keep")
         elif last == "stopped" and self._kind.can_pause:
             self._set(status="paused", left_s=None, sentence="")
         elif last == "stopped":
-            before, self.wall = self._before
-            self._set(**before)
+            self._restore()
         elif last not in ("done", "kept", "failed") and self._kind.can_pause:
             self._set(status="paused", left_s=None, sentence="solving was ended from outside: go on, nothing is lost")
         elif last not in ("done", "kept", "failed"):
@@ -213,9 +262,9 @@ class Solving:
 
     def _set(self, **facts: Any) -> None:
         """Change how it stands, keep that where it is another state, and tell everybody."""
-        before = self._facts["status"]
+        before = self.status
         self._facts |= facts
-        if self._facts["status"] != before or "pictures" in facts:
+        if self.status != before or "pictures" in facts:
             kept = {name: value for name, value in self._facts.items() if name not in ("sentence", "left_s")}
             try:
                 self._desk.project.write(
@@ -229,8 +278,13 @@ class Solving:
 
     def _tell(self, facts: dict[str, Any]) -> None:
         """Tell everybody, where the project is to become this."""
-        if self._desk.project.settings.kind == self._name:
+        self._told_at = time.monotonic()
+        if self._is_chosen:
             self._desk.hub.tell("solving", facts)
+
+    def _viewed(self) -> Path:
+        """Where that is kept which is turned when the studio is started again."""
+        return self._desk.project.path(MADE, f"{self._kind.stem}.view.json")
 
     def _is_begun(self) -> bool:
         """Whether there is something of an unfinished cube."""
@@ -262,6 +316,7 @@ _SAID: dict[str, str] = {
     "idle": "not begun",
     "running": "being made",
     "stopping": "about to stop",
+    "resting": "about to go on",
     "paused": "paused",
     "done": "finished",
     "kept": "kept as it was reached",

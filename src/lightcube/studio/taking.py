@@ -16,7 +16,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from lightcube.errors import InputError
 from lightcube.io._files import system_errors
 from lightcube.studio.desk import Desk
-from lightcube.studio.kinds import kind_of
+from lightcube.studio.kinds import Kind, kind_of
+from lightcube.studio.offered import THINGS
 from lightcube.studio.project import MADE
 from lightcube.studio.worker import Worker
 from lightcube.viewer.label import Label
@@ -87,12 +88,11 @@ class Taking:
 
     def state(self) -> dict[str, Any]:
         """How it stands, as plain JSON."""
-        from lightcube.studio import away  # here: all that makes files comes with it
-
-        kind, made = kind_of(self._desk.project.settings), self._made_at()
+        kind = kind_of(self._desk.project.settings)
+        made = self._made_at(kind)
         with self._lock:
             things = []
-            for name, thing in away.things(kind.things).items():
+            for name, thing in THINGS[kind.things].items():
                 key = _key(kind.stem, name)
                 told: dict[str, Any] = {"name": name, "title": thing.title, "said": thing.said, "suffix": thing.suffix}
                 told |= {"group": thing.group, "made": None, "failed": self._failed.get(key, "")}
@@ -100,31 +100,29 @@ class Taking:
                 if known is not None and self._path(kind.stem, known["file"]).is_file():
                     told["made"] = {**known, "is_old": known["of"] != made}
                 things.append(told)
-            return {"has_cube": made is not None, "kind": kind.stem, "things": things, "doing": self._doing_now()}
+            return {"has_cube": made is not None, "kind": kind.stem, "things": things, "doing": self._doing_now(kind)}
 
     def begin(self, name: str, asked: _Asked) -> None:
         """Begin to make a thing; `InputError` where there is none of the name, nothing to make it of, or no time."""
-        from lightcube.studio import away
-
         settings = self._desk.project.settings
         kind, title = kind_of(settings), kind_of(settings).called_in(settings)
-        things = away.things(kind.things)
+        things = THINGS[kind.things]
         if name not in things:
             raise InputError(f"nothing that can be taken away has this name: ask for one of {', '.join(things)}")
         with self._lock:
             if self._doing is not None:
                 raise InputError(f"{self._doing['title'].lower()} is being made: wait for it, or stop it")
-            self._of = self._made_at()
+            self._of = self._made_at(kind)
             if self._of is None:
                 it = "it" if kind.are == "is" else "them"
                 raise InputError(f"{kind.called} {kind.are} not made yet: make {it} first")
             target = self._emptied() / f"{_called(title)}-{name}.{things[name].suffix}"
             source, label = self._desk.project.path(MADE, kind.file), Label(title, asked.by, asked.note)
+            given = (kind.things, name, source, target, label, asked.captions)
+            self._worker = Worker(self._lock, _make, given, self._heard, self._ended)
             self._failed.pop(_key(kind.stem, name), None)
             self._doing = {"name": name, "kind": kind.stem, "title": things[name].title, **_NOTHING}
-            given = (kind.things, name, source, target, label, asked.captions)
-            self._worker = Worker(self._lock, away.run, given, self._heard, self._ended)
-        self._tell()
+            self._tell()
 
     def stop(self) -> None:
         """Stop what is being made; at once where its next step is far."""
@@ -170,6 +168,9 @@ class Taking:
 
     def _keep(self, key: str, kind: str, file: str, said: list[str]) -> None:
         """Give what was made its place, and know of it."""
+        before = self._made.get(key)
+        if before is not None and before["file"] != file:  # it had another title
+            self._path(kind, before["file"]).unlink(missing_ok=True)
         self._path(kind).mkdir(exist_ok=True)
         for each in self._path(_MAKING).iterdir():
             each.replace(self._path(kind, each.name))
@@ -187,9 +188,10 @@ class Taking:
         shutil.rmtree(self._path(_MAKING), ignore_errors=True)
         self._tell()
 
-    def _doing_now(self) -> dict[str, Any] | None:
+    def _doing_now(self, kind: Kind | None = None) -> dict[str, Any] | None:
         """What is being made; without a name where it is made of what the project is not to become now."""
-        is_other = self._doing is not None and self._doing["kind"] != kind_of(self._desk.project.settings).stem
+        kind = kind or kind_of(self._desk.project.settings)
+        is_other = self._doing is not None and self._doing["kind"] != kind.stem
         return {"name": "", **_NOTHING} if is_other else self._doing
 
     def _emptied(self) -> Path:
@@ -203,10 +205,12 @@ class Taking:
     def _tell(self) -> None:
         self._desk.hub.tell("taking", self.state())
 
-    def _made_at(self) -> float | None:
+    def _made_at(self, kind: Kind) -> float | None:
         """When what things are made of was made; None where there is nothing."""
-        file = self._desk.project.path(MADE, kind_of(self._desk.project.settings).file) / "zarr.json"
-        return file.stat().st_mtime if file.is_file() else None
+        try:
+            return (self._desk.project.path(MADE, kind.file) / "zarr.json").stat().st_mtime
+        except OSError:
+            return None
 
     def _path(self, *names: str) -> Path:
         """In the folder of what is taken away: by what it is made of, and name."""
@@ -227,6 +231,13 @@ class Taking:
             }
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return {}
+
+
+def _make(*given: Any) -> None:
+    """What makes things, in a process of its own; here: all that makes files comes with it."""
+    from lightcube.studio import away
+
+    away.run(*given)
 
 
 def _key(kind: str, name: str) -> str:

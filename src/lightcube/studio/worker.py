@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import queue
 import signal
 import threading
 import traceback
@@ -40,20 +41,27 @@ class Worker:
         ended: Callable[[str], None],
     ) -> None:
         context = multiprocessing.get_context("spawn")
-        self._pipe, theirs = context.Pipe()
         name = run.__module__.replace(".", "-")
-        self.process = context.Process(target=run, args=(theirs, *given), daemon=True, name=name)
-        self.process.start()
+        try:
+            self._pipe, theirs = context.Pipe()
+            self.process = context.Process(target=run, args=(theirs, *given), daemon=True, name=name)
+            self.process.start()
+        except OSError as error:
+            raise InputError(
+                f"the system starts no process for this ({error.strerror or error}): end other programs, and try again"
+            ) from error
         theirs.close()
         self._lock, self._heard, self._ended = lock, heard, ended
         self._reaping = threading.Lock()
+        self._outbox: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self.is_stopping = self._is_closed = False
+        self._posting = threading.Thread(target=self._post, daemon=True)
+        self._posting.start()
         threading.Thread(target=self._hear, daemon=True).start()
 
     def send(self, what: Any) -> None:
-        """Tell it something; where it is gone already, `ended` says so."""
-        with suppress(OSError):
-            self._pipe.send(what)
+        """Tell it something, soon: nobody waits for a process that is busy. Where it is gone, `ended` says so."""
+        self._outbox.put(what)
 
     def stop(self, patience_s: float | None = None) -> None:
         """Tell it to stop at its next step; it is killed where that takes longer than somebody waits."""
@@ -82,8 +90,16 @@ class Worker:
                 last, facts = self._pipe.recv()
                 self._tell(self._heard, last, facts)
         self._join()
+        self.send(None)
+        self._posting.join()
         self._pipe.close()
         self._tell(self._ended, last)
+
+    def _post(self) -> None:
+        """Send what there is to be sent, until it is gone."""
+        with suppress(OSError):
+            while (what := self._outbox.get()) is not None:
+                self._pipe.send(what)
 
     def _join(self, patience_s: float | None = None) -> None:
         """Wait until it is gone; of two threads that ask the system for one child at once, one is told nothing."""

@@ -1,6 +1,6 @@
 // Puts the studio's page together: its frame, its parts, and the stream of what happens.
 
-import { askOf } from "./tools/asking.js";
+import { askOf, sentenceOf } from "./tools/asking.js";
 import { createFrame } from "./tools/frame.js";
 import { listenTo } from "./tools/listening.js";
 
@@ -19,6 +19,7 @@ async function openStudio(root) {
   const studio = {
     root,
     state: null,
+    say: (sentence) => (root.firstElementChild.textContent = sentence), // until there is a frame to say it in
     on(name, callback) {
       heard.set(name, [...(heard.get(name) ?? []), callback]);
     },
@@ -37,6 +38,7 @@ async function openStudio(root) {
     studio.state = facts;
     frame.update(facts);
   });
+  if (state.trouble) frame.say(sentenceOf(state.trouble), "bad");
   await Promise.all(known.map(async ({ name }) => {
     const { mount } = await import(`./parts/${name}.js`);
     const made = mount(frame.sections.get(name), studio) ?? {};

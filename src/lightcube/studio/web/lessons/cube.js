@@ -1,6 +1,6 @@
 // The lesson of the small cube: 27 voxels, pictures of 5 x 3 pixels, and an equation for each of those.
 
-import { element } from "/viewer/tools/elements.js";
+import { element, svg } from "/viewer/tools/elements.js";
 
 const NAMES = [..."abcdefghi"];
 const COLOURS = ["Red", "Green", "Blue"];
@@ -67,14 +67,6 @@ export function createCubeLesson(studio, said) {
     },
     repaint: draw,
   };
-}
-
-/** An element of a drawing. */
-function svg(tag, given, ...children) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(given)) made.setAttribute(name, value);
-  made.append(...children);
-  return made;
 }
 
 function rgb(levels) {

@@ -93,11 +93,10 @@ export function createSolidLesson(studio, said) {
     const number = ++now.asked;
     ways.forEach((button, i) => button.setAttribute("aria-pressed", String(WAYS[i][0] === now.way)));
     const slow = setTimeout(() => said("Working on it …"), SLOW);
-    const found = await post(wanted());
+    const found = await studio.ask("/api/lessons/hull", { json: wanted(), refused: (sentence) => number === now.asked && said(sentence, true) });
     clearTimeout(slow);
     if (number !== now.asked) return;
-    if (found.sentence) {
-      said(found.sentence, true);
+    if (found === null) {
       boxes.forEach((box) => box.show(null, null, ""));
       room.toggleAttribute("data-empty", true);
       return;
@@ -106,16 +105,6 @@ export function createSolidLesson(studio, said) {
     boxes.forEach((box, i) => box.show(lost ? found.lost[i] : null, way ? found.cast[i] : null, sharesOf(found, i, now.step)));
     said(way ? found.repaired : lost ? found.said.join("\n") : "");
     await turn(found);
-  }
-
-  async function post(json) {
-    try {
-      const answered = await fetch("/api/lessons/hull", { method: "POST", body: JSON.stringify(json), headers: { "content-type": "application/json" } });
-      const found = await answered.json();
-      return answered.ok ? found : { sentence: found.sentence };
-    } catch {
-      return { sentence: "the studio does not answer: is it still running in its terminal?" };
-    }
   }
 
   /** Show a solid in its room, seen from where the one before was. */

@@ -1,12 +1,15 @@
 // The pictures: dropped, pasted, taken by a webcam, or a set to try; the strip in which they are named, cropped, ordered.
 
-import { element } from "/viewer/tools/elements.js";
+import { element, icon } from "/viewer/tools/elements.js";
+import { sentenceOf } from "../tools/asking.js";
 import { openCrop } from "../tools/cropping.js";
 import { askFilm } from "../tools/filming.js";
 import { glyph } from "../tools/glyphs.js";
 import { listenToOrder } from "../tools/ordering.js";
 import { openWebcam } from "../tools/webcam.js";
 
+/** Sentences on what was dropped that are said at once. */
+const MOST_SAID = 3;
 const FILMS = /\.(mp4|webm|mkv|mov|avi)$/i;
 const TYPES = ".png,.jpg,.jpeg,.webp,.tif,.tiff,.avif,.heic,.heif,.gif,.apng,.mp4,.webm,.mkv,.mov,.avi,image/*,video/*";
 
@@ -40,17 +43,19 @@ export function mount(section, studio) {
       studio.say(`These are ${files.length} files, and there is room for ${room}: a project has at most ${studio.state.pictures.most} pictures. Drop fewer.`, "bad");
       return;
     }
-    const notes = [];
+    const [notes, refused] = [[], []];
     for (const [number, file] of files.entries()) {
       progress.textContent = files.length > 1 ? `Reading ${number + 1} of ${files.length}: ${file.name}` : `Reading ${file.name}`;
       const part = FILMS.test(file.name) ? await askFilm(studio.root, file) : {};
       if (part === null) continue;
       const asked = new URLSearchParams({ name: file.name || "pasted.png", ...part });
-      const answer = await studio.ask(`/api/uploads?${asked}`, { method: "POST", body: file });
+      const answer = await studio.ask(`/api/uploads?${asked}`, { method: "POST", body: file, refused: (sentence) => refused.push(sentence) });
       notes.push(...(answer?.notes ?? []));
     }
     progress.textContent = "";
-    if (notes.length) studio.say(notes.join(". "), "good");
+    const said = [...new Set([...refused, ...notes.map(sentenceOf)])];
+    const more = said.length > MOST_SAID ? ` And ${said.length - MOST_SAID} more of the kind.` : "";
+    if (said.length) studio.say(`${said.slice(0, MOST_SAID).join(" ")}${more}`, refused.length ? "bad" : "good");
   }
 
   async function webcam() {
@@ -107,7 +112,9 @@ function itemOf(picture, number, { used, missing, places }, studio) {
   const shown = element("div", { class: "cropped" }, image);
   placeCrop(image, crop);
   const named = element("input", { type: "text", maxlength: "80", value: name, "aria-label": `Name of picture ${number + 1}`, "data-does": "name",
-    change: () => (named.value.trim() ? change({ name: named.value.trim() }) : (named.value = name)) });
+    change: async () => {
+      if (!named.value.trim() || await change({ name: named.value.trim() }) === null) named.value = name;
+    } });
   return element("li", { "data-key": key, "data-unused": number >= used, tabindex: "0", "data-does": "item",
     "aria-label": `Picture ${number + 1}, ${name}. Alt with the arrow keys moves it.` },
     element("span", { class: "number", text: (number < used && places[number]) || number + 1 }),
@@ -120,7 +127,7 @@ function itemOf(picture, number, { used, missing, places }, studio) {
           if (cropped !== null) change({ crop: cropped });
         } }, glyph("crop")),
       element("button", { type: "button", class: "icon", "aria-label": `Remove ${name}`, title: "Remove", "data-does": "remove",
-        click: () => studio.ask(`/api/pictures/${key}`, { method: "DELETE" }) }, glyph("remove"))));
+        click: () => studio.ask(`/api/pictures/${key}`, { method: "DELETE" }) }, icon("close"))));
 }
 
 /** Show of a picture what is taken of it. */
@@ -147,9 +154,29 @@ function listenToDrops(section, take) {
       if (name !== "dragleave" || event.relatedTarget === null) section.removeAttribute("data-over");
     });
   }
-  document.addEventListener("drop", (event) => {
+  document.addEventListener("drop", async (event) => {
     if (!isOfFiles(event)) return;
     event.preventDefault();
-    take([...event.dataTransfer.files]);
+    take(await filesOf(event.dataTransfer));
   });
+}
+
+/** The files that were dropped; of a folder those that lie in it. */
+async function filesOf({ items, files }) {
+  const folders = [...items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry?.isDirectory);
+  const names = new Set(folders.map(({ name }) => name));
+  const own = [...files].filter((file) => file.type || !names.has(file.name)); // now: soon nothing is left of them
+  return [...own, ...(await Promise.all(folders.map(readFolder))).flat()];
+}
+
+/** The files that lie in a folder, by their names; what a system keeps there for itself is left out. */
+async function readFolder(folder) {
+  const [reader, found] = [folder.createReader(), []];
+  for (let some = null; some === null || some.length;) { // some at a time, until there are none
+    some = await new Promise((resolve) => reader.readEntries(resolve, () => resolve([])));
+    found.push(...some.filter(({ isFile, name }) => isFile && !name.startsWith(".")));
+  }
+  found.sort((one, other) => one.name.localeCompare(other.name, undefined, { numeric: true }));
+  const read = await Promise.all(found.map((entry) => new Promise((resolve) => entry.file(resolve, () => resolve(null)))));
+  return read.filter((file) => file !== null);
 }

@@ -76,7 +76,11 @@ export function mount(section, studio) {
   async function check() {
     const number = ++now.asked;
     const found = await studio.ask("/api/rooms/check", { json: now.room });
-    if (number !== now.asked || found === null) return;
+    if (number !== now.asked) return;
+    if (found === null) {
+      keep.disabled = true;
+      return;
+    }
     now.bad = new Map(found.impossible.flatMap(({ about: names }) => names.map((name) => [name, true])));
     const lines = (told, kind) => told.map(({ sentence }) => element("li", { class: kind, text: sentenceOf(sentence) }));
     const well = found.impossible.length ? [] : [element("li", { class: "well", text: `Nothing here is impossible: ${found.pictures === 1 ? "one picture" : `${found.pictures} pictures`}, one on each screen at each stop.` })];

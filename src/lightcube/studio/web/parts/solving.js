@@ -39,7 +39,7 @@ export function mount(section, studio) {
     does.start.className = ["done", "kept", "paused", "failed"].includes(status) && !changed ? "switch" : "main";
     does.resume.className = does.start.className === "main" ? "switch" : "main";
     turn.hidden = facts.version === 0 || document.getElementById("part-turning") === null;
-    bar.hidden = !["running", "stopping", "paused"].includes(status);
+    bar.hidden = !["running", "stopping", "resting", "paused"].includes(status);
     if (status === "running" && of === 0) bar.removeAttribute("value");
     else bar.value = of ? done / of : 0;
     said.textContent = stateOf(facts, enough, studio.kind());
@@ -97,6 +97,7 @@ function stateOf({ status, sentence, left_s, psnr, changed, done, of }, enough, 
   const part = `${Math.round((100 * done) / Math.max(of, 1))} %`;
   if (status === "running") return left_s === null ? (of ? `${part} …` : "Begun …") : `${leftOf(left_s)}${qualityOf(psnr)}`;
   if (status === "stopping") return "Stopping after this pass …";
+  if (status === "resting") return "Going on in a moment …";
   if (status === "paused") return sentence ? sentenceOf(sentence) : `Paused at ${part}. Nothing is lost.`;
   if (status === "failed") return sentenceOf(sentence);
   if (status === "kept") return `Stopped and kept: ${called} ${are} as far as ${are === "are" ? "they were" : "it was"}. You can still go on.`;

@@ -22,7 +22,7 @@ export function mount(section, studio) {
   let [known, shown] = [null, ""];
 
   function make(name) {
-    studio.ask(`/api/taking/${name}`, { json: { by: by.value, note: note.value, captions: captions.checked } }).then((state) => state && show(state));
+    studio.ask(`/api/taking/${name}`, { json: { by: by.value, note: note.value, captions: captions.checked } });
   }
 
   function cardOf(thing) {

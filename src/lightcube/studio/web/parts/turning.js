@@ -1,6 +1,6 @@
 // Turn: the newest thing in its viewer, its wall large; also while it is still becoming.
 
-import { gunzip, readScene, readVoxels } from "/viewer/model/data.js";
+import { fromBase64, gunzip, readScene, readVoxels } from "/viewer/model/data.js";
 import { element } from "/viewer/tools/elements.js";
 import { wear } from "../tools/wearing.js";
 
@@ -35,9 +35,8 @@ export function mount(section, studio) {
     now.busy = true;
     const { kind, wanted } = now;
     try {
-      const parts = await Promise.all(["scene", "voxels"].map((part) => fetch(`/api/cube/${part}`)));
-      const [scene, data] = await Promise.all(parts.map(async (part) => new Uint8Array(await part.arrayBuffer())));
-      const open = parts.every((part) => part.status === 200) ? await viewerOf(await readScene(scene), data) : null;
+      const made = await studio.ask("/api/cube", { refused: () => {} }); // what is gone is said by the stream
+      const open = made && await viewerOf(await readScene(fromBase64(made.scene)), fromBase64(made.voxels));
       if (open !== null && kind === now.kind) show(open);
     } catch (error) {
       studio.say(`${error.message[0].toUpperCase()}${error.message.slice(1)}.`, "bad");

@@ -1,6 +1,6 @@
 // A plan of the room along two axes, in which what stands there is dragged.
 
-import { element } from "/viewer/tools/elements.js";
+import { element, svg } from "/viewer/tools/elements.js";
 
 /** Half a side of the cube, mm, and what is seen around it at least. */
 const [HALF, LEAST] = [50, 210];
@@ -114,12 +114,4 @@ export function createPlan(axes, title, now, does) {
   }
 
   return { element: figure, draw };
-}
-
-/** An element of a drawing. */
-function svg(tag, given, ...children) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(given)) made.setAttribute(name, value);
-  made.append(...children);
-  return made;
 }

@@ -1,31 +1,34 @@
 // Asks the studio's API; what it refuses is said in the page.
 
+const GONE = "The studio does not answer. Where it was started again, go on in the tab that it opened; else start it in its terminal: nothing is lost.";
+
 /**
  * A function that asks.
  *
  * @param {Object} studio says what is refused
- * @returns {function(string, Object): Promise<any>} takes a path and `{method, json, body, quiet}`; returns what the
- *   API answers, or null where it refuses, which is said unless `quiet`
+ * @returns {function(string, Object): Promise<any>} takes a path and `{method, json, body, refused}`; returns what the
+ *   API answers, or null where it refuses or has nothing; `refused` is told the sentence, which is else said in the page
  */
 export function askOf(studio) {
-  return async (path, { method, json, body, quiet = false } = {}) => {
+  return async (path, { method, json, body, refused = (sentence) => studio.say(sentence, "bad") } = {}) => {
     const given = { method: method ?? (json === undefined && body === undefined ? "GET" : "POST"), body };
     if (json !== undefined) Object.assign(given, { body: JSON.stringify(json), headers: { "content-type": "application/json" } });
-    let answer = null;
     try {
-      answer = await fetch(path, given);
+      const answer = await fetch(path, given);
+      if (answer.status === 204) return null;
       const said = await answer.json();
       if (answer.ok) return said;
-      if (!quiet) studio.say?.(sentenceOf(said.sentence), "bad");
+      refused(sentenceOf(said.sentence));
     } catch {
-      if (!quiet) studio.say?.("The studio does not answer: is it still running in its terminal?", "bad");
+      refused(GONE);
     }
     return null;
   };
 }
 
-/** A sentence as it stands in a page: with a capital and a full stop. */
+/** A sentence as it stands in a page: with a capital, but where a file's name begins it, and a full stop. */
 export function sentenceOf(text) {
-  const said = text ? `${text[0].toUpperCase()}${text.slice(1)}` : "This could not be done";
-  return /[.!?]$/.test(said) ? said : `${said}.`;
+  const isName = /^\S*\.\w/.test(text);
+  const said = isName ? text : text ? `${text[0].toUpperCase()}${text.slice(1)}` : "This could not be done";
+  return /[.!?…]$/.test(said) ? said : `${said}.`;
 }

@@ -73,14 +73,10 @@ export function createCount(studio) {
 
 /** A choice of a few words. */
 export function createChoice({ name, label, options }, field, studio) {
-  const select = element("select", { name, change: () => studio.ask("/api/settings", { method: "PATCH", json: { [field]: { [name]: valueOf(select.value) } } }) },
-    ...options.map(([value, text]) => element("option", { value, text })));
-  return {
-    element: element("label", { class: "choice" }, element("span", { class: "quiet", text: label }), select),
-    update({ settings }) {
-      select.value = String(settings[field][name]);
-    },
-  };
+  const send = async () => update(await studio.ask("/api/settings", { method: "PATCH", json: { [field]: { [name]: valueOf(select.value) } } }) ?? studio.state);
+  const select = element("select", { name, change: send }, ...options.map(([value, text]) => element("option", { value, text })));
+  const update = ({ settings }) => (select.value = String(settings[field][name])); // what was refused goes back
+  return { element: element("label", { class: "choice" }, element("span", { class: "quiet", text: label }), select), update };
 }
 
 /** What an option of a select stands for. */

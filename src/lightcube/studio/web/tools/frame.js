@@ -72,7 +72,10 @@ function sectionOf({ name, title }) {
 function headOf(studio, doors, open) {
   const title = element("input", {
     class: "project", type: "text", maxlength: "120", "aria-label": "Title of this project", placeholder: "Untitled",
-    change: () => studio.ask("/api/settings", { method: "PATCH", json: { title: title.value } }),
+    change: async () => {
+      const state = await studio.ask("/api/settings", { method: "PATCH", json: { title: title.value } });
+      title.value = (state ?? studio.state).settings.title; // what was refused goes back
+    },
   });
   const step = (way, label, key) => element("button", {
     type: "button", class: "switch", title: `${label} (${key})`, disabled: true, click: () => studio.ask(`/api/${way}`, { method: "POST" }),
@@ -82,7 +85,7 @@ function headOf(studio, doors, open) {
     click: () => setTheme(studio.root, studio.root.dataset.theme !== "dark", true) }, icon("theme"));
   const links = doors.map(([door, text]) => [door, element("button", { type: "button", class: "door", click: () => open(door), text })]);
   document.addEventListener("keydown", (event) => {
-    const typing = event.target.closest("input[type=text], textarea");
+    const typing = event.target.closest("input:not([type=range], [type=checkbox], [type=file]), textarea, dialog");
     if (typing || !(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
     event.preventDefault();
     (event.shiftKey ? redo : undo).click();

@@ -1,5 +1,7 @@
 // The studio's own icons, drawn as the viewer's are.
 
+import { iconOf } from "/viewer/tools/elements.js";
+
 const LINES = {
   drop: "M12 3v11M7.500 9.500L12 14l4.500-4.500M4 15v4a2 2 0 0 0 2 2h12a2 2 0 0 0 2-2v-4",
   camera: "M4 8a2 2 0 0 1 2-2h2l1.500-2h5L16 6h2a2 2 0 0 1 2 2v9a2 2 0 0 1-2 2H6a2 2 0 0 1-2-2zM12 9.500a3.300 3.300 0 1 0 0 6.600 3.300 3.300 0 0 0 0-6.600",
@@ -9,17 +11,9 @@ const LINES = {
   plate: "M3 16l7 4 11-5-7-4zM3 16v-3l7 4v3M10 17l11-5v3M7 12.500V10l3 1.500M12 10.500V8l3 1.500",
   films: "M4 7l8-4 8 4-8 4zM4 12l8 4 8-4M4 17l8 4 8-4",
   room: "M3 20V6l9-3v14zM12 17l9 3V6l-9-3M8.500 20.500h7M10 18.500v-4l2-1 2 1v4",
-  remove: "M6 6l12 12M18 6L6 18",
 };
 
-/** An icon of 24 × 24 in the colour of its text. */
+/** An icon of 24 × 24 in the colour of its text; of the viewer's there is `icon`. */
 export function glyph(name) {
-  const space = "http://www.w3.org/2000/svg";
-  const drawing = document.createElementNS(space, "svg");
-  drawing.setAttribute("viewBox", "0 0 24 24");
-  drawing.setAttribute("aria-hidden", "true");
-  const line = document.createElementNS(space, "path");
-  line.setAttribute("d", LINES[name]);
-  drawing.append(line);
-  return drawing;
+  return iconOf(LINES[name]);
 }

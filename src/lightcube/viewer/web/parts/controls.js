@@ -1,7 +1,7 @@
 // The controls below the room: the slider over the turn with a tick at every stop, playing, and what can be chosen.
 
 import { PLAY_SPEED } from "../model/turning.js";
-import { degreesText, element, icon, iconButton, setPressed, wordButton } from "../tools/elements.js";
+import { degreesText, element, icon, iconButton, setPressed, svg, wordButton } from "../tools/elements.js";
 
 /** Speeds of playing. */
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
@@ -76,16 +76,8 @@ function spokenPlace(now) {
 function ticksOf(stops) {
   const every = Math.ceil(stops.length / MOST_TICKS);
   const marked = stops.filter((_, i) => i % every === 0);
-  const space = "http://www.w3.org/2000/svg";
-  const drawing = document.createElementNS(space, "svg");
-  drawing.setAttribute("viewBox", "0 0 360 1");
-  drawing.setAttribute("preserveAspectRatio", "none");
-  drawing.setAttribute("aria-hidden", "true");
-  const lines = document.createElementNS(space, "path");
-  lines.setAttribute("d", marked.map((stop) => `M${stop} 0V1`).join(""));
-  lines.setAttribute("vector-effect", "non-scaling-stroke");
-  drawing.append(lines);
-  return drawing;
+  const lines = svg("path", { d: marked.map((stop) => `M${stop} 0V1`).join(""), "vector-effect": "non-scaling-stroke" });
+  return svg("svg", { viewBox: "0 0 360 1", preserveAspectRatio: "none", "aria-hidden": "true" }, lines);
 }
 
 function speedChoice(chosen) {

@@ -1,8 +1,6 @@
 // The wall as one sees it who stands before it: the picture that the light makes, large, tied to its place in the room.
 
-import { element, overlapText, qualityOf } from "../tools/elements.js";
-
-const SPACE = "http://www.w3.org/2000/svg";
+import { element, overlapText, qualityOf, svg } from "../tools/elements.js";
 
 /**
  * The picture on the wall, and threads that lead to it from the wall in the room.
@@ -16,12 +14,8 @@ export function createWall(scene) {
   const name = element("span", { class: "name" });
   const quality = element("span", { class: "quality" });
   const figure = element("figure", { class: "wall" }, canvas, element("figcaption", {}, name, quality));
-  const threads = document.createElementNS(SPACE, "svg");
-  const [lines, meant] = [0, 1].map(() => document.createElementNS(SPACE, "path"));
-  meant.setAttribute("class", "meant");
-  threads.setAttribute("class", "threads");
-  threads.setAttribute("aria-hidden", "true");
-  threads.append(lines, meant);
+  const [lines, meant] = [svg("path", {}), svg("path", { class: "meant" })];
+  const threads = svg("svg", { class: "threads", "aria-hidden": "true" }, lines, meant);
 
   return {
     element: figure,

@@ -50,20 +50,28 @@ export function element(tag, given = {}, ...children) {
 }
 
 /**
- * An icon of 24 × 24, drawn in the colour of its text, hidden from screen readers.
+ * A new element of a drawing.
  *
- * @param {string} name one of `ICONS`
+ * @param {string} tag
+ * @param {Object} given attributes
+ * @param {...Node} children
  * @returns {SVGElement}
  */
+export function svg(tag, given, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(given)) made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}
+
+/** An icon of 24 × 24 of these lines, in the colour of its text, hidden from screen readers. */
+export function iconOf(lines) {
+  return svg("svg", { viewBox: "0 0 24 24", "aria-hidden": "true" }, svg("path", { d: lines }));
+}
+
+/** The icon of a name, one of `ICONS`. */
 export function icon(name) {
-  const space = "http://www.w3.org/2000/svg";
-  const drawing = document.createElementNS(space, "svg");
-  drawing.setAttribute("viewBox", "0 0 24 24");
-  drawing.setAttribute("aria-hidden", "true");
-  const line = document.createElementNS(space, "path");
-  line.setAttribute("d", ICONS[name]);
-  drawing.append(line);
-  return drawing;
+  return iconOf(ICONS[name]);
 }
 
 /**
