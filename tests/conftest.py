@@ -15,6 +15,7 @@ from lightcube.io import _3mf
 from lightcube.optics import light
 from lightcube.planning import prediction
 from lightcube.report import measuring
+from lightcube.verbs import drawing
 from tests.helpers.browser import bare_browser, browser, evaluate, launch
 
 __all__ = ["bare_browser", "browser", "evaluate", "launch"]
@@ -27,15 +28,25 @@ settings.load_profile("patient")
 os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="lightcube-suite-")
 atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 
+# Most of the time of a small cube's report goes into its picture of the room. Here: it may be made for a whole module.
+ROOMS = {module: module.ROOM for module in (measuring, drawing)}
+measuring.ROOM = drawing.ROOM = (27, 48)
+
 INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 if INTERPRETED:
-    measuring.ROOM = (27, 48)  # here: a report may be measured for a whole module
     _3mf._SIDE = 16  # each file of a mesh has a picture of it
 
 
 # Whoever starts the suite in the background may have it ignore Ctrl-C, and programs inherit that; tests press it.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture
+def large_rooms(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures of rooms are as large as people get them."""
+    for module, size in ROOMS.items():
+        monkeypatch.setattr(module, "ROOM", size)
 
 
 def forget_points() -> None:

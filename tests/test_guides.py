@@ -33,7 +33,7 @@ def small(line: str) -> str:
     """The same command for a cube that is solved in a second, and a movie of few pictures."""
     verb = line.split()[1]
     if "--films" in line:
-        return re.sub(r"--assembly-mm \S+", "", line) + " --n 12 --iterations 4"
+        return re.sub(r"--assembly-mm \S+", "", line) + " --n 12 --iterations 4 --size-mm 60"
     if verb in VOXELS and ".toml" not in line:
         line = re.sub(r" --n \d+", "", line) + f" --n {VOXELS[verb]}"
     return line + " --fps 1" if verb == "play" and ".mp4" in line else line

@@ -63,6 +63,7 @@ def test_pictures_are_told_by_lamps_and_moves(run, stack: Path, tmp_path: Path) 
     assert "nothing turns" in between.err
 
 
+@pytest.mark.usefixtures("large_rooms")
 def test_films_are_drawn_as_they_are_put_together_and_in_their_room(run, stack: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
     assert run("draw", stack, "-o", tmp_path / "a.svg").code == 0
     said = (tmp_path / "a.svg").read_text()

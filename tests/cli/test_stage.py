@@ -127,6 +127,7 @@ def test_a_drawing_is_an_svg_that_is_not_overwritten(run, stage: Path) -> None: 
         assert said in done.err
 
 
+@pytest.mark.usefixtures("large_rooms")
 def test_a_cubes_room_is_drawn_as_it_is_played(run, stage: Path) -> None:  # type: ignore[no-untyped-def]
     cube, out = solved(run, stage), stage.parent / "room.png"
     for more, angle_deg in (((), 10), (("--angle-deg", 25), 25)):

@@ -42,21 +42,22 @@ def averaged(
     cube: Cube, angles_deg: Sequence[float], points: Points, *, parts: int = 1, whole: bool = False
 ) -> NDArray[Any]:
     """Mean light over points of each pixel, or of each of its parts, ``(picture, row, column, channel)``."""
-    light = _moved(cube, angles_deg, 0, 0, whole).repeat(parts, axis=1).repeat(parts, axis=2)
+    rig, _ = (cube.rig.whole(cube.grid) if whole else cube.rig).at(angles_deg)
+    powers = powers_of(cube, rig)
+    light = _moved(cube, rig, powers, 0, 0).repeat(parts, axis=1).repeat(parts, axis=2)
     middles = [(part + 0.5) / parts - 0.5 for part in range(parts)]
     for i, j in np.ndindex(parts, parts):
         own = [(middles[j] + across / parts, middles[i] + down / parts) for across, down in points]
-        light[:, i::parts, j::parts] = np.mean([_moved(cube, angles_deg, *point, whole) for point in own], axis=0)
+        light[:, i::parts, j::parts] = np.mean([_moved(cube, rig, powers, *point) for point in own], axis=0)
     return light
 
 
-def _moved(cube: Cube, angles_deg: Sequence[float], across: float, down: float, whole: bool) -> NDArray[Any]:
+def _moved(cube: Cube, rig: Rig, powers: NDArray[Any], across: float, down: float) -> NDArray[Any]:
     """Thin beams beside the pixels' middles."""
-    rig, _ = (cube.rig.whole(cube.grid) if whole else cube.rig).at(angles_deg)
     views = rig.views
     origins_mm = views.origins_mm + across * views.column_steps_mm + down * views.row_steps_mm
     moved = replace(rig, views=replace(views, origins_mm=origins_mm))
-    return np.stack(list(cast(cube, moved, powers_of(cube, rig)))).astype(np.float64)
+    return np.stack(list(cast(cube, moved, powers))).astype(np.float64)
 
 
 def divided(rig: Rig, *, lamp: int = 1, pixel: int = 1) -> Rig:

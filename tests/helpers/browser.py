@@ -61,6 +61,7 @@ def evaluate(browser: Any) -> Iterator[Callable[..., Any]]:
 
 def opened(browser: Any, path: Path, *, width: int = 1280, height: int = 800, **context: Any) -> tuple[Any, list[str]]:
     """A page opened from a file, and a list that fills with what it says in its console or asks of a network."""
+    context.setdefault("device_scale_factor", 0.25)  # fewer pixels: rooms may be drawn in software
     tab = browser.new_context(viewport={"width": width, "height": height}, **context).new_page()
     heard: list[str] = []
     tab.on("console", lambda said: heard.append(said.text) if said.type == "error" else None)

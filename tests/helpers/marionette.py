@@ -71,9 +71,12 @@ def firefox(folder: Path) -> Iterator[Firefox]:
         pytest.skip("there is no Firefox: install one, or name it in LIGHTCUBE_FIREFOX")
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    (folder / "user.js").write_text(f'user_pref("marionette.port", {port});\n')
+    coarse = 'user_pref("layout.css.devPixelsPerPx", "0.25");\n'  # rooms may be drawn in software
+    (folder / "user.js").write_text(f'user_pref("marionette.port", {port});\n{coarse}')
     command = [program, "--headless", "--no-remote", "--marionette", "--profile", str(folder)]
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as running:
+    small = {"MOZ_HEADLESS_WIDTH": "320", "MOZ_HEADLESS_HEIGHT": "200"}
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen(command, **quiet, env={**os.environ, **small}) as running:
         try:
             with closing(opened(port)) as found:
                 yield found

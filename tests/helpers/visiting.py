@@ -74,7 +74,6 @@ def visit(browser: Any, pages: dict[str, Path]) -> Iterator[Open]:
         untouched: bool = False,
         **context: Any,
     ) -> Any:
-        context.setdefault("device_scale_factor", 0.25)  # fewer pixels: the room may be drawn in software
         tab, heard = opened(browser, pages[name], width=width, height=height, **context)
         tabs.append((tab, heard))
         until(tab, CUBE)

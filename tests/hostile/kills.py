@@ -10,6 +10,10 @@ import signal
 import sys
 
 from lightcube.cli import main
+from lightcube.report import measuring
+from lightcube.verbs import drawing
+
+measuring.ROOM = drawing.ROOM = (27, 48)  # it is written as larger ones are, and sooner
 
 #: What asks the file system for something, before it is done; `at` counts them from 1.
 EVENTS = {"open", *(f"os.{name}" for name in ("link", "mkdir", "remove", "rename", "rmdir", "symlink", "truncate"))}

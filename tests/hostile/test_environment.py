@@ -117,8 +117,8 @@ os.close(here)
 assert os.waitpid(child, 0)[1] == 0
 assert os.read(there, 100).decode() == before
 for method in multiprocessing.get_all_start_methods():
-    with multiprocessing.get_context(method).Pool(2) as pool:
-        assert set(pool.map(bits, range(3))) == {before}, method
+    with multiprocessing.get_context(method).Pool(2 if method == "fork" else 1) as pool:  # others load all anew
+        assert set(pool.map(bits, range(2))) == {before}, method
 assert bits() == before
 """
 

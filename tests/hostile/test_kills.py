@@ -58,8 +58,8 @@ COMMANDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 }
 #: What programs end with that are stopped; one that is told to end before it listens ends as the system has it.
 ENDS = {signal.SIGKILL: (0, -9), signal.SIGTERM: (0, -15, 130), signal.SIGINT: (0, 130)}
-#: Says when Python is up.
-PROGRAM = "from lightcube.__main__ import main; print(flush=True); main()"
+#: Says when Python is up; what it writes is what `tests.hostile.kills` writes.
+PROGRAM = "import tests.hostile.kills; from lightcube.__main__ import main; print(flush=True); main()"
 Content: TypeAlias = dict[str, bytes]
 
 

@@ -141,7 +141,7 @@ def test_a_drawing_is_xml_that_says_its_names(text: str) -> None:
 def test_in_a_notebook_names_stay_names(browser: Any) -> None:
     found = []
     for texts in (EVIL, tuple(re.sub(r"[^a-z]", "x", text) for text in EVIL)):
-        tab = browser.new_page()
+        tab = browser.new_page(device_scale_factor=0.25)
         hosted(tab, cube("turntable", texts))
         found.append(tab.evaluate(COUNT))
         tab.close()

@@ -143,13 +143,15 @@ def test_a_folder_that_is_replaced_is_there_at_every_moment(tmp_path: Path) -> N
             if not target.is_dir():
                 missing.append(True)
 
-    looking = threading.Thread(target=look)
+    looking, turns_s = threading.Thread(target=look), sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)  # so that it looks between any two steps, and none waits for its turn
     looking.start()
     for number in range(200):
         with workplace(target) as made:
             put(folder_of(made / "cube.zarr", str(number)), target, made / "old")
     done.set()
     looking.join()
+    sys.setswitchinterval(turns_s)
     assert (target / "zarr.json").read_text() == "199"
     assert hidden(tmp_path) == []
     if sys.platform.startswith(("linux", "darwin")):

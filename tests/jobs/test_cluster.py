@@ -100,6 +100,13 @@ def scheduler(folder: Path, workers: int = 2, deadly: str = "", more: str = "") 
                 each.wait()
 
 
+@pytest.fixture(scope="module")
+def two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Two workers for all tests that leave them as they are."""
+    with scheduler(tmp_path_factory.mktemp("two")) as address:
+        yield address
+
+
 def wait_for(true: Callable[[], object]) -> None:
     for _ in range(600):
         if true():
@@ -142,53 +149,52 @@ def pressing(monkeypatch: pytest.MonkeyPatch, pieces: int) -> None:
     monkeypatch.setattr(cluster._Meter, "__call__", press)
 
 
-def test_ctrl_c_keeps_states_and_the_work_goes_on_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_keeps_states_and_the_work_goes_on_here(
+    two: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     made = some_job(passes=PASSES)
     store = open_partial(tmp_path / "a.zarr", made)
-    with scheduler(tmp_path) as address:
-        pressing(monkeypatch, 1)
-        with listening("solving", as_json=True) as tell:
-            assert not cluster.run(made, address, store, tell)
-        with distributed.Client(address) as client:
-            assert not any(client.call_stack().values())
-        before = content(Path(store.folder))
-        time.sleep(0.2)
-        assert content(Path(store.folder)) == before
+    pressing(monkeypatch, 1)
+    with listening("solving", as_json=True) as tell:
+        assert not cluster.run(made, two, store, tell)
+    with distributed.Client(two) as client:
+        assert not any(client.call_stack().values())
+    before = content(Path(store.folder))
+    time.sleep(0.2)
+    assert content(Path(store.folder)) == before
     assert begun(made, store)
     assert 0 < len(merged(made, store).residuals) < PASSES
     assert same(solved(made, store), solved(made))
 
 
-def test_workers_stop_when_nobody_wants_their_work(tmp_path: Path) -> None:
+def test_workers_stop_when_nobody_wants_their_work(two: str, tmp_path: Path) -> None:
     made = some_job(passes=PASSES)
     store = open_partial(tmp_path / "a.zarr", made)
-    with scheduler(tmp_path, workers=1) as address:
-        program = (
-            "from lightcube.jobs import cluster; import sys\n"
-            "from lightcube.jobs.partial import DiskStore, load_job\n"
-            "store = DiskStore(sys.argv[1])\n"
-            "cluster.run(load_job(sys.argv[1]), sys.argv[2], store, print)"
-        )
-        with subprocess.Popen([sys.executable, "-c", program, str(store.folder), address]) as client:
-            wait_for(lambda: begun(made, store))
-            client.kill()
-        with distributed.Client(address) as client:
-            wait_for(lambda: not any(client.call_stack().values()))
+    program = (
+        "from lightcube.jobs import cluster; import sys\n"
+        "from lightcube.jobs.partial import DiskStore, load_job\n"
+        "store = DiskStore(sys.argv[1])\n"
+        "cluster.run(load_job(sys.argv[1]), sys.argv[2], store, print)"
+    )
+    with subprocess.Popen([sys.executable, "-c", program, str(store.folder), two]) as client:
+        wait_for(lambda: begun(made, store))
+        client.kill()
+    with distributed.Client(two) as client:
+        wait_for(lambda: not any(client.call_stack().values()))
     assert len(store.names()) < len(made.pieces)
     assert begun(made, store)
 
 
-def test_workers_say_what_is_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workers_say_what_is_wrong(two: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = some_job()
     store = open_partial(tmp_path / "a.zarr", made)
-    with scheduler(tmp_path, workers=1) as address:
-        with monkeypatch.context() as patch:
-            patch.setattr(cluster, "version", lambda _: "9")
-            with pytest.raises(InputError, match=r"lightcube is .* there, and 9 here"):
-                cluster.run(made, address, store, going_on)
-        (Path(store.folder) / "level-1.npz").write_bytes(b"half")
-        with pytest.raises(InputError, match=r"worker at tcp://.* cannot solve unit-. .*level-1.npz is damaged"):
-            cluster.run(made, address, store, going_on)
+    with monkeypatch.context() as patch:
+        patch.setattr(cluster, "version", lambda _: "9")
+        with pytest.raises(InputError, match=r"lightcube is .* there, and 9 here"):
+            cluster.run(made, two, store, going_on)
+    (Path(store.folder) / "level-1.npz").write_bytes(b"half")
+    with pytest.raises(InputError, match=r"worker at tcp://.* cannot solve unit-. .*level-1.npz is damaged"):
+        cluster.run(made, two, store, going_on)
 
 
 def test_a_local_scheduler_comes_and_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -239,13 +245,16 @@ def test_the_command_line_solves_there_or_here(  # type: ignore[no-untyped-def]
         "--elevation-deg",
         "0",
     )
-    for workers in (3, 2):
-        (tmp_path / str(workers)).mkdir()
-        with scheduler(tmp_path / str(workers), workers=workers) as address, monkeypatch.context() as patch:
-            pressing(patch, 1)
-            stopped = run("solve", pictures, "-o", out, *said, "--scheduler", address)
-        assert stopped.code == 130, stopped.err
-        assert "the same command goes on" in stopped.err
+    with scheduler(tmp_path, workers=3) as address:
+        for workers in (3, 2):
+            with distributed.Client(address) as client:
+                client.retire_workers(list(client.has_what())[workers:])
+            assert cluster.count_workers(address) == workers
+            with monkeypatch.context() as patch:
+                pressing(patch, 1)
+                stopped = run("solve", pictures, "-o", out, *said, "--scheduler", address)
+            assert stopped.code == 130, stopped.err
+            assert "the same command goes on" in stopped.err
     again = run("solve", pictures, "-o", out, *said)
     assert again.code == 0, again.err
     assert " of 3 units" in again.err

@@ -38,14 +38,21 @@ from tests.io.test_cubes import assert_same, content, files_in, partial_path
 
 __all__ = ["run"]
 
-#: The command line, with coarse passes and checkpoints that suit a small cube.
-PROGRAM = """
-from lightcube.backward import job, needs, pieces
-from lightcube.planning import order, prediction
-job.COARSE_PASSES = 20
+#: What suits a small cube, in programs of their own and in this one.
+SMALL = {
+    "lightcube.backward.job.COARSE_PASSES": 20,
+    "lightcube.backward.needs.PROGRAM": 0,
+    "lightcube.planning.prediction.PASSES": 1,
+    **{f"lightcube.planning.order.{name}": 1 for name in ("_PASSES", "_WALKS", "_SWAPS")},
+}
+#: The command line, with a checkpoint after every pass.
+PROGRAM = f"""
+from importlib import import_module
+for name, value in {SMALL}.items():
+    module, _, own = name.rpartition(".")
+    setattr(import_module(module), own, value)
+from lightcube.backward import pieces
 pieces.FIRST_CHECKPOINT_S = pieces.CHECKPOINT_S = pieces._PATIENCE = 0.0
-needs.PROGRAM, prediction.PASSES = 0, 1
-order._PASSES = order._WALKS = order._SWAPS = 1
 from lightcube.__main__ import main
 main()
 """
@@ -74,27 +81,23 @@ def process(*arguments: object) -> list[str]:
     return [sys.executable, "-c", PROGRAM, *map(str, arguments)]
 
 
-def finished(*arguments: object) -> str:
-    done = subprocess.run(process(*arguments), capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def in_two_units(photographs: Path, out: Path) -> list[str]:
+def in_two_units(run: Any, photographs: Path, out: Path) -> list[str]:
     """The options of a job that is split because its memory does not suffice."""
-    told = json.loads(finished("solve", photographs, "-o", out, *options(*LEVEL_LAMP), "--dry-run", "--json"))
+    told = json.loads(run("solve", photographs, "-o", out, *options(*LEVEL_LAMP), "--dry-run", "--json").out)
     assert told["units"] == 1
     return options(*LEVEL_LAMP, "--memory", str(told["memory"] - 1))
 
 
 @pytest.mark.parametrize("split", [False, True])
-def test_killed_anywhere_the_same_command_comes_to_the_same_cube(
-    photographs: Path, tmp_path: Path, *, split: bool
+def test_killed_anywhere_the_same_command_comes_to_the_same_cube(  # type: ignore[no-untyped-def]
+    run, photographs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, split: bool
 ) -> None:
     """SIGKILL, twice, at whatever moment after the work has begun; and one Ctrl-C."""
+    for name, value in SMALL.items():
+        monkeypatch.setattr(name, value)
     straight, out = tmp_path / "straight.zarr", tmp_path / "a.zarr"
-    said = in_two_units(photographs, straight) if split else options()
-    finished("solve", photographs, "-o", straight, *said)
+    said = in_two_units(run, photographs, straight) if split else options()
+    assert run("solve", photographs, "-o", straight, *said).code == 0
     command = process("solve", photographs, "-o", out, *said, "--json")
     events, moments = [], np.random.default_rng()
     for how in (signal.SIGKILL, signal.SIGKILL, signal.SIGINT):
@@ -111,7 +114,7 @@ def test_killed_anywhere_the_same_command_comes_to_the_same_cube(
             break
         assert running.returncode == (130 if how == signal.SIGINT else -how), err
     if not out.exists():
-        finished("solve", photographs, "-o", out, *said)
+        assert run("solve", photographs, "-o", out, *said).code == 0
     assert content_of(out) == content_of(straight)
     assert not partial_path(out).exists()
 

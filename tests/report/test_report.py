@@ -450,6 +450,7 @@ def test_a_page_of_many_pictures_stays_small() -> None:
 
 
 @pytest.mark.skipif(INTERPRETED, reason="the same page as with compiled kernels")
+@pytest.mark.usefixtures("large_rooms")
 def test_a_browser_finds_nothing_to_mend(run: Run, pictures: Path, browser: Any) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not installed").Axe()
     save(made(), "a.npz")

@@ -254,7 +254,7 @@ def angle_of(tab: Any) -> float:
 
 @pytest.fixture
 def tab(browser: Any) -> Iterator[Any]:
-    page = browser.new_page(viewport={"width": 900, "height": 700})
+    page = browser.new_page(viewport={"width": 900, "height": 700}, device_scale_factor=0.25)
     yield page
     page.close()
 

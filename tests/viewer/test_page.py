@@ -149,7 +149,7 @@ def test_what_is_read_out_begins_with_what_is_seen(visit: Open) -> None:
 
 def test_the_room_has_a_name_from_the_start(browser: Any, pages: dict[str, Path]) -> None:
     for path in pages.values():
-        tab = browser.new_context().new_page()
+        tab = browser.new_context(device_scale_factor=0.25).new_page()
         tab.add_init_script(NAMELESS)
         tab.goto(path.as_uri())
         until(tab, CUBE)

@@ -57,7 +57,9 @@ def test_the_page_is_drawn(
     browser: Any, cube: Cube, tmp_path: Path, name: str, width: int, height: int, scheme: str, keys: list[str]
 ) -> None:
     io.save(page(cube, "photographs"), tmp_path / "photographs.html")
-    tab, heard = opened(browser, tmp_path / "photographs.html", width=width, height=height, color_scheme=scheme)
+    tab, heard = opened(
+        browser, tmp_path / "photographs.html", width=width, height=height, color_scheme=scheme, device_scale_factor=1
+    )
     room = tab.locator("canvas.room")
     room.wait_for()
     for key in keys:
@@ -73,11 +75,12 @@ def test_the_page_is_drawn(
     tab.context.close()
 
 
+@pytest.mark.usefixtures("large_rooms")
 def test_the_report_is_drawn(run: Any, browser: Any, cube: Cube, tmp_path: Path) -> None:
     io.save(cube, tmp_path / "photographs.zarr")
     title = ("--title", "Eight photographs")
     assert run("report", tmp_path / "photographs.zarr", "-o", tmp_path / "report.html", *title).code == 0
-    tab, heard = opened(browser, tmp_path / "report.html", width=1000, height=1330)
+    tab, heard = opened(browser, tmp_path / "report.html", width=1000, height=1330, device_scale_factor=1)
     assert np.std(kept(tab.screenshot(), "report.png", tmp_path)) > 20
     assert not heard
     tab.context.close()

@@ -13,6 +13,9 @@ from lightcube.optics.stack import Stack
 from lightcube.optics.transfer import to_uint8
 from lightcube.optics.views import check_angles
 
+#: Rows and columns of the picture of a room.
+ROOM = (540, 960)
+
 
 def of_stage(path: str) -> str:
     """The drawing of a stage file's room at its first stop, or of its films: the text of an SVG."""
@@ -38,4 +41,4 @@ def of_cube(cube: Cube, angle_deg: float | None = None) -> NDArray[np.uint8]:
         Of the turntable, degrees; the first stop where nothing is said.
     """
     (turned,) = cube.angles_deg[:1] if angle_deg is None else check_angles([angle_deg])
-    return to_uint8(tableau(cube, float(turned), (540, 960)), cube.transfer)
+    return to_uint8(tableau(cube, float(turned), ROOM), cube.transfer)

@@ -321,7 +321,7 @@ function drawRoom(kit, seen) {
   gl.useProgram(painter.made);
   setSight(gl, painter, seen, width, height);
   setThings(gl, painter, seen, counts);
-  if (part < 1) bindTarget(gl, small, width, height);
+  if (part < 1) bindTarget(gl, small, width, height, gl.RGB8); // as the canvas: for another kind it is compiled anew
   else gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.viewport(0, 0, width, height);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
@@ -333,7 +333,7 @@ function drawRoom(kit, seen) {
 }
 
 /** Draw into a picture of some size that nobody sees. */
-function bindTarget(gl, target, width, height) {
+function bindTarget(gl, target, width, height, kind = gl.RGBA8) {
   const size = `${width} ${height}`;
   gl.bindFramebuffer(gl.FRAMEBUFFER, target.frame);
   if (target.size === size) return;
@@ -341,7 +341,7 @@ function bindTarget(gl, target, width, height) {
   target.texture = gl.createRenderbuffer();
   target.size = size;
   gl.bindRenderbuffer(gl.RENDERBUFFER, target.texture);
-  gl.renderbufferStorage(gl.RENDERBUFFER, gl.RGBA8, width, height);
+  gl.renderbufferStorage(gl.RENDERBUFFER, kind, width, height);
   gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, target.texture);
 }
 
