@@ -75,8 +75,8 @@ def firefox(folder: Path) -> Iterator[Firefox]:
     (folder / "user.js").write_text(f'user_pref("marionette.port", {port});\n{coarse}')
     command = [program, "--headless", "--no-remote", "--marionette", "--profile", str(folder)]
     small = {"MOZ_HEADLESS_WIDTH": "320", "MOZ_HEADLESS_HEIGHT": "200"}
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    with subprocess.Popen(command, **quiet, env={**os.environ, **small}) as running:
+    nothing = subprocess.DEVNULL
+    with subprocess.Popen(command, stdout=nothing, stderr=nothing, env={**os.environ, **small}) as running:
         try:
             with closing(opened(port)) as found:
                 yield found
