@@ -57,7 +57,7 @@ def test_what_cannot_be_printed_is_told_before_it_is_solved(  # type: ignore[no-
 
 
 def test_a_cube_becomes_films_and_says_what_that_gains(run, photos: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    small = "--n 8 --size-mm 30 --elevation-deg 35 --iterations 4 --hold-deg 0 --mat none".split()
+    small = ["--n", 8, "--size-mm", 30, "--elevation-deg", 35, "--iterations", 4, "--hold-deg", 0, "--mat", "none"]
     assert run("solve", photos, *small, "-o", tmp_path / "cube.npz").code == 0
     out = tmp_path / "prints.pdf"
     told = " ".join(run("export", "film", tmp_path / "cube.npz", "-o", out, "--films", "4").out.split())
