@@ -23,13 +23,17 @@ PYTEST := -m pytest -q -n auto --dist worksteal
 # Tests start hundreds of programs: each would compile the package anew, and each worker of the suite all tests.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-lowest test-newest check docs release coverage fuzz kills clean
+.PHONY: demo test test-compiled test-interpreted test-lowest test-newest check docs release coverage fuzz kills clean
 
 demo: .venv/.ready
 	$(BIN)/lightcube demo
 
-test: .venv/.ready-$(EXTRAS)
+test: test-compiled test-interpreted
+
+test-compiled: .venv/.ready-$(EXTRAS)
 	NUMBA_NUM_THREADS=1 $(BIN)/python $(PYTEST)
+
+test-interpreted: .venv/.ready-$(EXTRAS)
 	NUMBA_DISABLE_JIT=1 $(BIN)/python $(PYTEST) $(addprefix tests/,$(INTERPRETED))
 
 test-lowest test-newest: test-%: .venv-%
