@@ -35,6 +35,7 @@ copybutton_prompt_is_regexp = True
 html_theme = "furo"
 html_title = f"lightcube {release}"
 html_static_path = ["_static"]
+html_favicon = "_static/cube.svg"
 html_css_files = ["site.css"]
 html_js_files = ["site.js"]
 html_copy_source = False

@@ -26,6 +26,7 @@ DOCS = ROOT / "docs"
 #: Files of each kind, written by hand: all their keys are to be found.
 WRITTEN = {
     "stage": sorted((ROOT / "examples" / "stages").glob("*.toml")),
+    "films": sorted((ROOT / "examples" / "films").glob("*.toml")),
     "scene": sorted((ROOT / "src" / "lightcube" / "scene" / "library").glob("*.toml")),
     "material": sorted((ROOT / "src" / "lightcube" / "materials").glob("*.toml")),
 }
@@ -117,6 +118,16 @@ def test_what_is_said_is_on_the_page_of_sentences(wrong: Any) -> None:
     with pytest.raises(lc.InputError) as told:
         wrong()
     assert any(re.fullmatch(as_pattern(each), str(told.value), re.DOTALL) for each in listed()), str(told.value)
+
+
+#: A sentence says what to do behind a colon, or what is allowed.
+REMEDY = re.compile(r": |\bmust\b|, not |\blies? |\bat (least|most)\b|\bas in\b|\btakes? |\bsay |\bgive ")
+#: Those whose end is said elsewhere: by what they are put into, or by what is put into them.
+PARTS = ("‹path› holds ‹held›, and ‹needed›", "lightcube is ‹…› there", "in this room ‹…›", "on this stage ‹…›")
+
+
+def test_every_sentence_says_what_to_do_or_what_is_allowed() -> None:
+    assert [said for said in listed() if not REMEDY.search(said) and not said.startswith(PARTS)] == []
 
 
 def test_sentences_are_read_as_they_are_written() -> None:

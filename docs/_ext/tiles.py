@@ -21,7 +21,7 @@ from kept import PACKAGE, once
 ROOT = Path(__file__).parents[2]
 SCRIPTS, MADE, KEPT = ROOT / "examples" / "gallery", ROOT / "out" / "gallery", ROOT / "docs" / "pictures" / "gallery"
 #: What scripts share and read, beside themselves and the package.
-SHARED, READ = "tile", (ROOT / "examples" / "letters.py", ROOT / "examples" / "stages")
+SHARED, READ = "tile", tuple(ROOT / "examples" / each for each in ("letters.py", "stages", "films"))
 
 
 class Tile(NamedTuple):

@@ -3,6 +3,7 @@
 All that no shadow needs was taken out of it, voxel by voxel: a tenth of the solid is left, and it casts the same
 three letters.
 
+    lightcube hull front.png side.png top.png --walls -o word.shape.zarr --n 64
     lightcube carve word.shape.zarr -o lace.shape.zarr --carve lace --keep-deep 2
     lightcube view lace.shape.zarr
 """

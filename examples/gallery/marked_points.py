@@ -3,6 +3,8 @@
 White points where the cube is dark, no two nearer than 0.8 mm, for shops that mark glass inside. Points scatter light:
 they show the cube's shape, and none of its pictures.
 
+    lightcube trace gems -o pictures --count 12 --size 40x40
+    lightcube solve pictures -o cube.zarr --n 40 --picture-width 1 --mat none --lamp-power 1
     lightcube export points cube.zarr -o points.ply --spacing-um 800
 """
 

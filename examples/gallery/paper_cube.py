@@ -21,4 +21,5 @@ targets = lc.Targets(np.stack(list(wanted)), rig)
 cube = lc.solve(targets, grid, lc.Recipe(method="gauss-seidel", dtype="float64")).cube
 print("largest error of a voxel", abs(cube.extinction - truth.extinction).max())
 drawn = small_cube(clear, targets.pictures, rig.views.angles_deg)
-show(__doc__, cube, seen=drawn[:, : 3 * len(drawn) // 2])
+margin = (2 * drawn.shape[1] // 3 - len(drawn)) // 2  # to the shape of a thumbnail, which then cuts nothing off
+show(__doc__, cube, seen=np.pad(drawn, ((margin, margin), (0, 0), (0, 0)), mode="edge"))

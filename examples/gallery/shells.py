@@ -3,6 +3,8 @@
 Surfaces around the darkness of a cube, each of one colour, as a printer with three filaments takes them; here with a
 quarter cut out. They are an ornament, and cast no pictures: the cube that they were drawn from does, on the page.
 
+    lightcube trace gems -o pictures --count 12 --size 40x40
+    lightcube solve pictures -o cube.zarr --n 40 --picture-width 1 --mat none --lamp-power 1
     lightcube export shell cube.zarr -o shells.3mf --levels 3
 """
 

@@ -152,13 +152,13 @@ def test_what_does_not_belong_together_is_refused_and_nothing_is_written(run, cu
 
 
 def test_a_sidecar_that_stands_in_the_way_is_not_overwritten_unasked(run, cube: Path, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    (tmp_path / "a.json").write_text("mine")
+    (tmp_path / "a.vti.json").write_text("mine")
     done = run("export", "volume", cube, "-o", tmp_path / "a.vti")
     assert done.code == 2
-    assert "a.json exists already" in done.err
+    assert "a.vti.json exists already" in done.err
     assert not (tmp_path / "a.vti").exists()
     assert run("export", "volume", cube, "-o", tmp_path / "a.vti", "--overwrite").code == 0
-    assert sidecar.read(tmp_path / "a.json") is not None
+    assert sidecar.read(tmp_path / "a.vti.json") is not None
 
 
 def test_a_full_disk_leaves_nothing_and_keeps_what_was(run, cube: Path, tmp_path: Path, monkeypatch: Any) -> None:  # type: ignore[no-untyped-def]
@@ -184,5 +184,5 @@ def test_a_schedule_can_be_made_of_slices_whose_lamps_were_found_anew(run, cube:
     assert done.code == 0, done.err
     assert "3 stops, once round takes" in done.out
     assert "one constant white lamp instead" in done.out
-    rows = json.loads((tmp_path / "a.json").read_text())["rows"]
+    rows = json.loads((tmp_path / "a.csv.json").read_text())["rows"]
     assert [row["power_red"] for row in rows] != lc.load(cube).powers[:, 0].tolist()

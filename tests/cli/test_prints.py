@@ -32,8 +32,8 @@ def test_pictures_become_films_in_one_command(run, photos: Path, tmp_path: Path)
     told = " ".join(run("solve", photos, *FEW, "-o", out).out.split())
     assert "prints.pdf is ready to be printed" in told
     assert "lightcube export film" in told
-    assert {each.name for each in tmp_path.iterdir()} == {"photos", "prints.pdf", "prints.json", "prints.zarr"}
-    predicted = json.loads((tmp_path / "prints.json").read_text())["predicted"]["psnr_mean"]
+    assert {each.name for each in tmp_path.iterdir()} == {"photos", "prints.pdf", "prints.pdf.json", "prints.zarr"}
+    predicted = json.loads((tmp_path / "prints.pdf.json").read_text())["predicted"]["psnr_mean"]
     assert json.loads(run("score", out, "--json").out)["psnr_mean"] == pytest.approx(predicted, abs=0.05)
     assert json.loads(run("score", out, tmp_path / "prints.zarr", "--json").out)["psnr_mean"] == predicted
     assert run("play", out, "-o", tmp_path / "shown").code == 0
@@ -63,7 +63,7 @@ def test_a_cube_becomes_films_and_says_what_that_gains(run, photos: Path, tmp_pa
     told = " ".join(run("export", "film", tmp_path / "cube.npz", "-o", out, "--films", "4").out.split())
     assert "4 films, solved for themselves" in told
     assert "the cube's slices as they are" in told
-    predicted = json.loads((tmp_path / "prints.json").read_text())["predicted"]["psnr_mean"]
+    predicted = json.loads((tmp_path / "prints.pdf.json").read_text())["predicted"]["psnr_mean"]
     assert json.loads(run("score", out, "--json").out)["psnr_mean"] == pytest.approx(predicted, abs=0.05)
     again = run("export", "film", tmp_path / "prints.zarr", "-o", tmp_path / "more.pdf", "--paper", "a3", "--no-score")
     assert again.code == 0

@@ -152,8 +152,8 @@ def _edited(path: Path, edit: Any) -> Path:
     with pikepdf.open(path) as pdf:
         edit(pdf)
         pdf.save(other, object_stream_mode=pikepdf.ObjectStreamMode.disable, compress_streams=True)
-    said = json.loads(path.with_suffix(".json").read_text())
-    other.with_suffix(".json").write_text(json.dumps(said | {"files": {"other.pdf": "0" * 64}}))
+    said = json.loads(Path(f"{path}.json").read_text())
+    Path(f"{other}.json").write_text(json.dumps(said | {"files": {"other.pdf": "0" * 64}}))
     return other
 
 
@@ -318,16 +318,16 @@ def test_cubes_are_no_films(tmp_path: Path) -> None:
 
 
 def test_what_stands_there_stays(tmp_path: Path) -> None:
-    (tmp_path / "a.json").write_text("mine")
+    (tmp_path / "a.pdf.json").write_text("mine")
     with pytest.raises(InputError, match="exists already"):
         export(stack(2), tmp_path / "a.pdf", "film")
-    assert [each.name for each in tmp_path.iterdir()] == ["a.json"]
+    assert [each.name for each in tmp_path.iterdir()] == ["a.pdf.json"]
 
 
 def test_pages_alone_are_not_enough(tmp_path: Path) -> None:
     export(stack(2), tmp_path / "a.pdf", "film", score=False)
-    (tmp_path / "a.json").unlink()
-    with pytest.raises(InputError, match=r"no a\.json beside it"):
+    (tmp_path / "a.pdf.json").unlink()
+    with pytest.raises(InputError, match=r"no a\.pdf\.json beside it"):
         read_export(tmp_path / "a.pdf")
 
 

@@ -60,7 +60,7 @@ def test_trimesh_reads_shells_and_an_stl_of_each_lies_beside_them(tmp_path: Path
     pytest.importorskip("lxml", reason="trimesh reads 3MF with lxml")
     said = lc.export(a_cube(), tmp_path / "a.3mf", "shell", levels=2)
     assert sorted(said["files"]) == ["a-1.stl", "a-2.stl", "a.3mf"]
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["a-1.stl", "a-2.stl", "a.3mf", "a.json"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["a-1.stl", "a-2.stl", "a.3mf", "a.3mf.json"]
     scene = trimesh.load(tmp_path / "a.3mf")
     found = sorted(float(each.volume) for each in scene.geometry.values())
     np.testing.assert_allclose(found[::-1], [part["volume_mm3"] for part in said["shells"]], rtol=1e-5)
@@ -77,7 +77,7 @@ def test_shells_hold_what_they_say_and_no_file_has_a_date(tmp_path: Path) -> Non
         lc.export(cube, tmp_path / f"{name}.3mf", "shell")
     assert (tmp_path / "a.3mf").read_bytes() == (tmp_path / "b.3mf").read_bytes()
     assert zipfile.ZipFile(tmp_path / "a.3mf").testzip() is None
-    holds = [part["holds"] for part in json.loads((tmp_path / "a.json").read_text())["shells"]]
+    holds = [part["holds"] for part in json.loads((tmp_path / "a.3mf.json").read_text())["shells"]]
     assert holds == sorted(holds, reverse=True)
     assert 0 < holds[-1] < holds[0] < 1
 
@@ -158,7 +158,7 @@ def test_a_schedule_turns_in_the_dark_as_the_movies_do(tmp_path: Path) -> None:
     said = lc.export(cube, tmp_path / "a.csv", "schedule")
     with (tmp_path / "a.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert json.loads((tmp_path / "a.json").read_text())["rows"] == said["rows"]
+    assert json.loads((tmp_path / "a.csv.json").read_text())["rows"] == said["rows"]
     course = Course.of(3, 30.0)
     assert [float(row["angle_deg"]) for row in rows] == [10.0, 95.0, 222.0]
     assert [float(row["turn_deg"]) for row in rows] == [148.0, 85.0, 127.0]
@@ -174,7 +174,7 @@ def test_a_schedule_turns_in_the_dark_as_the_movies_do(tmp_path: Path) -> None:
     fade = said["fade"]
     np.testing.assert_allclose(fade["light"], decode(np.array(fade["seconds"]) * 30 / course.fade))
     lc.export(cube, tmp_path / "b.json", "schedule")
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["a.csv", "a.json", "b.json"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["a.csv", "a.csv.json", "b.json"]
 
 
 def test_names_that_spreadsheets_would_reckon_with_are_text(tmp_path: Path) -> None:

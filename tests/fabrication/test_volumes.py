@@ -187,8 +187,8 @@ def test_without_a_sidecar_the_cube_says_what_lamps_there_are(tmp_path: Path) ->
     for suffix in FORMATS:
         path = tmp_path / f"a{suffix}"
         lc.export(cube, path, "volume", score=False)
-        (tmp_path / "a.json").unlink()  # it stands in the way of the next, too
-        with pytest.raises(InputError, match=r"there is no a.json beside it: name the cube"):
+        (tmp_path / f"a{suffix}.json").unlink()
+        with pytest.raises(InputError, match=rf"there is no a{suffix}.json beside it: name the cube"):
             lc.read_export(path)
         found = lc.read_export(path, like=cube)
         np.testing.assert_array_equal(found.extinction, cube.extinction)
@@ -196,19 +196,27 @@ def test_without_a_sidecar_the_cube_says_what_lamps_there_are(tmp_path: Path) ->
         np.testing.assert_allclose(found.grid.sides_mm, cube.grid.sides_mm)
 
 
+def test_one_name_with_two_suffixes_has_two_sidecars(tmp_path: Path) -> None:
+    cube = a_cube()
+    for suffix in FORMATS:
+        lc.export(cube, tmp_path / f"a{suffix}", "volume", score=False)
+    for suffix in FORMATS:
+        np.testing.assert_array_equal(lc.read_export(tmp_path / f"a{suffix}").extinction, cube.extinction)
+
+
 def test_a_sidecar_says_what_it_is_of_and_none_of_another_is_taken(tmp_path: Path) -> None:
     cube = a_cube((6, 7, 9))
     said = lc.export(cube, tmp_path / "a.vdb", "volume", made_from="../cube.zarr")
-    assert json.loads((tmp_path / "a.json").read_text()) == json.loads(sidecar.text(said))
+    assert json.loads((tmp_path / "a.vdb.json").read_text()) == json.loads(sidecar.text(said))
     assert said["voxels"] == {"x": 9, "y": 7, "z": 6}
     assert said["pitch_mm"] == {"x": 0.5, "y": 0.5, "z": 0.5}
     assert said["files"] == {"a.vdb": sidecar.digest(tmp_path / "a.vdb")}
     assert said["made_from_sha256"] == sidecar.digest_of(cube)
     shutil.copy(tmp_path / "a.vdb", tmp_path / "b.vdb")
-    (tmp_path / "b.json").write_text((tmp_path / "a.json").read_text())
-    with pytest.raises(InputError, match=r"there is no b.json beside it"):  # it is that of a.vdb
+    (tmp_path / "b.vdb.json").write_text((tmp_path / "a.vdb.json").read_text())
+    with pytest.raises(InputError, match=r"there is no b.vdb.json beside it"):  # it is that of a.vdb
         lc.read_export(tmp_path / "b.vdb")
     for harmed in ("", "{}", "[]", '{"format": "lightcube export 9"}', json.dumps({**said, "kind": "cake"})):
-        (tmp_path / "a.json").write_text(harmed)
-        with pytest.raises(InputError, match=r"a.json is not what lightcube export wrote[^\n]*: export again"):
+        (tmp_path / "a.vdb.json").write_text(harmed)
+        with pytest.raises(InputError, match=r"a.vdb.json is not what lightcube export wrote[^\n]*: export again"):
             lc.read_export(tmp_path / "a.vdb")

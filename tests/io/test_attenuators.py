@@ -45,6 +45,15 @@ def test_a_folder_of_pictures_is_as_good_as_its_files(folder: Path) -> None:
     assert ways == ("pad", "pad")
 
 
+def test_pictures_are_called_as_the_file_says(folder: Path) -> None:
+    (folder / "photos").mkdir()
+    for name in "cd":
+        Image.new("RGB", (12, 8)).save(folder / "photos" / f"{name}.png")
+    called = TWO.replace('"a.png"\n', '"a.png"\nname = "dawn"\n') + '[[picture]]\nfile = "photos"\nname = "dusk"\n'
+    stage, pictures, _ = read(folder, STACK.replace("films = 3", "films = 4") + called)
+    assert [shot.name for shot in stage.shots] == list(pictures.names) == ["dawn", "b", "dusk 1", "dusk 2"]
+
+
 def test_lamps_stand_where_they_are_said_to(folder: Path) -> None:
     lamps = (
         '[[lamp]]\nname = "sun"\nsun = {latitude_deg = 48, day = "06-21", hour = 10.0}\npower_max = 4\n'

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import DTypeLike, NDArray
-from scipy.sparse import csr_array, random_array
+from scipy.sparse import csr_array
 
 from lightcube.optics.grid import Grid
 from lightcube.optics.setups import turntable
@@ -20,7 +20,8 @@ class Sheets:
     """Any other matrix: no block of voxels, no views."""
 
     def __init__(self) -> None:
-        self.matrix = csr_array(random_array((11, 6), density=0.4, rng=np.random.default_rng(0)))
+        random = np.random.default_rng(0).random((2, 11, 6))
+        self.matrix = csr_array(np.where(random[0] < 0.4, random[1], 0.0))
         self.shape = (11, 6)
 
     def forward(self, x: NDArray[Any]) -> NDArray[Any]:

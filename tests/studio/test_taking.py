@@ -99,7 +99,7 @@ def test_it_is_made_in_a_process_told_of_and_saved_under_its_title(client: TestC
     assert thing["made"]["file"] == "Zoë-we-schedule.csv"
     assert [path.name for path in desk.project.path(MADE, "away").iterdir()] == ["cube"]
     left = {path.name for path in desk.project.path(MADE, "away", "cube").iterdir()}
-    assert left == {"Zoë-we-schedule.csv", "Zoë-we-schedule.json"}
+    assert left == {"Zoë-we-schedule.csv", "Zoë-we-schedule.csv.json"}
     assert "getting ready" in [facts["doing"]["sentence"] for facts in told if facts["doing"]]
     assert {path.name for path in desk.project.folder.iterdir() if not path.name.startswith(".")} <= {
         *("dropped", "pictures", "made", "project.toml", "history.json")

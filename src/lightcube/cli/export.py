@@ -34,7 +34,7 @@ def export(
     cube: Annotated[str, typer.Argument(help="A cube or a stack of films, or an exported volume or folder of slices.")],
     output: Annotated[str, OUT],
     unit: Annotated[
-        str | None, typer.Option(help="Of a .vdb: mm, or m for programs such as Blender.  [default: mm]")
+        str | None, typer.Option(help="Of a .vdb: mm, or m for programs that take a metre.  [default: mm]")
     ] = None,
     levels: Annotated[int | None, typer.Option(help="How many shells, 1 to 8.  [default: 3]")] = None,
     spacing_um: Annotated[

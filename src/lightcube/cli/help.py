@@ -90,7 +90,7 @@ EXAMPLES: Mapping[str, Sequence[tuple[str, str]]] = {
         ("lightcube calibrate fit densities.csv -o inkjet.toml", "the same of densities that were typed"),
     ],
     "export": [
-        ("lightcube export volume cube.zarr -o cube.vdb --unit m", "for Blender, whose unit is a metre"),
+        ("lightcube export volume cube.zarr -o cube.vdb", "for Blender"),
         (
             "lightcube export polyjet cube.zarr -o print --resins polyjet --dry-run",
             "what slices would be",

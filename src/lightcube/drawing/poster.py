@@ -4,12 +4,12 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
+from lightcube.drawing.lettering import write
 from lightcube.optics.transfer import Transfer, decode, encode
 
 Picture = NDArray[np.float32]
-Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
 
 #: Shapes of movies that people share.
 Format = Literal["square", "portrait", "wide"]
@@ -98,16 +98,7 @@ def _from_edge(count: int) -> NDArray[np.float64]:
 def lettering(text: str, size: tuple[int, int], below: float) -> Picture:
     """``(row, column)`` from 0 to 1: a line of text, its middle in that row of a frame, cut where it is too long."""
     rows, columns = size
-    font = ImageFont.load_default(max(9, round(_LETTERS * min(size))))
-    line = in_line(text, font, 0.9 * columns)
     sheet = Image.new("L", (columns, rows))
-    ImageDraw.Draw(sheet).text((columns / 2, below), line, 255, font, anchor="mm")
+    letters = max(9, round(_LETTERS * min(size)))
+    write(ImageDraw.Draw(sheet), (columns / 2, below), text, letters, 255, 0.9 * columns, "mm")
     return np.asarray(sheet, np.float32) / np.float32(255)
-
-
-def in_line(text: str, font: Font, width: float) -> str:
-    """A text as one line, cut where it is wider than so many pixels."""
-    line = "".join(letter if letter.isprintable() else " " for letter in text)[:200].strip()
-    while line and font.getlength(line) > width:
-        line = line[:-2].rstrip("… ") + "…" if len(line) > 1 else ""
-    return line

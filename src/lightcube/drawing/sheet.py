@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
-from lightcube.drawing.poster import in_line
+from lightcube.drawing.lettering import spelled, write
 from lightcube.optics.naming import told_apart
 from lightcube.optics.transfer import encode, to_uint8
 from lightcube.pictures.targets import Targets
@@ -85,7 +85,6 @@ def _zoom(rows: int, columns: int) -> float:
 def laid_out(tiles: list[Image.Image], said: list[tuple[str, str]], lines: tuple[str, str]) -> Image.Image:
     """Tiles of one size with a name and figures below each, under a title and a note."""
     count, (wide, high) = len(tiles), tiles[0].size
-    font = {size: ImageFont.load_default(size) for size in (_TITLE, _NOTE, _NAME, _FIGURE)}
     name, figure, title, note = (math.ceil(_LINE * size) for size in (_NAME, _FIGURE, _TITLE, _NOTE))
     top, step = title + note + 2 * _GAP, (wide + _GAP, high + name + figure + _GAP)
 
@@ -97,20 +96,18 @@ def laid_out(tiles: list[Image.Image], said: list[tuple[str, str]], lines: tuple
 
     across = min(range(1, count + 1), key=unlike_paper)
     width, height = across * step[0] + _GAP, -(-count // across) * step[1] + top
-    width = max(width, math.ceil(font[_NOTE].getlength(lines[1])) + 2 * _GAP)
+    note_line, note_font = spelled(lines[1], _NOTE)
+    width = max(width, math.ceil(note_font.getlength(note_line)) + 2 * _GAP)
     sheet = Image.new("RGB", (width, height), PAPER)
     draw = ImageDraw.Draw(sheet)
 
-    def write(left: int, above: int, text: str, size: int, ink: tuple[int, int, int], most: int) -> None:
-        draw.text((left, above), in_line(text, font[size], most), ink, font[size])
-
-    write(_GAP, _GAP, lines[0], _TITLE, _INK, width - 2 * _GAP)
-    write(_GAP, _GAP + title, lines[1], _NOTE, _QUIET, width - 2 * _GAP)
+    write(draw, (_GAP, _GAP), lines[0], _TITLE, _INK, width - 2 * _GAP)
+    write(draw, (_GAP, _GAP + title), lines[1], _NOTE, _QUIET, width - 2 * _GAP)
     for place, (tile, (called, figures)) in enumerate(zip(tiles, said, strict=True)):
         left, above = _GAP + place % across * step[0], top + place // across * step[1]
         sheet.paste(tile, (left, above))
-        write(left, above + high + 6, called, _NAME, _INK, wide)
-        write(left, above + high + name + 2, figures, _FIGURE, _QUIET, wide)
+        write(draw, (left, above + high + 6), called, _NAME, _INK, wide)
+        write(draw, (left, above + high + name + 2), figures, _FIGURE, _QUIET, wide)
     return sheet
 
 

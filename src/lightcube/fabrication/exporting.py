@@ -56,7 +56,7 @@ def export(
     tell: Tell | None = None,
     **options: Any,
 ) -> dict[str, Any]:
-    """Write a cube as something that is made or shown by others, and ``NAME.json`` beside it, whole or not at all.
+    """Write a cube as something that is made or shown by others, and ``FILE.json`` beside it, whole or not at all.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def export(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     said = lc.export(cube, f"{folder}/a.vdb", "volume")
     ...     sorted(os.listdir(folder)), said["size_mm"]
-    (['a.json', 'a.vdb'], {'x': 6.0, 'y': 6.0, 'z': 4.0})
+    (['a.vdb', 'a.vdb.json'], {'x': 6.0, 'y': 6.0, 'z': 4.0})
     """
     at = place(path)
     check(at, kind, overwrite=overwrite)

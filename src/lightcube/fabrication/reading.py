@@ -48,7 +48,7 @@ def is_film(path: str | Path) -> bool:
 def read_export(path: str | Path, *, like: Cube | None = None, force: bool = False) -> Cube:
     """Read what an exported volume, a folder of slices or pages of films hold as a cube, without targets.
 
-    Lamps and screens are those that the sidecar says, ``NAME.json`` beside a file and ``slices.json`` in a folder.
+    Lamps and screens are those that the sidecar says, ``FILE.json`` beside a file and ``slices.json`` in a folder.
 
     Parameters
     ----------

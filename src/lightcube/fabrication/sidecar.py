@@ -84,9 +84,11 @@ class Sidecar(BaseModel):
 
 
 def place_of(at: Place, *, is_folder: bool) -> Place:
-    """Where the sidecar of a file or a folder stands."""
+    """Where the sidecar of a file or a folder stands; what is JSON itself is its own."""
+    if is_folder:
+        return child(at, INSIDE)
     name = name_of(at)
-    return child(at, INSIDE) if is_folder else beside(at, f"{name.rpartition('.')[0] or name}.json")
+    return at if name.lower().endswith(".json") else beside(at, f"{name}.json")
 
 
 def read(at: Place) -> Sidecar | None:

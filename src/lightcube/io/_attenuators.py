@@ -11,13 +11,12 @@ from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from lightcube.errors import InputError
-from lightcube.io._stage_tables import Flag, LampTable, Name, Table
+from lightcube.io._stage_tables import Flag, LampTable, Name, Table, WantedTable
 from lightcube.optics.attenuator import Films, attenuator, snapped
 from lightcube.optics.material import Material
 from lightcube.optics.moves import Move
 from lightcube.optics.stage import Lamp, Stage
 from lightcube.optics.sun import sunlight
-from lightcube.pictures.fitting import Fit
 from lightcube.pictures.pictures import Pictures
 from lightcube.scene.description import Count, Line, Number, Positive
 
@@ -127,14 +126,12 @@ class MoveTable(Table):
         return Move(self.name, self.order, tuple(shifts), tuple(turns))
 
 
-class FilmPictureTable(Table):
+class FilmPictureTable(WantedTable):
     """A picture, or a folder of them; its lamp or lamps, and its move, where they are said."""
 
-    file: Line
     lamp: Name | None = None
     lamps: tuple[Name, ...] | None = None
     move: Name | None = None
-    fit: Fit = "crop"
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:

@@ -121,28 +121,33 @@ class ScreenTable(Table):
     black: Number | None = None
 
 
-class PictureTable(Table):
-    """One picture for the stop number `stop`, or several for it and the following ones, or one each for `stops`."""
+class WantedTable(Table):
+    """A file of a picture or more, or a folder of them; what they are called, and how they are fitted."""
 
     file: Line
     name: Name | None = None
-    screen: Name
-    lamps: tuple[Name, ...] | None = None
-    stop: Count = 1
-    stops: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
     fit: Fit = "crop"
-
-    @model_validator(mode="after")
-    def _one_of_two(self) -> Self:
-        if {"stop", "stops"} <= self.model_fields_set:
-            raise PydanticCustomError("stops", "stop and stops are both given: use one of the two")
-        return self
 
     def names_of(self, read: tuple[str, ...]) -> Sequence[str]:
         """What pictures that were read with these names are called."""
         if self.name is None:
             return read
         return [self.name] if len(read) == 1 else [f"{self.name} {number + 1}" for number in range(len(read))]
+
+
+class PictureTable(WantedTable):
+    """One picture for the stop number `stop`, or several for it and the following ones, or one each for `stops`."""
+
+    screen: Name
+    lamps: tuple[Name, ...] | None = None
+    stop: Count = 1
+    stops: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        if {"stop", "stops"} <= self.model_fields_set:
+            raise PydanticCustomError("stops", "stop and stops are both given: use one of the two")
+        return self
 
     def stops_of(self, count: int, last: int) -> Sequence[int]:
         """Numbers of the stops, from 1 to `last`, of so many pictures; `InputError` where they do not come out."""

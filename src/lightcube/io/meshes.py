@@ -66,7 +66,7 @@ def read_mesh(path: Path, where: str) -> NDArray[np.float64]:
     if read is None:
         raise InputError(f"{where}: {path.name} is no mesh: use a file ending in {', '.join(_READERS)}")
     if not path.is_file():
-        raise InputError(f"{where}: there is no file {path}")
+        raise InputError(f"{where}: there is no file {path}: check its name")
     try:
         with system_errors(path, "reading"):
             if path.stat().st_size > _MOST_BYTES:

@@ -83,7 +83,7 @@ def read_palette(source: str, *, only: Sequence[str] = (), skip: bool = False, l
         names.append(entry.name)
         said.append(told)
     if not rows:
-        raise InputError(f"{Path(path).name} has no filament that says what it absorbs")
+        raise InputError(f"{Path(path).name} has no filament that says what it absorbs: take another palette")
     dyes = Dyes(tuple(names), np.array(rows), label=np.array(labels), calibration=calibration, kind="filament")
     return Imported(dyes, said)
 
@@ -92,11 +92,11 @@ def _document(path: Path) -> Any:
     with system_errors(path, "reading"), check_file(path).open("rb") as opened:
         data = opened.read(MOST_TEXT + 1)
     if len(data) > MOST_TEXT:
-        raise InputError(f"{path.name} is larger than any palette")
+        raise InputError(f"{path.name} is larger than any palette: give the palette by itself")
     try:
         return json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path.name} is no JSON ({' '.join(str(error).split())[:80]})") from None
+        raise InputError(f"{path.name} is no JSON ({' '.join(str(error).split())[:80]}): export it again") from None
 
 
 def _pixestl(document: Any) -> list[_Entry]:

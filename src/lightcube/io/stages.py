@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from lightcube.errors import InputError
-from lightcube.io._attenuators import AttenuatorFile, attenuator_of
+from lightcube.io._attenuators import AttenuatorFile, FilmPictureTable, attenuator_of
 from lightcube.io._files import system_errors
 from lightcube.io._stage_tables import StageFile
 from lightcube.io._toml import read_tables
@@ -90,20 +90,22 @@ def read_stage(path: str | Path, *, transfer: Transfer = "srgb") -> tuple[Stage,
 
 def _read_attenuator(file: Path, said: AttenuatorFile, transfer: Transfer) -> tuple[Stage, Pictures, tuple[Fit, ...]]:
     """Read the pictures of a stage file of films, which are as wide and high as the first one."""
-    read, tables = [], []
+    read: list[Pictures] = []
+    tables: list[FilmPictureTable] = []
+    names: list[str] = []
     for number, table in enumerate(said.picture, start=1):
         with _about(f"{file.name}: picture {number}"):
             read.append(read_pictures(file.parent / table.file, transfer=transfer, least=1))
         tables += [table] * len(read[-1])
+        names += table.names_of(read[-1].names)
     if not read:
         raise InputError(f"{file.name}: no picture is wanted of these films: name some, [[picture]] file = ...")
     named = Pictures(
         tuple(image for pictures in read for image in pictures.images),
-        tuple(name for pictures in read for name in pictures.names),
+        _numbered(names),
         transfer=transfer,
         opacities=tuple(opacity for pictures in read for opacity in pictures.opacities),
     )
-    named = replace(named, names=_numbered(named.names))
     with _about(file.name):
         return attenuator_of(said, tables, named), named, tuple(table.fit for table in tables)
 

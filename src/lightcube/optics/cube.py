@@ -101,7 +101,9 @@ class Cube:
         check_pixels(self.rig.views, self.grid)
         pictures, channels = len(self.rig), len(extinction)
         if self.rig.sums.share.shape[1] not in (1, channels):
-            raise InputError(f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {channels}")
+            raise InputError(
+                f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {channels}: give one of as many"
+            )
         shape = (len(self.rig.pairs), channels)
         powers = owned(np.ones(shape) if self.lamp_powers is None else self.lamp_powers, np.float64)
         if powers.shape != shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):

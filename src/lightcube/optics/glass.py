@@ -87,7 +87,9 @@ class Glass:
         if self.form == "bath" and len(self.iors) > 1:
             raise InputError("a bath has one index of refraction, that of the block in it: give one number")
         if self.bottom == "blocked" and self.form != "block":
-            raise InputError(f"whether light leaves through the bottom is asked of a block, not of a {self.form}")
+            raise InputError(
+                f"whether light leaves through the bottom is asked of a block, not of a {self.form}: leave it out"
+            )
         if self.bath_mm is not None and not (self.is_bath and 0 < self.bath_mm <= _LARGEST_MM):
             raise InputError(
                 f"bath_mm is the width of a bath, above 0 and up to {_LARGEST_MM:g} mm, not {self.bath_mm:g} of a "

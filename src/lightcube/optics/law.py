@@ -57,7 +57,7 @@ class Mixture:
         if self.light.ndim != 2 or self.shadow.shape != self.light.shape or self.share.shape[:1] != (views,):
             raise InputError(
                 f"light of shape {self.light.shape}, shadow of shape {self.shadow.shape} and share of shape "
-                f"{self.share.shape} are not of the same views"
+                f"{self.share.shape} are not of the same views: give each of them for all"
             )
         if [*self.starts[:1], *self.starts[-1:]] != [0, views] or np.any(np.diff(self.starts) < 1):
             raise InputError(f"pictures must begin at views from 0 up to {views}, each with one at least")

@@ -80,7 +80,7 @@ def places_of(stack: Stack, rig: Rig) -> Reals:
         usual[:, [0, 3]], usual[:, 6] = 1, stack.heights_mm
         return np.broadcast_to(usual, (len(rig), *usual.shape))
     if films.shape[1] != stack.shape[0]:
-        raise InputError(f"places of {films.shape[1]} films do not fit a stack of {stack.shape[0]}")
+        raise InputError(f"places of {films.shape[1]} films do not fit a stack of {stack.shape[0]}: give one each")
     return films
 
 

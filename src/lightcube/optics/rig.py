@@ -98,7 +98,7 @@ class Rig:
         self.views.check_screens()
         views = len(self.views)
         if not len(self.sums.picture) == len(self.fading.cosine) == len(self.turning.turns) == views:
-            raise InputError(f"the parts of a rig are not all of {counted(views, 'view')}")
+            raise InputError(f"the parts of a rig are not all of {counted(views, 'view')}: make them of the same")
         if self.sums.picture[-1] + 1 != len(self.stops.angle_deg):
             stops, pictures = len(self.stops.angle_deg), int(self.sums.picture[-1]) + 1
             raise InputError(f"{counted(stops, 'stop')} for {counted(pictures, 'picture')}: give one each")
@@ -113,7 +113,10 @@ class Rig:
         if np.any(self.views.lamps[:, 3] != 0):
             raise InputError("glass bends parallel light only: give its lamps a direction, not a place")
         if len(glass.iors) > 1 and np.any(np.sum(self.sums.share > 0, axis=1) > 1):
-            raise InputError("with an index of refraction for each colour a rig's views must be of one colour each")
+            raise InputError(
+                "with an index of refraction for each colour a rig's views must be of one colour each: "
+                "part them by Rig.by_colour first"
+            )
         if glass.is_round and glass.bends:
             light = self.light
             ahead = light if glass.form == "sphere" else light * (1.0, 1.0, 0.0)
@@ -416,7 +419,9 @@ class Rig:
         """Pictures that stand `offsets` ``(picture, 2)`` pixels further right and down on their screens."""
         offsets = np.asarray(offsets)
         if offsets.shape != (len(self), 2):
-            raise InputError(f"offsets of shape {offsets.shape} do not fit the pictures, which want ({len(self)}, 2)")
+            raise InputError(
+                f"offsets of shape {offsets.shape} do not fit the pictures, which want ({len(self)}, 2): give two each"
+            )
         views, own = self.views, offsets[self.sums.picture]
         origins_mm = views.origins_mm + own[:, :1] * views.column_steps_mm + own[:, 1:] * views.row_steps_mm
         return replace(self, views=replace(views, origins_mm=origins_mm))

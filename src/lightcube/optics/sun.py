@@ -53,7 +53,8 @@ def sunlight(latitude_deg: float, day: str, hour: float, faces_deg: float = 180.
     towards = _towards(latitude_deg, _declination(_day_of_year(day)), hour)  # east, north, up
     if towards[2] <= 0:
         raise InputError(
-            f"sun: it is below the horizon on {day} at {hour:g} h, at {latitude_deg:g} degrees of latitude"
+            f"sun: it is below the horizon on {day} at {hour:g} h, at {latitude_deg:g} degrees of latitude: "
+            "choose another hour or day"
         )
     faces, tilt = math.radians(faces_deg), math.radians(tilt_deg)
     level = np.array([math.sin(faces), math.cos(faces), 0.0])

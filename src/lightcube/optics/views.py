@@ -220,7 +220,7 @@ def check_angles(angles_deg: Numbers) -> Reals:
     sane = np.abs(vector) <= MOST_DEG
     if not np.all(sane):
         raise InputError(
-            f"angle number {int(np.argmin(sane)) + 1} is not a finite number of degrees below {MOST_DEG:g}"
+            f"angle number {int(np.argmin(sane)) + 1} is not a finite number of degrees below {MOST_DEG:g}: mend it"
         )
     return vector
 
@@ -370,7 +370,7 @@ def turntable_views(
     if shape[0] > raster[0] or shape[1] > raster[1]:
         raise InputError(
             f"a picture of {shape[0]} x {shape[1]} pixels (rows x columns) is larger than "
-            f"the cube's screen of {raster[0]} x {raster[1]}"
+            f"the cube's screen of {raster[0]} x {raster[1]}: make it smaller"
         )
     tilt = math.radians(elevation_deg)
     light = _turned(turned, (math.cos(tilt), 0.0, -math.sin(tilt)))

@@ -50,10 +50,13 @@ class Targets:
         expected = (len(self.rig), *self.rig.picture_shape)
         if pictures.ndim != 4 or pictures.shape[:3] != expected:
             raise InputError(
-                f"pictures of shape {pictures.shape} do not fit the rig, which wants {expected} and a channel"
+                f"pictures of shape {pictures.shape} do not fit the rig, which wants {expected} and a channel: "
+                "fit them to it"
             )
         if self.rig.sums.share.shape[1] not in (1, pictures.shape[3]):
-            raise InputError(f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {pictures.shape[3]}")
+            raise InputError(
+                f"a rig of {self.rig.sums.share.shape[1]} colours does not fit {pictures.shape[3]}: give one of as many"
+            )
         names = self.names or tuple(str(i + 1) for i in range(len(pictures)))
         if len(names) != len(pictures):
             raise InputError(

@@ -244,7 +244,7 @@ class Projector:
     def row(self, index: int) -> tuple[NDArray[np.int64], Reals]:
         """Return the unknowns that equation `index` touches, and its beam's length (mm) in each."""
         if not 0 <= index < self.shape[0]:
-            raise InputError(f"row {index} is not in the matrix of {self.shape[0]} rows")
+            raise InputError(f"row {index} is not in the matrix of {self.shape[0]} rows: count from 0")
         return self._engine.row(index)
 
     def to_sparse(self) -> csr_array:

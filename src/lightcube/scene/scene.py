@@ -64,7 +64,7 @@ class Scene:
     def _mesh(self, i: int, shape: Mesh) -> Reals:
         where = f"{self.name}: shapes.{i}.file"
         if shape.file not in self.meshes:
-            raise InputError(f"{where}: the mesh {shape.file} was not given")
+            raise InputError(f"{where}: the mesh {shape.file} was not given: name its triangles in meshes")
         triangles = tidy(self.meshes[shape.file], f"{where}: {shape.file}")
         if is_closed(triangles):
             return outward(triangles)

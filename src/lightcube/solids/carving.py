@@ -129,12 +129,12 @@ def _check(
     windows = shape.rig.stops.window
     for picture, row, column in rays:
         if not 0 <= picture < len(windows):
-            raise InputError(f"there is no picture {picture} among {len(windows)}, counted from 0")
+            raise InputError(f"there is no picture {picture} among {len(windows)}, counted from 0: name another")
         high, wide = windows[picture].tolist()
         if not (0 <= row < high and 0 <= column < wide):
             raise InputError(
                 f"picture {shape.names[picture]} has {high} x {wide} pixels, counted from 0, "
-                f"and none in row {row}, column {column}"
+                f"and none in row {row}, column {column}: name another"
             )
 
 

@@ -223,18 +223,21 @@ class Relief:
         keep(self, heights_px=np.float64, wanted=np.float64)
         count = len(self.wanted)
         if self.heights_px.ndim != 2 or self.wanted.ndim != 3 or not self.heights_px.size or not self.wanted.size:
-            raise InputError("a relief has heights (row, column) and wanted pictures (picture, row, column)")
+            raise InputError(
+                "a relief has heights (row, column) and wanted pictures (picture, row, column): give both so"
+            )
         if not 1 <= count <= MOST or (self.is_colour and count != 3):
             raise InputError(f"a relief shows 1 to {MOST} pictures, or the three colours of one, not {count}")
         rows, columns = (self.cell * side for side in self.wanted.shape[1:])
         if self.cell < 1 or self.heights_px.shape != (rows, columns + (self.cell > 1)):
             raise InputError(
-                f"heights of shape {self.heights_px.shape} do not fit pictures of {rows} x {columns} columns"
+                f"heights of shape {self.heights_px.shape} do not fit pictures of {rows} x {columns} columns: "
+                "give as many"
             )
         if not np.all(np.isfinite(self.heights_px)) or np.any(self.heights_px < 0):
             raise InputError("heights hold negative or non-finite numbers: every column needs one of at least 0")
         if not np.all((self.wanted >= 0) & (self.wanted <= 1)):
-            raise InputError("wanted light is a number from 0 to 1 at every pixel")
+            raise InputError("wanted light must be a number from 0 to 1 at every pixel")
         names = self.names or tuple(str(number + 1) for number in range(count))
         if len(names) != count:
             raise InputError(f"{counted(count, 'picture')} with {counted(len(names), 'name')}: give one per picture")

@@ -183,5 +183,5 @@ def _described(found: object, name: str) -> Method:
     if isinstance(found, Method):
         return replace(found, name=name)
     if not callable(found):
-        raise InputError(f"method {name} is {type(found).__name__} and no function")
+        raise InputError(f"method {name} is {type(found).__name__} and no function: name one")
     return Method(found, name)

@@ -84,7 +84,9 @@ class Lighting:
             raise InputError(f"lamps must count from 0, not from {self.lamp.min()}")
         if self.mixture is not None and len(self.mixture.light) != len(self.lamp):
             lit = counted(len(self.lamp), "view")
-            raise InputError(f"lamps are named of {lit}, but {len(self.mixture.light)} add up to pictures")
+            raise InputError(
+                f"lamps are named of {lit}, but {len(self.mixture.light)} add up to pictures: name as many"
+            )
 
     @property
     def lamps(self) -> int:
@@ -196,7 +198,7 @@ def _check_mixture(lighting: Lighting, light: Floats, channels: int) -> None:
     if mixture.share.shape[1:] != (channels,) or not fits:
         raise InputError(
             f"views of {pixels} pixels, and shares of shape {mixture.share.shape}, do not fit light of shape "
-            f"{light.shape} in {lighting.pictures} pictures of {channels} channels"
+            f"{light.shape} in {lighting.pictures} pictures of {channels} channels: give all of one rig"
         )
 
 
@@ -205,7 +207,9 @@ def _weights(weights: Floats | None, light: Floats) -> Floats:
     try:
         whole = np.broadcast_to(given.astype(light.dtype, copy=False), light.shape)
     except ValueError as error:
-        raise InputError(f"weights of shape {given.shape} do not fit light of shape {light.shape}") from error
+        raise InputError(
+            f"weights of shape {given.shape} do not fit light of shape {light.shape}: give one for each, or one for all"
+        ) from error
     if not within(given, 0, np.inf):
         raise InputError("weights must be finite and at least 0: use 0 for don't care")
     return whole
@@ -219,7 +223,7 @@ def _lamp_bounds(bounds: tuple[Floats, Floats] | None, lighting: Lighting) -> tu
         if powers.ndim != 2 or powers.shape != low.shape or not np.all(np.isfinite(powers)) or np.any(powers <= 0):
             raise InputError("lamp powers must be positive and finite, in an array of shape (lamps, channels)")
     if len(low) < lighting.lamps:
-        raise InputError(f"views name {lighting.lamps} lamps, but there are powers for {len(low)}")
+        raise InputError(f"views name {lighting.lamps} lamps, but there are powers for {len(low)}: give each its own")
     if np.any(low > high):
         raise InputError("a lower bound of the lamp powers is above the upper one: swap them")
     return low, high
