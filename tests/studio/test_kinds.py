@@ -3,6 +3,7 @@
 import gzip
 import json
 import threading
+from base64 import b64decode
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, get_args
@@ -262,7 +263,7 @@ def test_it_is_made_as_its_command_makes_it_and_taken_away(
     assert [each["name"] for each in done["pictures"]] == [picture.name for picture in used(settings)]
     assert name != "plate" or is_plain(done["said"])
     scene = [facts["scene"] for what, facts in told.heard if what == "cube"][-1]
-    assert json.loads(gzip.decompress(scene))["title"] == "mine"
+    assert json.loads(gzip.decompress(b64decode(scene)))["title"] == "mine"
     words = command_of(project.folder, settings).split()[1:]
     other = tmp_path / f"other{kind.file[kind.file.index('.') :]}"
     words[words.index("-o") + 1] = str(other)

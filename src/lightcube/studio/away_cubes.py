@@ -136,6 +136,7 @@ def _slices(order: Order[Cube]) -> list[str]:
     with ZipFile(order.target, "w") as packed:  # as they are: pictures do not become smaller
         for number, file in enumerate(files):
             packed.write(file, file.name)
+            file.unlink()  # so that the disk need not hold all of it twice
             advance(number + 1, len(files))
     shutil.rmtree(folder)
     return said

@@ -72,7 +72,9 @@ THINGS: Mapping[str, Mapping[str, Thing]] = {
         "cube": Thing("The cube itself", "In one file, to go on with.", "zarr.zip", "know"),
         "films": Thing("Films", f"The cube as {FILMS} printed transparencies, on pages.", "pdf", "make"),
         "shell": Thing("Shells", "Surfaces around what is darkest, for a 3-D printer.", "3mf", "make"),
-        "slices": Thing("Slices", "For a printer of coloured droplets (PolyJet).", "zip", "make"),
+        "slices": Thing(
+            "Slices", "For printers of droplets (PolyJet): 3,704 pictures, 4 GB, an hour or more.", "zip", "make"
+        ),
         "points": Thing("Points", "For a laser that marks glass inside.", "ply", "make"),
         "blender": Thing("A volume for Blender", "OpenVDB, in metres.", "vdb", "make"),
         "volume": Thing("A volume", "NRRD, for 3-D Slicer and others.", "nrrd", "make"),
