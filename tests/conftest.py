@@ -16,9 +16,9 @@ from lightcube.optics import light
 from lightcube.planning import prediction
 from lightcube.report import measuring
 from lightcube.verbs import drawing
-from tests.helpers.browser import bare_browser, browser, evaluate, launch
+from tests.helpers.browser import bare_browser, blank, browser, evaluate, launch
 
-__all__ = ["bare_browser", "browser", "evaluate", "launch"]
+__all__ = ["bare_browser", "blank", "browser", "evaluate", "launch"]
 
 # No test is about how long it takes on a machine that does other things too.
 settings.register_profile("patient", deadline=None)

@@ -74,9 +74,8 @@ def firefox(folder: Path) -> Iterator[Firefox]:
     coarse = 'user_pref("layout.css.devPixelsPerPx", "0.25");\n'  # rooms may be drawn in software
     (folder / "user.js").write_text(f'user_pref("marionette.port", {port});\n{coarse}')
     command = [program, "--headless", "--no-remote", "--marionette", "--profile", str(folder)]
-    small = {"MOZ_HEADLESS_WIDTH": "320", "MOZ_HEADLESS_HEIGHT": "200"}
-    nothing = subprocess.DEVNULL
-    with subprocess.Popen(command, stdout=nothing, stderr=nothing, env={**os.environ, **small}) as running:
+    small = {**os.environ, "MOZ_HEADLESS_WIDTH": "320", "MOZ_HEADLESS_HEIGHT": "200"}
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=small) as running:
         try:
             with closing(opened(port)) as found:
                 yield found

@@ -42,7 +42,6 @@ __all__ = ["run"]
 SMALL = {
     "lightcube.backward.job.COARSE_PASSES": 20,
     "lightcube.backward.needs.PROGRAM": 0,
-    "lightcube.planning.prediction.PASSES": 1,
     **{f"lightcube.planning.order.{name}": 1 for name in ("_PASSES", "_WALKS", "_SWAPS")},
 }
 #: The command line, with a checkpoint after every pass.

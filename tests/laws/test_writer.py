@@ -90,7 +90,9 @@ def is_the_mesh(mesh: Mesh, path: Path, suffix: str) -> None:
 
 
 def a_relief(number: int, suffix: str) -> Relief:
-    random, shape = np.random.default_rng(number), (40 + number, 33)
+    """Its mesh is far larger than its columns."""
+    random = np.random.default_rng(number)
+    shape = (40 + number, 33) if suffix.startswith((".png", ".relief")) else (11 + number, 7)
     recipe = ReliefRecipe(side=12, pitch_mm=0.3 + number, steepest_px=4.0 if number else np.inf, black=0.4)
     return Relief(random.uniform(0, 7, shape), random.random((2 + number, *shape)), recipe, provenance={"of": number})
 
@@ -113,8 +115,9 @@ def is_the_relief(relief: Relief, path: Path, suffix: str) -> None:
 
 
 def a_shape(number: int, suffix: str) -> Shape:
-    """A body of noise."""
-    grid = Grid(((9, 11, 13), (13, 9, 11))[number], 0.3, 1.5)
+    """A body of noise; its mesh is far larger than its field."""
+    sides = ((9, 11, 13), (13, 9, 11)) if suffix.startswith(".shape") else ((4, 5, 6), (6, 4, 5))
+    grid = Grid(sides[number], 0.3, 1.5)
     rig = turntable(grid, [10.0, 41.7], elevation_deg=20, picture_shape=(3, 5))
     random = np.random.default_rng(number)
     field = np.rint(64 * random.normal(size=grid.shape)) / 64 + 1 / 256

@@ -142,11 +142,13 @@ def test_the_row_is_marked_where_one_points_only(visit: Open) -> None:
     assert tab.evaluate(line) == "visible"
 
 
-def test_untouched_it_turns_once_to_the_next_stop(visit: Open) -> None:
+def test_untouched_it_turns_once_to_the_next_stop_and_touched_or_calm_it_stays(visit: Open) -> None:
+    others = [visit(), visit(untouched=True, reduced_motion="reduce")]
     tab = visit(untouched=True)
     stands(tab, STOPS[1])
     tab.wait_for_timeout(4500)
     assert angle_deg(tab) == STOPS[1]
+    assert [angle_deg(each) for each in others] == [STOPS[0]] * 2
 
 
 def test_where_its_address_says_so_it_plays(visit: Open) -> None:
@@ -155,13 +157,6 @@ def test_where_its_address_says_so_it_plays(visit: Open) -> None:
     for where in STOPS[1:3]:
         until(tab, f"Math.abs({CUBE}.angle - {where}) < 1e-6")
     turned_to(tab, STOPS[0])
-
-
-def test_touched_or_calm_it_stays(visit: Open) -> None:
-    for more in ({}, {"untouched": True, "reduced_motion": "reduce"}):
-        tab = visit(**more)
-        tab.wait_for_timeout(4500)
-        assert angle_deg(tab) == STOPS[0]
 
 
 def test_threads_lead_from_the_wall_to_its_picture(visit: Open) -> None:

@@ -20,12 +20,14 @@ from lightcube.scoring import metrics
 from lightcube.viewer.page import page
 from tests.cli.test_cli import run
 from tests.helpers.browser import opened
+from tests.helpers.visiting import rested
 
 __all__ = ["run"]
 
-#: Voxels across, and how well they are solved for: those of the docs take minutes.
+#: Voxels across, how well they are solved for, and pixels to a pixel of the page: those of the docs take minutes.
 SIDE = 48 if "LIGHTCUBE_PICTURES" in os.environ else 16
 QUALITY: Quality = "normal" if "LIGHTCUBE_PICTURES" in os.environ else "draft"
+SHARP = 1.0 if "LIGHTCUBE_PICTURES" in os.environ else 0.5
 
 
 @pytest.fixture(scope="module")
@@ -58,16 +60,21 @@ def test_the_page_is_drawn(
 ) -> None:
     io.save(page(cube, "photographs"), tmp_path / "photographs.html")
     tab, heard = opened(
-        browser, tmp_path / "photographs.html", width=width, height=height, color_scheme=scheme, device_scale_factor=1
+        browser,
+        tmp_path / "photographs.html",
+        width=width,
+        height=height,
+        color_scheme=scheme,
+        device_scale_factor=SHARP,
     )
     room = tab.locator("canvas.room")
     room.wait_for()
     for key in keys:
         tab.keyboard.press(key)
     tab.evaluate("document.querySelector('.hint').remove()")
-    tab.wait_for_timeout(3000)  # what moves comes to rest, and is drawn sharply
+    rested(tab)  # and is drawn sharply
     seen = kept(tab.screenshot(), name, tmp_path)
-    box = {each: round(size) for each, size in (room.bounding_box() or {}).items()}
+    box = {each: round(SHARP * size) for each, size in (room.bounding_box() or {}).items()}
     drawn = seen[box["y"] : box["y"] + box["height"], box["x"] : box["x"] + box["width"]]
     assert np.all(np.std(drawn.reshape(-1, 3), axis=0) > 20)
     assert len(np.unique(drawn.reshape(-1, 3), axis=0)) > 1000
@@ -80,7 +87,7 @@ def test_the_report_is_drawn(run: Any, browser: Any, cube: Cube, tmp_path: Path)
     io.save(cube, tmp_path / "photographs.zarr")
     title = ("--title", "Eight photographs")
     assert run("report", tmp_path / "photographs.zarr", "-o", tmp_path / "report.html", *title).code == 0
-    tab, heard = opened(browser, tmp_path / "report.html", width=1000, height=1330, device_scale_factor=1)
+    tab, heard = opened(browser, tmp_path / "report.html", width=1000, height=1330, device_scale_factor=SHARP)
     assert np.std(kept(tab.screenshot(), "report.png", tmp_path)) > 20
     assert not heard
     tab.context.close()
