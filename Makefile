@@ -19,6 +19,8 @@ EXTRAS ?= dev,docs,heif,plot,notebook,remote,cluster,studio
 BIN := .venv/bin
 PIP := PIP_CONSTRAINT=constraints.txt PIP_DISABLE_PIP_VERSION_CHECK=1 $(BIN)/python -m pip install -qq
 PYTEST := -m pytest -q -n auto --dist worksteal
+# Several threads of several programs wait for each other: scipy's minimizer took 100 times as long.
+ALONE := NUMBA_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 
 # Tests start hundreds of programs: each would compile the package anew, and each worker of the suite all tests.
 unexport PYTHONDONTWRITEBYTECODE
@@ -28,16 +30,9 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: .venv/.ready
 	$(BIN)/lightcube demo
 
-test: test-compiled test-interpreted
-
-test-compiled: .venv/.ready-$(EXTRAS)
-	NUMBA_NUM_THREADS=1 $(BIN)/python $(PYTEST)
-
-test-interpreted: .venv/.ready-$(EXTRAS)
-	NUMBA_DISABLE_JIT=1 $(BIN)/python $(PYTEST) $(addprefix tests/,$(INTERPRETED))
 
 test-lowest test-newest: test-%: .venv-%
-	NUMBA_CACHE_DIR=.venv-$*/numba NUMBA_NUM_THREADS=1 .venv-$*/bin/python $(PYTEST) $(TESTS)
+	$(ALONE) NUMBA_CACHE_DIR=.venv-$*/numba .venv-$*/bin/python $(PYTEST) $(TESTS)
 
 check: .venv/.ready-$(EXTRAS)
 	$(BIN)/ruff check .
