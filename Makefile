@@ -30,6 +30,13 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: .venv/.ready
 	$(BIN)/lightcube demo
 
+test: test-compiled test-interpreted
+
+test-compiled: .venv/.ready-$(EXTRAS)
+	$(ALONE) $(BIN)/python $(PYTEST)
+
+test-interpreted: .venv/.ready-$(EXTRAS)
+	$(ALONE) NUMBA_DISABLE_JIT=1 $(BIN)/python $(PYTEST) $(addprefix tests/,$(INTERPRETED))
 
 test-lowest test-newest: test-%: .venv-%
 	$(ALONE) NUMBA_CACHE_DIR=.venv-$*/numba .venv-$*/bin/python $(PYTEST) $(TESTS)
