@@ -76,6 +76,33 @@ def tabs(browser: Any, studio: str) -> Iterator[Callable[..., Any]]:
     assert [each for each in heard if not each.startswith(("data:", "blob:"))] == []
 
 
+#: Asks to change a setting, whose answer takes a while, then to do something, and how all stands; tells what happened.
+_ASKED_AT_ONCE = """async () => {
+  const { askOf } = await import("/web/tools/asking.js");
+  const told = [], own = window.fetch, slow = { PATCH: 50 };
+  window.fetch = async (path, given) => {
+    told.push(`asked ${path}`);
+    await new Promise((done) => setTimeout(done, slow[given.method] ?? 0));
+    told.push(`answered ${path}`);
+    return new Response("{}");
+  };
+  try {
+    const ask = askOf({ say() {} });
+    await Promise.all([ask("title", { method: "PATCH" }), ask("start", { method: "POST" }), ask("state")]);
+  } finally {
+    window.fetch = own;
+  }
+  return told;
+}"""
+
+
+def test_what_is_done_waits_for_what_was_changed_before_it(enter: Callable[..., Any]) -> None:
+    """Who gives a title and presses a button at once gets a thing of that title."""
+    told = enter().evaluate(_ASKED_AT_ONCE)
+    assert told.index("answered title") < told.index("asked start")
+    assert told.index("answered state") < told.index("answered title"), "who only looks need not wait"
+
+
 def until(tab: Any, expression: str) -> None:
     """Wait for something that the page's own policy would not let it be asked by itself."""
     began = time.monotonic()
