@@ -92,8 +92,8 @@ def test_the_shadows_of_a_known_cube_in_glass_come_back(form: Form) -> None:
 @pytest.mark.parametrize("form", ["block", "cylinder", "sphere"])
 def test_memory_is_as_much_as_is_said(form: Form) -> None:
     """Also of the lines of beams, and of the pieces of those that go one by one, where there is room for them."""
-    solve_job(a_job(form, 6, 2))  # numba compiles
     for memory in (None, 1):
+        solve_job(a_job(form, 6, 2, memory))  # numba compiles
         job = a_job(form, 40, 24, memory)
         tracemalloc.start()
         try:
